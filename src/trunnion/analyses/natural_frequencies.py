@@ -1,0 +1,118 @@
+"""Natural frequencies, mode shapes and damping ratios of the aligned line (all joint angles zero)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.aligned import aligned_matrices, frequencies
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NaturalFrequencies:
+    """Modes of the aligned line, by ascending frequency.
+
+    frequency (mode,) undamped [rad/s]; damping_ratio (mode,) [1], from the damped eigenvalues where the mode
+    oscillates; shape (rotation, mode): rotation of each inertia, largest entry 1; names (rotation,).
+    ``rigid_body`` tells that mode 1 is the free rotation of the whole line.
+    """
+
+    frequency: Array
+    damping_ratio: Array
+    shape: Array
+    names: tuple[str, ...]
+    rigid_body: bool
+
+    @property
+    def hertz(self) -> Array:
+        """Frequencies in Hz."""
+        return self.frequency / (2 * np.pi)
+
+    @property
+    def elastic(self) -> Array:
+        """Frequencies without the rigid-body mode [rad/s]."""
+        return self.frequency[1:] if self.rigid_body else self.frequency
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        return xr.Dataset(
+            {
+                "frequency": ("mode", self.frequency, {"units": "rad/s"}),
+                "damping_ratio": ("mode", self.damping_ratio, {"units": "1"}),
+                "shape": (("rotation", "mode"), self.shape, {"units": "1", "long_name": "mode shape"}),
+            },
+            coords={"mode": np.arange(1, len(self.frequency) + 1), "rotation": list(self.names)},
+        )
+
+    def table(self, unit: str = "Hz") -> list[dict[str, object]]:
+        """One row per mode, frequencies in ``unit``; the mode's largest motion named."""
+        factor = speed_factor(unit)
+        return [
+            {
+                "mode": i + 1,
+                f"frequency [{unit}]": float(w * factor),
+                "damping ratio": float(z),
+                "moves most": "whole line" if self.rigid_body and i == 0 else self.names[np.argmax(np.abs(v))],
+            }
+            for i, (w, z, v) in enumerate(zip(self.frequency, self.damping_ratio, self.shape.T, strict=True))
+        ]
+
+    def __str__(self) -> str:
+        lines = [f"{len(self.frequency)} natural frequencies of the aligned line (joint angles zero)"]
+        for i, (w, z) in enumerate(zip(self.frequency, self.damping_ratio, strict=True), start=1):
+            if self.rigid_body and i == 1:
+                lines.append(f"  mode {i}: 0, rigid body (the line turns as a whole)")
+            else:
+                lines.append(f"  mode {i}: {w:.6g} rad/s = {w / (2 * np.pi):.6g} Hz, damping ratio {z:.3g}")
+        return "\n".join(lines)
+
+
+def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
+    """Natural frequencies of ``line`` with all joint angles zero.
+
+    M q̈ + C q̇ + K q = 0 in absolute rotations, ratios at their constant speed ratio; a ConstantSpeed end does
+    not vibrate. Joint angles change these frequencies only at second order; resonance speeds are named
+    after them.
+    """
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    topo = assembly.topology
+    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1)))
+    mass, damping, stiffness = matrices.mass[0], matrices.damping[0], matrices.stiffness[0]
+    root = np.sqrt(mass)
+    found = frequencies(matrices, free=topo.free)[0]
+    _, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
+    shape = vectors / root[:, None]
+    shape = shape / shape[np.abs(shape).argmax(0), np.arange(len(mass))]
+    ratio = _damping_ratios(damping / np.outer(root, root), stiffness / np.outer(root, root), vectors, found)
+    return NaturalFrequencies(found, ratio, shape, topo.names, topo.free)
+
+
+def _damping_ratios(damping: Array, stiffness: Array, vectors: Array, frequency: Array) -> Array:
+    """−Re λ/|λ| of the damped modes; by modal projection where a mode does not oscillate."""
+    n = len(frequency)
+    modal = np.einsum("im,ij,jm->m", vectors, damping, vectors)
+    ratio = np.divide(modal, 2 * frequency, out=np.zeros(n), where=frequency > 0)
+    if np.any(np.abs(ratio) >= 0.9):
+        return ratio
+    system = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
+    values = np.linalg.eigvals(system)
+    above = values[values.imag > 1e-9 * frequency.max()]
+    oscillating = frequency > 0
+    if len(above) == oscillating.sum():
+        above = above[np.argsort(np.abs(above))]
+        ratio[oscillating] = -above.real / np.abs(above)
+    return ratio

@@ -1,0 +1,202 @@
+"""A driveline as one array of numbers, and parameters as places in it.
+
+``pack(line)`` lists every number of the description as a column ("Shaft 1.stiffness", "HookeJoint 1.angle",
+…; column 0 is the input speed). A *parameter* is a label, a unit and an affine map from one value into
+those columns, so charts, limits and sensitivities vary an array and nothing is validated again per point.
+
+Paths
+    "speed"                       the input speed [rad/s]
+    "HookeJoint 1.angle"          one number of one element, by its name or its default name
+    "HookeJoint *.angle"          the same number of every element of a kind
+    "factor of Shaft *.damping"   multiplies what the line has (1 leaves it as it is)
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+
+SPEED = "speed"
+UNITS = {
+    "speed": "rad/s",
+    "stiffness": "N*m/rad",
+    "damping": "N*m*s/rad",
+    "loss_factor": "1",
+    "loss_factor_frequency": "rad/s",
+    "outer_diameter": "m",
+    "inner_diameter": "m",
+    "length": "m",
+    "thickness": "m",
+    "shear_modulus": "Pa",
+    "density": "kg/m^3",
+    "fork_offset": "rad",
+    "inertia": "kg*m^2",
+    "load_torque": "N*m",
+    "angle": "rad",
+    "plane": "rad",
+    "damping_ratio": "1",
+    "damping_ratio_frequency": "rad/s",
+}
+
+
+@dataclass(frozen=True)
+class Term:
+    """``column(path) = offset + slope × value``."""
+
+    path: str
+    slope: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A quantity to vary: its label and unit, and what a value of it puts into a packed line.
+
+    Either ``path`` (see the module's grammar) or ``terms`` for a group that moves several numbers at once,
+    e.g. a paper's nondimensional ratio.
+    """
+
+    label: str
+    unit: str
+    terms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A parameter resolved against one packed line: ``values[:, index] = offset + slope × value``."""
+
+    label: str
+    unit: str
+    index: NDArray[np.intp]
+    slope: NDArray[np.float64]
+    offset: NDArray[np.float64]
+
+    def put(self, table: NDArray[np.float64], value: ArrayLike) -> None:
+        """Write ``value`` (one per row of ``table``, or a scalar) into the columns of this parameter."""
+        spread = np.asarray(value, dtype=float)[..., None]
+        table[..., self.index] = self.offset + self.slope * spread
+
+
+@dataclass(frozen=True)
+class PackedLine:
+    """The numbers of a line: ``values[column]`` in SI, with ``labels`` and ``units`` by column."""
+
+    line: Driveline
+    labels: tuple[str, ...]
+    units: tuple[str, ...]
+    values: NDArray[np.float64]
+    place: dict[tuple[int, str], int] = field(repr=False)
+
+    def column(self, element: int, key: str) -> int:
+        """Column of an element's number; −1 where the description does not give it."""
+        return self.place.get((element, key), -1)
+
+    def table(self, rows: int) -> NDArray[np.float64]:
+        """``rows`` copies of the line's numbers, to be varied; shape (rows, columns)."""
+        return np.tile(self.values, (rows, 1))
+
+    def resolve(self, parameter: str | Parameter) -> Columns:
+        """Find the columns a path or a ``Parameter`` moves.
+
+        Raises
+        ------
+        InputError : no such element or key (the nearest is suggested), or a number the line does not give.
+        """
+        if isinstance(parameter, str):
+            return self._resolve_path(parameter)
+        index, slope, offset = [], [], []
+        for term in parameter.terms:
+            for column in self._find(term.path):
+                index.append(column)
+                slope.append(term.slope)
+                offset.append(term.offset)
+        return Columns(
+            parameter.label, parameter.unit, np.array(index, dtype=np.intp), np.array(slope), np.array(offset)
+        )
+
+    def value(self, parameter: str | Parameter) -> float:
+        """The value the line has now (NaN for a speed that was not given)."""
+        columns = self.resolve(parameter)
+        first = columns.index[0]
+        return float((self.values[first] - columns.offset[0]) / columns.slope[0])
+
+    def _resolve_path(self, path: str) -> Columns:
+        factor = path.startswith("factor of ")
+        found = np.array(self._find(path.removeprefix("factor of ")), dtype=np.intp)
+        if not factor:
+            return Columns(path, self.units[found[0]], found, np.ones(len(found)), np.zeros(len(found)))
+        slope = self.values[found]
+        if not np.any(slope):
+            raise InputError(
+                "multiplies numbers that are all zero, so it changes nothing",
+                key=path,
+                remedy="give them a value, or vary them directly",
+            )
+        return Columns(path, "1", found, slope, np.zeros(len(found)))
+
+    def _find(self, path: str) -> list[int]:
+        if path == SPEED:
+            return [0]
+        owner, dot, key = path.rpartition(".")
+        if not dot:
+            if path in ("damping_ratio", "damping_ratio_frequency"):
+                owner, key = "driveline", path
+            else:
+                raise self._unknown(path)
+        line = self.line
+        if owner == "driveline":
+            members = [-1]
+        elif owner.endswith(" *"):
+            members = [i for i, e in enumerate(line.elements) if e.kind == owner[:-2]]
+        else:
+            members = [i for i, n in enumerate(line.names) if n == owner]
+            members = members or [i for i, n in enumerate(default_names(line)) if n == owner]
+        columns = [c for i in members if (c := self.column(i, key)) >= 0]
+        if not columns:
+            raise self._unknown(path)
+        return columns
+
+    def _unknown(self, path: str) -> InputError:
+        known = list(self.labels)
+        kinds = {e.kind for e in self.line.elements}
+        known += [f"{k} *.{label.rpartition('.')[2]}" for k in sorted(kinds) for label in self.labels]
+        near = difflib.get_close_matches(path, known, n=1, cutoff=0.4)
+        what = f'did you mean "{near[0]}"?' if near else f"parameters are: {', '.join(self.labels)}"
+        return InputError("is not a parameter of this driveline", key=path, remedy=what)
+
+
+def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
+    """List every number of ``line`` as a column; column 0 is ``speed`` [rad/s]."""
+    labels, values, place = [SPEED], [speed], {(-1, SPEED): 0}
+    for i, element in enumerate(line.elements):
+        for key in UNITS:
+            number = getattr(element, key, None)
+            if isinstance(number, float | int) and not isinstance(number, bool):
+                place[i, key] = len(labels)
+                labels.append(f"{line.names[i]}.{key}")
+                values.append(float(number))
+    for key in ("damping_ratio", "damping_ratio_frequency"):
+        number = getattr(line, key)
+        if number is not None:
+            place[-1, key] = len(labels)
+            labels.append(key)
+            values.append(float(number))
+    units = tuple(UNITS[label.rpartition(".")[2]] for label in labels)
+    return PackedLine(line, tuple(labels), units, np.array(values), place)
+
+
+def default_names(line: Driveline) -> Sequence[str]:
+    """The names elements have when the user gives none: the kind and its ordinal."""
+    count: dict[str, int] = {}
+    names = []
+    for element in line.elements:
+        count[element.kind] = count.get(element.kind, 0) + 1
+        names.append(f"{element.kind} {count[element.kind]}")
+    return names

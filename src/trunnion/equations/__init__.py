@@ -1,0 +1,1 @@
+"""From a description of a driveline to equations of motion."""

@@ -1,0 +1,69 @@
+"""The aligned line: all joint angles zero, so that every joint passes motion unchanged.
+
+Its natural frequencies name the resonances of the jointed line. Ratios keep their constant speed ratio.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.topology import Topology
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AlignedMatrices:
+    """M (case, n) diagonal [kg m²], C and K (case, n, n) [N m s/rad, N m/rad] in absolute rotations."""
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+
+def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedMatrices:
+    """Mass, damping and stiffness of the aligned line, one per case."""
+    cases, n = len(coefficients.inertia), topo.size
+    mass = np.zeros((cases, n))
+    for s in range(len(topo.stations)):
+        c = topo.coordinate[topo.group_of(s)]
+        if c >= 0:
+            mass[:, c] += coefficients.inertia[:, s] * relative_ratio(topo, s) ** 2
+    damping, stiffness = np.zeros((cases, n, n)), np.zeros((cases, n, n))
+    for e, compliance in enumerate(topo.compliances):
+        elongation = np.zeros(n)
+        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+        if far >= 0:
+            elongation[far] = 1.0
+        if near >= 0:
+            elongation[near] = -relative_ratio(topo, compliance.near)
+        outer = np.outer(elongation, elongation)
+        damping += coefficients.damping[:, e, None, None] * outer
+        stiffness += coefficients.stiffness[:, e, None, None] * outer
+    return AlignedMatrices(mass, damping, stiffness)
+
+
+def relative_ratio(topo: Topology, station: int) -> float:
+    """Mean speed of a station over that of its group's first station."""
+    return float(topo.speed_ratio[station] / topo.speed_ratio[topo.reference[topo.group_of(station)]])
+
+
+def frequencies(matrices: AlignedMatrices, *, free: bool) -> Array:
+    """Undamped natural frequencies [rad/s], ascending, shape (case, n); a free line's rigid mode is exactly 0."""
+    root = np.sqrt(matrices.mass)
+    scaled = matrices.stiffness / (root[:, :, None] * root[:, None, :])
+    squares = np.linalg.eigvalsh(scaled)
+    if free:
+        squares[:, 0] = 0.0
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
+def lowest_elastic_frequency(assembly: Assembly) -> float:
+    """Lowest non-zero natural frequency [rad/s] of the line as described, damping left out."""
+    topo = assembly.topology
+    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
+    return float(frequencies(matrices, free=topo.free)[0, 1 if topo.free else 0])

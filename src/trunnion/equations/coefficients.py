@@ -1,0 +1,194 @@
+"""From the numbers a user gives (tube diameters, loss factors, …) to those the equations need.
+
+Every function takes a table of packed parameters, one row per case, and returns one row per case: a chart
+evaluates a whole row of points at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Shaft
+from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.equations.topology import Link, Topology, topology
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LineCoefficients:
+    """What the equations of a line need, one row per case (axes: case, then as named).
+
+    speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad]
+    per compliance; inertia [kg m²] and load [N m] per station; angle [rad] per joint; ``shift`` [rad] per
+    station: what a shaft adds to the angle at its far end (fork offset and static twist), and what a joint
+    subtracts from its input angle to measure it from its own plane.
+    """
+
+    speed: Array
+    stiffness: Array
+    damping: Array
+    torque: Array
+    twist: Array
+    inertia: Array
+    load: Array
+    angle: Array
+    shift: Array
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """A line with its topology and packed numbers: what every analysis starts from."""
+
+    line: Driveline
+    packed: PackedLine
+    topology: Topology
+
+    def table(self, rows: int, speed: float | None = None) -> Array:
+        """``rows`` copies of the packed numbers, optionally at ``speed`` [rad/s]."""
+        table = self.packed.table(rows)
+        if speed is not None:
+            table[:, 0] = speed
+        return table
+
+    def coefficients(
+        self, table: Array, *, statically_twisted: bool = True, damped: bool = True
+    ) -> LineCoefficients:
+        """Evaluate the line's coefficients for each row of ``table`` (cases, columns).
+
+        ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the
+        line is taken at zero twist and zero torque. ``damped=False`` leaves all damping out.
+        """
+        return _coefficients(self, np.atleast_2d(table), statically_twisted, damped)
+
+    @cached_property
+    def damping_reference(self) -> float:
+        """Frequency [rad/s] at which a common damping ratio holds: as given, else the lowest elastic mode."""
+        if self.line.damping_ratio_frequency is not None:
+            return float(self.line.damping_ratio_frequency)
+        from trunnion.equations.aligned import lowest_elastic_frequency
+
+        return lowest_elastic_frequency(self)
+
+
+def assemble(line: Driveline) -> Assembly:
+    """Pack ``line`` and sort it into stations and compliances."""
+    return Assembly(line, pack(line), topology(line))
+
+
+def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
+    """Torsional stiffness [N m/rad] of one shaft, from its stiffness or its tube geometry."""
+    shaft = assembly.line.elements[element]
+    column = assembly.packed.column
+    if isinstance(shaft, Shaft) and shaft.stiffness is None:
+        keys = ("outer_diameter", "inner_diameter", "length", "shear_modulus")
+        return np.asarray(tube_stiffness(*(table[:, column(element, k)] for k in keys)))
+    return table[:, column(element, "stiffness")]
+
+
+def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
+    column = assembly.packed.column
+    if assembly.line.damping_ratio is not None:
+        ratio = table[:, column(-1, "damping_ratio")]
+        given = column(-1, "damping_ratio_frequency")
+        reference = table[:, given] if given >= 0 else assembly.damping_reference
+        return 2 * ratio * stiffness / reference
+    if column(element, "loss_factor") >= 0:
+        loss = table[:, column(element, "loss_factor")]
+        return loss * stiffness / table[:, column(element, "loss_factor_frequency")]
+    return table[:, column(element, "damping")]
+
+
+def _series(stiffness: list[Array], damping: list[Array]) -> tuple[Array, Array]:
+    """Massless shafts in series as one.
+
+    Exact in stiffness. In damping exact where all have the same c/k, otherwise right to first order in
+    cω/k: each shaft twists in proportion to 1/k, so c = k² Σ c_i/k_i².
+    """
+    if len(stiffness) == 1:
+        return stiffness[0], damping[0]
+    together = 1 / np.sum([1 / k for k in stiffness], axis=0)
+    return together, together**2 * np.sum([c / k**2 for c, k in zip(damping, stiffness, strict=True)], axis=0)
+
+
+def _station_inertia(assembly: Assembly, table: Array) -> Array:
+    topo, column = assembly.topology, assembly.packed.column
+    inertia = np.zeros((len(table), len(topo.stations)))
+    for station, element in topo.disks:
+        if column(element, "inertia") >= 0:
+            inertia[:, station] += table[:, column(element, "inertia")]
+        else:
+            keys = ("outer_diameter", "inner_diameter", "thickness", "density")
+            inertia[:, station] += disk_inertia(*(table[:, column(element, k)] for k in keys))
+    for station, element in topo.tube_ends:
+        keys = ("outer_diameter", "inner_diameter", "length", "density")
+        inertia[:, station] += tube_inertia(*(table[:, column(element, k)] for k in keys)) / 2
+    return inertia
+
+
+def static_torque(topo: Topology, load: Array) -> Array:
+    """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
+
+    Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
+    shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged).
+    """
+    torque = np.zeros((len(load), len(topo.compliances)))
+    for e in range(len(topo.compliances) - 1, -1, -1):
+        far = topo.compliances[e].far_group
+        own = float(topo.speed_ratio[topo.reference[far]])
+        for s, station in enumerate(topo.stations):
+            if station.group == far:
+                torque[:, e] -= load[:, s] * abs(float(topo.speed_ratio[s])) / own
+        for d in range(e + 1, len(topo.compliances)):
+            next_one = topo.compliances[d]
+            if topo.group_of(next_one.near) == far:
+                ratio = float(topo.speed_ratio[topo.reference[next_one.far_group]]) / own
+                torque[:, e] += torque[:, d] * ratio
+    return torque
+
+
+def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool) -> LineCoefficients:
+    topo, column = assembly.topology, assembly.packed.column
+    cases, stations = len(table), len(topo.stations)
+    stiffness = np.empty((cases, len(topo.compliances)))
+    damping = np.empty_like(stiffness)
+    each: dict[int, Array] = {}
+    for e, compliance in enumerate(topo.compliances):
+        for i in compliance.shafts:
+            each[i] = shaft_stiffness(assembly, table, i)
+        k = [each[i] for i in compliance.shafts]
+        c = [
+            _shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts
+        ]
+        stiffness[:, e], damping[:, e] = _series(k, c)
+    load = np.zeros((cases, stations))
+    for station, element in topo.disks:
+        load[:, station] += table[:, column(element, "load_torque")]
+    torque = static_torque(topo, load) if twisted else np.zeros_like(stiffness)
+    shift = np.zeros((cases, stations))
+    compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}
+    for s, station in enumerate(topo.stations):
+        if station.link is Link.SHAFT:
+            i = station.element
+            shift[:, s] = table[:, column(i, "fork_offset")] + torque[:, compliance_of[i]] / each[i]
+        elif station.link is Link.HOOKE:
+            shift[:, s] = -table[:, column(station.element, "plane")]
+    joints = [topo.stations[j].element for j in topo.joints]
+    angle = np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
+    return LineCoefficients(
+        speed=table[:, 0],
+        stiffness=stiffness,
+        damping=damping,
+        torque=torque,
+        twist=torque / stiffness,
+        inertia=_station_inertia(assembly, table),
+        load=load,
+        angle=angle,
+        shift=shift,
+    )

@@ -1,0 +1,133 @@
+"""A line as the compiled chain kernel reads it: one program for its topology, one lane per case."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.aligned import relative_ratio
+from trunnion.equations.coefficients import LineCoefficients
+from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
+from trunnion.equations.topology import Link, Topology
+from trunnion.numerics.chain_monodromy import ChainLanes, ChainProgram
+
+Array = NDArray[np.float64]
+
+
+class _Walk:
+    """Per station: which joint last changed its speed (and by what since), the same within its group, phase."""
+
+    def __init__(self, topo: Topology, shift: Array) -> None:
+        ratios = ratio_values(topo)
+        count = len(topo.stations)
+        self.speed: list[tuple[int, float]] = [(-1, 1.0)] * count
+        self.within: list[tuple[int, float]] = [(-1, 1.0)] * count
+        self.phase = np.zeros((len(shift), count))
+        self.joint_input: list[tuple[tuple[int, float], tuple[int, float]]] = []
+        self.joint_phase: list[Array] = []
+        for s, station in enumerate(topo.stations):
+            b = station.before
+            if station.link is Link.ROOT:
+                continue
+            if station.link is Link.SHAFT:
+                self.speed[s] = self.speed[b]
+                self.phase[:, s] = self.phase[:, b] + shift[:, s]
+            elif station.link is Link.HOOKE:
+                joint = len(self.joint_input)
+                self.joint_input.append((self.speed[b], self.within[b]))
+                self.joint_phase.append(self.phase[:, b] + shift[:, s])
+                self.speed[s] = self.within[s] = (joint, 1.0)
+                self.phase[:, s] = QUARTER_TURN
+            else:
+                (j, rate), (g, factor) = self.speed[b], self.within[b]
+                self.speed[s], self.within[s] = (j, rate / ratios[s]), (g, factor / ratios[s])
+                self.phase[:, s] = self.phase[:, b] / ratios[s]
+
+
+def chain_program(topo: Topology) -> ChainProgram:
+    """The topology as index arrays; see ``ChainProgram``."""
+    walk = _Walk(topo, np.zeros((1, len(topo.stations))))
+    n = topo.size
+    parent = np.full(n, -1, dtype=np.int64)
+    near: list[tuple[int, float]] = [(-1, 0.0)] * n
+    near_speed: list[tuple[int, float]] = [(-1, 0.0)] * n
+    for compliance in topo.compliances:
+        i = topo.coordinate[compliance.far_group]
+        group = topo.group_of(compliance.near)
+        parent[i] = topo.coordinate[group]
+        near[i] = walk.within[compliance.near]
+        near_speed[i] = walk.speed[topo.reference[group]]
+    members = _members(topo)
+    member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
+    return ChainProgram(
+        parent,
+        *_split([speed for speed, _ in walk.joint_input]),
+        *_split([within for _, within in walk.joint_input]),
+        *_split(near),
+        *_split(near_speed),
+        np.array([topo.coordinate[topo.group_of(s)] for s in members], dtype=np.int64),
+        *_split([walk.within[s] for s in members]),
+        *_split(member_speed),
+    )
+
+
+def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
+    """The numbers of each case as a lane (lanes on the last axis), scaled as the kernel wants them."""
+    co, n = coefficients, topo.size
+    cases = len(co.speed)
+    over_speed = 1 / co.speed
+    inertia = np.zeros((cases, n))
+    for s in range(len(topo.stations)):
+        i = topo.coordinate[topo.group_of(s)]
+        if i >= 0:
+            inertia[:, i] += co.inertia[:, s] * relative_ratio(topo, s) ** 2
+    stiffness, damping, torque = (np.zeros((cases, n)) for _ in range(3))
+    scale, trace = np.ones((cases, n)), np.zeros(cases)
+    for e, compliance in enumerate(topo.compliances):
+        i, p = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+        stiffness[:, i] = co.stiffness[:, e] / inertia[:, i] * over_speed**2
+        damping[:, i] = co.damping[:, e] / inertia[:, i] * over_speed
+        trace += stiffness[:, i]
+        if p >= 0:
+            scale[:, i] = np.sqrt(inertia[:, i] / inertia[:, p])
+            torque[:, i] = co.torque[:, e] / inertia[:, p] * over_speed**2
+            trace += stiffness[:, i] * (scale[:, i] * relative_ratio(topo, compliance.near)) ** 2
+    members = _members(topo)
+    owner = [topo.coordinate[topo.group_of(s)] for s in members]
+    sign = np.sign([float(topo.speed_ratio[s]) for s in members])
+    walk = _Walk(topo, co.shift)
+    phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
+    return ChainLanes(
+        cosine=np.ascontiguousarray(np.cos(co.angle).T),
+        phase=phase,
+        stiffness=np.ascontiguousarray(stiffness.T),
+        damping=np.ascontiguousarray(damping.T),
+        scale=np.ascontiguousarray(scale.T),
+        torque=np.ascontiguousarray(torque.T),
+        member_inertia=np.ascontiguousarray((co.inertia[:, members] / inertia[:, owner]).T),
+        member_load=np.ascontiguousarray(
+            (sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T
+        ),
+        frequency=np.sqrt(np.maximum(trace / n, 1.0)),
+    )
+
+
+def _members(topo: Topology) -> list[int]:
+    """Stations with inertia in groups whose inertia depends on the angle, grouped by unknown."""
+    heavy = sorted({s for s, _ in topo.disks + topo.tube_ends})
+    behind = {topo.group_of(s) for s in heavy if _behind_joint(topo, s)}
+    chosen = [s for s in heavy if topo.group_of(s) in behind and topo.coordinate[topo.group_of(s)] >= 0]
+    return sorted(chosen, key=lambda s: topo.coordinate[topo.group_of(s)])
+
+
+def _behind_joint(topo: Topology, station: int) -> bool:
+    """True if a joint lies between the station and the first station of its group."""
+    while topo.stations[station].link in (Link.HOOKE, Link.RATIO):
+        if topo.stations[station].link is Link.HOOKE:
+            return True
+        station = topo.stations[station].before
+    return False
+
+
+def _split(pairs: list[tuple[int, float]]) -> tuple[NDArray[np.int64], Array]:
+    return np.array([p[0] for p in pairs], dtype=np.int64), np.array([p[1] for p in pairs], dtype=float)

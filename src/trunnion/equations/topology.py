@@ -1,0 +1,259 @@
+"""Which parts of a driveline turn together, and which shaft joins which.
+
+A *station* is a point of the line that has one rotation. Joints and ratios tie the station behind them
+rigidly (by a law of angle) to the station in front; a shaft lets its two ends twist against each other.
+Stations tied rigidly form a *group*: one coordinate, the rotation of the group's first station. The
+dynamics see groups that carry inertia, joined by compliances; massless shafts in series are one
+compliance. The root group is prescribed if the line starts with a ConstantSpeed, otherwise it is free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from fractions import Fraction
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed, Disk, HookeJoint, IdealJoint, Ratio, Shaft
+from trunnion.errors import InputError
+
+
+class Link(IntEnum):
+    """How a station hangs on the one before it."""
+
+    ROOT = 0
+    SHAFT = 1
+    HOOKE = 2
+    RATIO = 3
+
+
+@dataclass(frozen=True)
+class Station:
+    """One rotation: ``before`` is the station in front (−1 at the root), ``element`` the link's element."""
+
+    before: int
+    link: Link
+    element: int
+    group: int
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Shaft(s) in series from a station to the first station of another group."""
+
+    near: int
+    far_group: int
+    shafts: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Stations, groups and compliances of a line; independent of its numbers.
+
+    ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
+    where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
+    an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station.
+    """
+
+    stations: tuple[Station, ...]
+    compliances: tuple[Compliance, ...]
+    reference: tuple[int, ...]
+    coordinate: tuple[int, ...]
+    prescribed: tuple[bool, ...]
+    disks: tuple[tuple[int, int], ...]
+    tube_ends: tuple[tuple[int, int], ...]
+    speed_ratio: tuple[Fraction, ...]
+    names: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of unknown rotations n."""
+        return sum(c >= 0 for c in self.coordinate)
+
+    @property
+    def free(self) -> bool:
+        """True when no rotation is prescribed, so that the line can turn as a rigid body."""
+        return not any(self.prescribed)
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """Stations behind a HookeJoint, in order."""
+        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.HOOKE)
+
+    def group_of(self, station: int) -> int:
+        """The group a station belongs to."""
+        return self.stations[station].group
+
+    def period_turns(self) -> Fraction:
+        """Turns of the input after which every joint is back in phase: half a turn for joints at input speed.
+
+        Joint excitation has the frequencies 2 |speed_ratio| per input turn; the base frequency is their
+        greatest common divisor.
+        """
+        rates = [abs(2 * self.speed_ratio[j]) for j in self.joints]
+        if not rates:
+            return Fraction(1, 2)
+        base = rates[0]
+        for rate in rates[1:]:
+            base = _gcd(base, rate)
+        return 1 / base
+
+
+LONGEST_PERIOD = 60
+"""Turns of the input beyond which a line counts as having no common period."""
+
+
+def topology(line: Driveline) -> Topology:
+    """Sort the elements of ``line`` into stations, groups and compliances.
+
+    Raises
+    ------
+    InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
+        no inertia at all.
+    """
+    return _merge_massless(line, _walk(line))
+
+
+def require_period(line: Driveline, topo: Topology) -> Fraction:
+    """Period in turns of the input, or an InputError where ratios leave none of a usable length."""
+    turns = topo.period_turns()
+    if turns > LONGEST_PERIOD:
+        for i, element in enumerate(line.elements):
+            if isinstance(element, Ratio) and element.fraction.limit_denominator(12) != element.fraction:
+                raise InputError(
+                    f"joints in front of and behind this ratio are back in phase only after {float(turns):g} "
+                    "turns of the input",
+                    element=line.names[i],
+                    key="ratio",
+                    value=float(element.fraction),
+                    remedy="give the tooth numbers, teeth_in and teeth_out, instead of a rounded ratio",
+                )
+        raise InputError(
+            f"joints are back in phase only after {float(turns):g} turns of the input "
+            f"(at most {LONGEST_PERIOD} are followed)",
+            element=next(n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio)),
+            key="teeth_in/teeth_out",
+            remedy="study the joints on each side of the ratio separately",
+        )
+    return turns
+
+
+def _gcd(a: Fraction, b: Fraction) -> Fraction:
+    while b:
+        a, b = b, a % b
+    return a
+
+
+@dataclass
+class _Draft:
+    stations: list[Station]
+    compliances: list[Compliance]
+    reference: list[int]
+    prescribed: list[bool]
+    disks: list[tuple[int, int]]
+    tube_ends: list[tuple[int, int]]
+    speed_ratio: list[Fraction]
+
+    def add(self, before: int, link: Link, element: int, ratio: Fraction) -> int:
+        if link in (Link.ROOT, Link.SHAFT):
+            group = len(self.reference)
+            self.reference.append(len(self.stations))
+            self.prescribed.append(False)
+        else:
+            group = self.stations[before].group
+        self.stations.append(Station(before, link, element, group))
+        self.speed_ratio.append(ratio)
+        return len(self.stations) - 1
+
+
+def _walk(line: Driveline) -> _Draft:
+    draft = _Draft([], [], [], [], [], [], [])
+    behind: list[int] = []
+    for i, element in enumerate(line.elements):
+        parent = line.parents[i]
+        here = draft.add(-1, Link.ROOT, i, Fraction(1)) if parent is None else behind[parent]
+        ratio = draft.speed_ratio[here]
+        if isinstance(element, ConstantSpeed):
+            draft.prescribed[draft.stations[here].group] = True
+        elif isinstance(element, Disk):
+            draft.disks.append((here, i))
+        elif isinstance(element, Shaft):
+            near = here
+            here = draft.add(near, Link.SHAFT, i, ratio)
+            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
+            if element.density:
+                draft.tube_ends += [(near, i), (here, i)]
+        elif isinstance(element, HookeJoint):
+            here = draft.add(here, Link.HOOKE, i, ratio)
+        elif isinstance(element, Ratio):
+            here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
+        elif not isinstance(element, IdealJoint):
+            raise InputError("is not an element of a driveline", element=line.names[i])
+        behind.append(here)
+    return draft
+
+
+def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
+    """Join massless shafts in series and number the unknowns; refuse points that nothing can accelerate."""
+    heavy = {draft.stations[s].group for s, _ in draft.disks + draft.tube_ends}
+    heavy |= {g for g, fixed in enumerate(draft.prescribed) if fixed}
+    if not any(not draft.prescribed[g] for g in heavy):
+        raise InputError("has no inertia that can vibrate", element="driveline", remedy="add a Disk")
+    compliances = list(draft.compliances)
+    for g in range(len(draft.reference)):
+        if g in heavy:
+            continue
+        into = [c for c in compliances if c.far_group == g]
+        out = [c for c in compliances if draft.stations[c.near].group == g]
+        plain = sum(s.group == g for s in draft.stations) == 1
+        if not (plain and len(into) == 1 and len(out) == 1):
+            raise InputError(*_bare(draft, g), **_bare_place(line, draft, g))
+        compliances.remove(into[0])
+        place = compliances.index(out[0])
+        compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts)
+    compliances.sort(key=lambda c: c.far_group)
+    coordinate, count = [], 0
+    for g in range(len(draft.reference)):
+        unknown = g in heavy and not draft.prescribed[g]
+        coordinate.append(count if unknown else -1)
+        count += unknown
+    return Topology(
+        tuple(draft.stations),
+        tuple(compliances),
+        tuple(draft.reference),
+        tuple(coordinate),
+        tuple(draft.prescribed),
+        tuple(draft.disks),
+        tuple(draft.tube_ends),
+        tuple(draft.speed_ratio),
+        tuple(_names(line, draft, coordinate)),
+    )
+
+
+def _bare(draft: _Draft, group: int) -> tuple[str]:
+    joint = any(s.group == group and s.link in (Link.HOOKE, Link.RATIO) for s in draft.stations)
+    what = "has no inertia rigidly in front of it" if joint else "ends where there is no inertia"
+    return (what,)
+
+
+def _bare_place(line: Driveline, draft: _Draft, group: int) -> dict[str, str]:
+    tied = [s.element for s in draft.stations if s.group == group and s.link in (Link.HOOKE, Link.RATIO)]
+    element = line.names[tied[0] if tied else draft.stations[draft.reference[group]].element]
+    remedy = (
+        f"put a Disk in front of {element} (half the joint's own inertia is a good start)"
+        if tied
+        else f"put a Disk behind {element}, or give the tube a density"
+    )
+    return {"element": element, "remedy": remedy}
+
+
+def _names(line: Driveline, draft: _Draft, coordinate: list[int]) -> list[str]:
+    """A name per unknown: the first disk of its group, or the shaft end that carries it."""
+    names = []
+    for g, c in enumerate(coordinate):
+        if c < 0:
+            continue
+        disks = [i for s, i in draft.disks if draft.stations[s].group == g]
+        tubes = [i for s, i in draft.tube_ends if draft.stations[s].group == g]
+        names.append(line.names[disks[0]] if disks else f"end of {line.names[tubes[0]]}")
+    return names

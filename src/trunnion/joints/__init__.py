@@ -1,0 +1,1 @@
+"""Kinematic laws of joints as pure functions of angle."""

@@ -1,0 +1,63 @@
+"""The list of published drivelines: name, title, source, and how to build each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
+from trunnion.published.three_shaft_cardan import three_shaft_cardan
+from trunnion.published.two_shaft_cardan import two_shaft_cardan
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A published driveline: ``build()`` gives the paper's base case, keyword arguments change it."""
+
+    name: str
+    title: str
+    source: str
+    build: Callable[..., Driveline]
+
+
+_ENTRIES = (
+    Entry(
+        "two-shaft-cardan",
+        "two shafts and a Hooke's joint, nondimensional",
+        "Soltan Rezaee and Ghazavi, Modares Mechanical Engineering 14 (12), 2014, 163–170 (in Persian)",
+        two_shaft_cardan,
+    ),
+    Entry(
+        "three-shaft-cardan",
+        "three shafts and two Hooke's joints, nondimensional",
+        "Soltan Rezaee and co-authors, Modares Mechanical Engineering 12 (in Persian)",
+        three_shaft_cardan,
+    ),
+)
+
+
+def entries() -> tuple[Entry, ...]:
+    """All entries of the catalogue."""
+    return _ENTRIES
+
+
+def catalogue(name: str, **changes: Any) -> Driveline:
+    """A published driveline by name; keyword arguments change its numbers (see the entry's builder).
+
+    >>> catalogue("two-shaft-cardan", angle=0.2).names[3]
+    'HookeJoint 1'
+
+    Raises
+    ------
+    InputError : no such entry (the nearest is suggested), or a keyword it does not have.
+    """
+    for entry in _ENTRIES:
+        if entry.name == name:
+            try:
+                return entry.build(**changes)
+            except TypeError as error:
+                raise InputError(str(error).split(") ", 1)[-1], element=name, remedy="see help(tn.catalogue)") from None
+    raise InputError("is not in the catalogue", key=name, remedy=nearest(name, [e.name for e in _ENTRIES]))

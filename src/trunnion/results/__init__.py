@@ -1,0 +1,1 @@
+"""What came out: verdicts, findings, results that introduce themselves."""

@@ -1,0 +1,1 @@
+"""What analyses take: systems of equations, whoever wrote them."""
