@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.natural_frequencies import natural_frequencies
     from trunnion.analyses.resonance_speeds import resonance_speeds
     from trunnion.analyses.stability import stability
-    from trunnion.analyses.stability_chart import stability_chart
+    from trunnion.analyses.stability_chart import load_chart, stability_chart
     from trunnion.driveline import (
         ConstantSpeed,
         Disk,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from trunnion.driveline.parameters import Parameter, Term, pack
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.published import catalogue
-    from trunnion.results.chart import load_chart
+    from trunnion.systems.family import PeriodicLinearFamily
     from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
 _HOME = {
@@ -71,8 +71,9 @@ _HOME = {
     "resonance_speeds": "trunnion.analyses.resonance_speeds",
     "stability": "trunnion.analyses.stability",
     "stability_chart": "trunnion.analyses.stability_chart",
-    "load_chart": "trunnion.results.chart",
+    "load_chart": "trunnion.analyses.stability_chart",
     "PeriodicLinearSystem": "trunnion.systems.periodic_linear",
+    "PeriodicLinearFamily": "trunnion.systems.family",
     # errors
     "InputError": "trunnion.errors",
     "InputRemark": "trunnion.errors",

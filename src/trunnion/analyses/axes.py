@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from trunnion.driveline.parameters import SPEED, Columns, Parameter
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
 AxisRequest = Sequence[object]
@@ -32,6 +33,7 @@ class Axis:
     values: Array
     columns: Columns
     scale: str
+    parameter: str | Parameter
 
     @property
     def label(self) -> str:
@@ -51,29 +53,65 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
     ------
     InputError : unknown parameter, reversed or empty range, too few points, values no line can have.
     """
+    parameter = _parameter(request, key)
+    columns = assembly.packed.resolve(parameter)
+    low, high, points, scale = _range(request, columns.label)
+    low, high, said = _clip(assembly, columns, low, high)
+    values = _points(columns.label, low, high, points, scale)
+    _check_columns(assembly, columns, values)
+    return Axis(values, columns, scale, parameter), said
+
+
+def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Axis:
+    """The same for a parameter of a family of one's own."""
+    name = _parameter(request, key)
+    if name not in family.parameters:
+        known = ", ".join(family.parameters)
+        raise InputError("is not a parameter of this family", key=str(name), remedy=f"parameters are: {known}")
+    low, high, points, scale = _range(request, str(name))
+    none = np.zeros(0)
+    columns = Columns(str(name), family.units.get(str(name), "1"), np.zeros(0, dtype=np.intp), none, none)
+    return Axis(_points(str(name), low, high, points, scale), columns, scale, name)
+
+
+def moves_nothing(lanes: Callable[[Array, Array], Sequence[Array]], x: Axis, y: Axis, of_x: bool) -> str | None:
+    """A sentence where an axis does not change the line at all (compared at its ends and its middle)."""
+    own, other = (x, y) if of_x else (y, x)
+    samples = own.values[[0, len(own.values) // 2, -1]]
+    fixed = np.full(3, other.values[len(other.values) // 2])
+    parts = lanes(samples, fixed) if of_x else lanes(fixed, samples)
+    if len(own.values) > 1 and all(np.all(part == part[..., :1]) for part in parts):
+        return f"{own.label} changes nothing in this line"
+    return None
+
+
+def _parameter(request: AxisRequest, key: str) -> str | Parameter:
     example = 'write x=("speed", 10, 200, 400)'
     if isinstance(request, str) or not isinstance(request, Sequence) or len(request) not in (4, 5):
         raise InputError("must be (parameter, low, high, points)", key=key, value=request, remedy=example)
-    parameter, low, high, points = request[0], request[1], request[2], request[3]
-    scale = request[4] if len(request) == 5 else "linear"
-    if not isinstance(parameter, str | Parameter):
-        raise InputError("must name a parameter", key=key, value=parameter, remedy=example)
-    columns = assembly.packed.resolve(parameter)
-    low, high = _number(low, columns.label, "low"), _number(high, columns.label, "high")
+    if not isinstance(request[0], str | Parameter):
+        raise InputError("must name a parameter", key=key, value=request[0], remedy=example)
+    return request[0]
+
+
+def _range(request: AxisRequest, label: str) -> tuple[float, float, int, str]:
+    low, high = _number(request[1], label, "low"), _number(request[2], label, "high")
+    points, scale = request[3], request[4] if len(request) == 5 else "linear"
     if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
-        raise InputError("must be a whole number of points, 1 or more", element=columns.label, key="points", value=points)
-    if points > 1 and not low < high or points == 1 and low > high:
-        raise InputError(
-            f"runs from {low:g} to {high:g}", element=columns.label, key="range", remedy="give low < high"
-        )
+        raise InputError("must be a whole number of points, 1 or more", element=label, key="points", value=points)
+    if (points > 1 and not low < high) or low > high:
+        raise InputError(f"runs from {low:g} to {high:g}", element=label, key="range", remedy="give low < high")
     if scale not in ("linear", "log"):
-        raise InputError("is not a scale", element=columns.label, key="scale", value=scale, remedy='"linear" or "log"')
-    low, high, said = _clip(assembly, columns, low, high)
-    if scale == "log" and low <= 0:
-        raise InputError("cannot start at or below zero", element=columns.label, key="log axis", value=low)
-    values = np.geomspace(low, high, points) if scale == "log" else np.linspace(low, high, points)
-    _check_columns(assembly, columns, values)
-    return Axis(values, columns, str(scale)), said
+        raise InputError("is not a scale", element=label, key="scale", value=scale, remedy='"linear" or "log"')
+    return low, high, int(points), str(scale)
+
+
+def _points(label: str, low: float, high: float, points: int, scale: str) -> Array:
+    if scale == "linear":
+        return np.linspace(low, high, points)
+    if low <= 0:
+        raise InputError("cannot start at or below zero", element=label, key="log axis", value=low)
+    return np.geomspace(low, high, points)
 
 
 def _number(value: object, label: str, key: str) -> float:

@@ -80,8 +80,12 @@ class Stability:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first."""
-        return by_gravity(_findings(self))
+        """What to read first, gravest first; speeds in rad/s."""
+        return self.findings_in("rad/s")
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        return by_gravity(_findings(self, unit))
 
     @property
     def data(self) -> xr.Dataset:
@@ -239,8 +243,8 @@ def _judge(
     )
 
 
-def _findings(result: Stability) -> Iterable[Finding]:
-    at = show_speed(result.speed)
+def _findings(result: Stability, unit: str) -> Iterable[Finding]:
+    at = show_speed(result.speed, unit)
     if result.verdict is Verdict.UNSTABLE:
         doubling = np.log(2) / result.growth_rate
         where = f"; it belongs to the {result.resonance}" if result.resonance else ""

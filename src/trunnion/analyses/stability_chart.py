@@ -1,39 +1,43 @@
-"""Stability over any two parameters of a line.
+"""Stability over any two parameters, as a function known to a stated error everywhere.
 
-Each point is a monodromy matrix of the compiled chain kernel with its own error estimate; rows run in
-parallel threads.
+The chart samples analytic quantities at the nodes of adaptive Chebyshev patches, interpolates them to the
+pixels and finds multipliers there; small regions are evaluated pixel by pixel. At the end it checks itself
+at random pixels by direct integration at a much smaller tolerance.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.axes import Axis, AxisRequest, axis
+from trunnion.analyses.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
+from trunnion.analyses.chart_families import ChartFamily, LineFamily, OwnFamily
+from trunnion.analyses.chart_pixels import Pixels, judge, multipliers_of
 from trunnion.analyses.stability import operating_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.linear import require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
-from trunnion.numerics.chain_monodromy import ChainProgram, chain_monodromy
-from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.chart import StabilityChart
-from trunnion.results.verdict import verdicts
+from trunnion.numerics.patches import Box, PatchedFunction, build
+from trunnion.results.chart import ChartPoint, SpotCheck, StabilityChart
+from trunnion.results.verdict import Verdict
+from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
+Progress = Callable[[float], None]
+SPOTS = 24
+"""Random pixels at which a chart checks itself."""
 
 
 def stability_chart(
-    line: Driveline | Assembly,
+    line: Driveline | Assembly | PeriodicLinearFamily,
     x: AxisRequest,
     y: AxisRequest,
     *,
@@ -47,106 +51,236 @@ def stability_chart(
 
     Parameters
     ----------
-    line : the driveline.
-    x, y : ``(parameter, low, high, points)``, optionally with ``"log"`` at the end; a parameter is a path
-        ("speed", "HookeJoint 1.angle", "factor of Shaft *.damping") or a ``Parameter``; values in SI.
+    line : a driveline, or a ``PeriodicLinearFamily`` of your own.
+    x, y : ``(parameter, low, high, points)``, optionally with ``"log"`` at the end. For a driveline a
+        parameter is a path ("speed", "HookeJoint 1.angle", "factor of Shaft *.damping") or a ``Parameter``,
+        values in SI; for a family it is the name of one of its parameters.
     speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
-    tolerance : error asked of each monodromy matrix, in energy-like units.
+    tolerance : error asked of the interpolated quantities, relative to their size where that exceeds 1.
+        Multipliers that collide are known to its square root; the error estimate of each pixel says so.
     statically_twisted : as in ``stability``.
     threads : default one per core.
-    progress : called as progress(rows done, rows) from the calling thread.
+    progress : called as progress(share done) from the calling thread.
 
     Returns
     -------
-    StabilityChart, arrays of shape (y, x).
+    StabilityChart, arrays of shape (y, x); ``chart.at(x, y)`` answers anywhere in its box.
 
     Raises
     ------
     InputError : see ``axes.axis``; both axes the same; no speed.
     KeyboardInterrupt : passed on; nothing is kept.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
-    require_steady_base(assembly)
-    period = 2 * np.pi * float(require_period(assembly.line, assembly.topology))
-    across, said_x = axis(assembly, x, "x")
-    up, said_y = axis(assembly, y, "y")
-    if across.label == up.label:
-        raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
-    base = float("nan") if SPEED in (across.label, up.label) else operating_speed(assembly.line, speed)
-    task = _Task(assembly, chain_program(assembly.topology), period, tolerance, base, across, up, statically_twisted)
-    radius, error, undamped = _run_rows(task, threads or os.cpu_count() or 1, progress)
-    return StabilityChart(
-        x=across.values,
-        y=up.values,
-        x_label=across.label,
-        y_label=up.label,
-        x_unit=across.unit,
-        y_unit=up.unit,
-        spectral_radius=radius,
-        error_estimate=error,
-        verdict=verdicts(radius, error, undamped),
-        speed=None if np.isnan(base) else base,
-        period=period,
-        tolerance=tolerance,
-        remarks=tuple(s for s in (said_x, said_y) if s),
-        line=assembly.line,
+    task = _own_task(line, x, y) if isinstance(line, PeriodicLinearFamily) else _line_task(
+        line, x, y, speed, statically_twisted
     )
+    if not tolerance > 0 or not np.isfinite(tolerance):
+        raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
+    workers = threads or os.cpu_count() or 1
+    tell = progress or (lambda share: None)
+    x_axis, y_axis = task.x, task.y
+    function = _patched(task.family, x_axis.values, y_axis.values, tolerance, workers, tell)
+    pixels = _fill(task.family, function, x_axis.values, y_axis.values, tolerance, workers)
+    remarks = list(task.remarks)
+    if function.stubborn:
+        remarks.append(
+            f"{function.stubborn} small regions did not converge as patches and were integrated pixel by pixel"
+        )
+    chart = StabilityChart(
+        x=x_axis.values,
+        y=y_axis.values,
+        x_parameter=x_axis.parameter,
+        y_parameter=y_axis.parameter,
+        x_unit=x_axis.unit,
+        y_unit=y_axis.unit,
+        spectral_radius=pixels.radius,
+        error_estimate=pixels.error,
+        critical_multiplier=pixels.critical,
+        verdict=pixels.verdict,
+        speed=task.speed,
+        period=task.family.period,
+        tolerance=tolerance,
+        statically_twisted=statically_twisted,
+        remarks=tuple(remarks),
+        line=task.line,
+        function=function,
+        evaluate_point=_pointwise(task.family, function, tolerance),
+        resample=_resampler(task.family, function, tolerance, workers),
+    )
+    return _self_checked(chart, task.family, tolerance, workers)
 
 
 @dataclass(frozen=True)
 class _Task:
-    assembly: Assembly
-    program: ChainProgram
-    period: float
-    tolerance: float
-    speed: float
+    family: ChartFamily
     x: Axis
     y: Axis
-    statically_twisted: bool
-
-    def row(self, index: int) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Spectral radius, its error and whether damping is nil, along one row."""
-        table = self.assembly.table(len(self.x.values), self.speed)
-        self.x.columns.put(table, self.x.values)
-        self.y.columns.put(table, self.y.values[index])
-        coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
-        lanes = chain_lanes(self.assembly.topology, coefficients)
-        matrix, error, trace = chain_monodromy(self.program, lanes, self.period, self.tolerance)
-        values, bound = multipliers(matrix, error)
-        if self.assembly.topology.free:
-            values, bound = _without_rigid_pair(values, bound)
-        radius, radius_error = spectral_radius(values, bound)
-        return radius, radius_error, np.abs(trace) < 1e-13 * self.assembly.topology.size
+    speed: float | None
+    line: Driveline | None
+    remarks: tuple[str, ...]
 
 
-def _without_rigid_pair(
-    values: NDArray[np.complex128], bound: Array
-) -> tuple[NDArray[np.complex128], Array]:
-    order = np.argsort(np.abs(values - 1), axis=-1)[..., 2:]
-    return np.take_along_axis(values, order, -1), np.take_along_axis(bound, order, -1)
+def _line_task(
+    line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed: float | None, twisted: bool
+) -> _Task:
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    require_steady_base(assembly)
+    require_period(assembly.line, assembly.topology)
+    across, said_x = axis(assembly, x, "x")
+    up, said_y = axis(assembly, y, "y")
+    if across.label == up.label:
+        raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
+    swept = SPEED in (across.label, up.label)
+    if swept and speed is not None:
+        raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
+    base = float("nan") if swept else operating_speed(assembly.line, speed)
+    family = LineFamily(assembly, across, up, base, twisted)
+    idle = [moves_nothing(family.lanes, across, up, True), moves_nothing(family.lanes, across, up, False)]
+    remarks = tuple(s for s in (said_x, said_y, *idle) if s)
+    return _Task(family, across, up, None if swept else base, assembly.line, remarks)
 
 
-def _run_rows(
-    task: _Task, threads: int, progress: Progress | None
-) -> tuple[Array, Array, NDArray[np.bool_]]:
-    shape = (len(task.y.values), len(task.x.values))
-    radius, error, undamped = np.empty(shape), np.empty(shape), np.empty(shape, dtype=bool)
+def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> _Task:
+    across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
+    if across.label == up.label:
+        raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
+    middle = (float(np.median(across.values)), float(np.median(up.values)))
+    return _Task(OwnFamily(family, across.label, up.label, middle), across, up, None, None, ())
+
+
+def _patched(
+    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress
+) -> PatchedFunction:
+    u, v = family.to_patch(x, True), family.to_patch(y, False)
+    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+    if box.u0 == box.u1 or box.v0 == box.v1:
+        return PatchedFunction((), (box,))
+
+    def evaluate(u: Array, v: Array) -> tuple[Array, Array]:
+        return family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance / 4, threads)
+
+    return build(evaluate, box, u, v, tolerance / 4, tell)
+
+
+def _fill(
+    family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int
+) -> Pixels:
+    """Every pixel, patch by patch in parallel, the rest by direct integration."""
+    shape = (len(y), len(x))
+    radius, error = np.full(shape, np.nan), np.full(shape, np.nan)
+    critical, verdict = np.full(shape, np.nan, dtype=complex), np.full(shape, Verdict.FAILED, dtype=np.int8)
+    left = np.ones(shape, dtype=bool)
+    u, v = family.to_patch(x, True), family.to_patch(y, False)
+
+    def put(rows: NDArray[np.intp], columns: NDArray[np.intp], values: Array, bounds: Array) -> None:
+        found = judge(values, bounds, family.size, family.rigid_body)
+        radius[rows, columns], error[rows, columns] = found.radius, found.error
+        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
+
+    def fill_patch(task: tuple[int, NDArray[np.intp], NDArray[np.intp]]) -> None:
+        index, rows, columns = task
+        patch = function.patches[index]
+        for part in _strips(rows, len(columns) * len(patch.error)):
+            values = patch.grid(u[columns], v[part]).reshape(len(part) * len(columns), -1)
+            bounds = np.broadcast_to(patch.error, values.shape)
+            put(np.repeat(part, len(columns)), np.tile(columns, len(part)), values, bounds)
+
+    tasks = []
+    for index, patch in enumerate(function.patches):
+        rows = np.flatnonzero((v >= patch.box.v0) & (v <= patch.box.v1))
+        columns = np.flatnonzero((u >= patch.box.u0) & (u <= patch.box.u1))
+        if len(rows) and len(columns):
+            tasks.append((index, rows, columns))
+            left[np.ix_(rows, columns)] = False
     with ThreadPoolExecutor(threads) as pool:
-        pending: dict[Future[tuple[Array, Array, NDArray[np.bool_]]], int] = {
-            pool.submit(task.row, i): i for i in range(shape[0])
-        }
-        done_rows = 0
-        try:
-            while pending:
-                done, _ = wait(pending, return_when=FIRST_COMPLETED, timeout=0.5)
-                for future in done:
-                    i = pending.pop(future)
-                    radius[i], error[i], undamped[i] = future.result()
-                    done_rows += 1
-                if progress is not None and done:
-                    progress(done_rows, shape[0])
-        except BaseException:
-            for future in pending:
-                future.cancel()
-            raise
-    return radius, error, undamped
+        list(pool.map(fill_patch, tasks))
+    rows, columns = np.nonzero(left)
+    for start in range(0, len(rows), 65536):
+        r, c = rows[start : start + 65536], columns[start : start + 65536]
+        put(r, c, *family.evaluate(x[c], y[r], tolerance / 4, threads))
+    return Pixels(radius, error, critical, verdict)
+
+
+def _strips(rows: NDArray[np.intp], per_row: int, limit: int = 2_000_000) -> list[NDArray[np.intp]]:
+    """Rows in strips of at most ``limit`` numbers, which bounds the memory of a patch."""
+    return np.array_split(rows, max(1, -(-len(rows) * per_row // limit)))
+
+
+def _pointwise(
+    family: ChartFamily, function: PatchedFunction, tolerance: float
+) -> Callable[[float, float], ChartPoint]:
+    def at(x: float, y: float) -> ChartPoint:
+        u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
+        patch = function.find(u, v)
+        if patch is not None:
+            values, bounds = patch.grid(np.array([u]), np.array([v]))[0], patch.error[None]
+        else:
+            values, bounds = family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1)
+        found = judge(values, bounds, family.size, family.rigid_body)
+        return ChartPoint(
+            x=x,
+            y=y,
+            spectral_radius=float(found.radius[0]),
+            error_estimate=float(found.error[0]),
+            verdict=Verdict(int(found.verdict[0])),
+            multipliers=multipliers_of(values[0], family.size),
+            interpolated=patch is not None,
+        )
+
+    return at
+
+
+def _resampler(
+    family: ChartFamily, function: PatchedFunction, tolerance: float, threads: int
+) -> Callable[[Array, Array], tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]]:
+    def resample(x: Array, y: Array) -> tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]:
+        pixels = _fill(family, function, x, y, tolerance, threads)
+        return pixels.radius, pixels.error, pixels.critical, pixels.verdict
+
+    return resample
+
+
+def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int) -> StabilityChart:
+    """Compare random pixels with direct integration; enlarge the error estimates if one falls short."""
+    rng = np.random.default_rng(chart.verdict.size)
+    rows, columns = rng.integers(0, len(chart.y), SPOTS), rng.integers(0, len(chart.x), SPOTS)
+    values, bounds = family.evaluate(chart.x[columns], chart.y[rows], max(tolerance * 1e-3, 1e-13), threads)
+    found = judge(values, bounds, family.size, family.rigid_body)
+    off = np.abs(found.radius - chart.spectral_radius[rows, columns])
+    allowed = chart.error_estimate[rows, columns] + found.error
+    ratio = float(np.nanmax(off / allowed)) if np.isfinite(off).any() else float("nan")
+    check = SpotCheck(SPOTS, ratio, float(np.nanmax(off)) if np.isfinite(off).any() else float("nan"))
+    if not ratio > 1:
+        return replace(chart, spot_check=check)
+    return replace(
+        chart.with_errors_times(2 * ratio),
+        spot_check=check,
+        remarks=(*chart.remarks, f"a spot check was off by {ratio:.1f} times its estimate; all were enlarged"),
+    )
+
+
+def load_chart(path: str | os.PathLike[str]) -> StabilityChart:
+    """Read a chart that ``StabilityChart.save`` wrote; it answers ``at`` and ``zoom`` as before.
+
+    A chart of a family of your own is read without that function: regions that were not patched are then
+    out of reach of ``at``.
+    """
+    from trunnion.results.chart import read_chart
+
+    chart = read_chart(path)
+    if chart.line is None:
+        return chart
+    assembly = assemble(chart.line)
+    ends = [
+        (label, float(values.min()), float(values.max()), 2 if len(values) > 1 else 1)
+        for label, values in ((chart.x_parameter, chart.x), (chart.y_parameter, chart.y))
+    ]
+    (across, _), (up, _) = axis(assembly, ends[0], "x"), axis(assembly, ends[1], "y")
+    speed = float("nan") if chart.speed is None else chart.speed
+    family = LineFamily(assembly, across, up, speed, chart.statically_twisted)
+    assert chart.function is not None
+    return replace(
+        chart,
+        evaluate_point=_pointwise(family, chart.function, chart.tolerance),
+        resample=_resampler(family, chart.function, chart.tolerance, os.cpu_count() or 1),
+    )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Shaft
+from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, Shaft
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.equations.topology import Link, Topology, topology
@@ -153,6 +153,23 @@ def static_torque(topo: Topology, load: Array) -> Array:
     return torque
 
 
+def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
+    """Sum of the planes of constant-velocity joints between a Hooke's joint and the bend before them.
+
+    They pass rotation unchanged but turn the plane that the joint's own is measured from.
+    """
+    line, total = assembly.line, np.zeros(len(table))
+    ratio, i = 1.0, line.parents[joint]
+    while i is not None and not isinstance(line.elements[i], HookeJoint):
+        element = line.elements[i]
+        if isinstance(element, Ratio):
+            ratio *= element.speed_ratio
+        elif isinstance(element, IdealJoint | DoubleCardanJoint):
+            total += table[:, assembly.packed.column(i, "plane")] / ratio
+        i = line.parents[i]
+    return total
+
+
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     cases, stations = len(table), len(topo.stations)
@@ -179,6 +196,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
             shift[:, s] = table[:, column(i, "fork_offset")] + torque[:, compliance_of[i]] / each[i]
         elif station.link is Link.HOOKE:
             shift[:, s] = -table[:, column(station.element, "plane")]
+            shift[:, s] -= _planes_in_front(assembly, table, station.element)
     joints = [topo.stations[j].element for j in topo.joints]
     angle = np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
     return LineCoefficients(

@@ -9,7 +9,7 @@ from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
 from trunnion.equations.topology import Link, Topology
-from trunnion.numerics.chain_monodromy import ChainLanes, ChainProgram
+from trunnion.numerics.chain_tables import ChainLanes, ChainProgram
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,8 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
         member_load=np.ascontiguousarray(
             (sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T
         ),
-        frequency=np.sqrt(np.maximum(trace / n, 1.0)),
+        # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
+        frequency=np.sqrt(np.where(trace > 0, trace / n, 1.0)),
     )
 
 

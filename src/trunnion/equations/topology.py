@@ -14,7 +14,16 @@ from enum import IntEnum
 from fractions import Fraction
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, HookeJoint, IdealJoint, Ratio, Shaft
+from trunnion.driveline.elements import (
+    ConstantSpeed,
+    Disk,
+    DoubleCardanJoint,
+    HookeJoint,
+    IdealJoint,
+    Ratio,
+    Shaft,
+    TripodJoint,
+)
 from trunnion.errors import InputError
 
 
@@ -187,7 +196,20 @@ def _walk(line: Driveline) -> _Draft:
             here = draft.add(here, Link.HOOKE, i, ratio)
         elif isinstance(element, Ratio):
             here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
-        elif not isinstance(element, IdealJoint):
+        elif isinstance(element, TripodJoint):
+            raise InputError(
+                "is a tripod joint, which the dynamic equations do not have",
+                element=line.names[i],
+                remedy="write an IdealJoint instead (its speed ratio differs by 3A of tn.kinetostatics only)",
+            )
+        elif isinstance(element, DoubleCardanJoint) and element.distance_ratio is not None:
+            raise InputError(
+                "is a double-Cardan joint without centring, which the dynamic equations do not have",
+                element=line.names[i],
+                key="distance_ratio",
+                remedy="leave distance_ratio out for a centred joint, or write two HookeJoints with a Shaft and Disk",
+            )
+        elif not isinstance(element, IdealJoint | DoubleCardanJoint):
             raise InputError("is not an element of a driveline", element=line.names[i])
         behind.append(here)
     return draft

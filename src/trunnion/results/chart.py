@@ -1,11 +1,12 @@
-"""A stability chart as a result: it introduces itself, plots, saves and reloads."""
+"""A stability chart as a result: it introduces itself, answers anywhere, plots, saves and reloads."""
 
 from __future__ import annotations
 
 import csv
 import json
 import os
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,16 +15,45 @@ from numpy.typing import NDArray
 from trunnion._version import __version__
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
+from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
+from trunnion.numerics.patches import Box, Patch, PatchedFunction
 from trunnion.results.files import written_whole
-from trunnion.results.verdict import Verdict, flag_attributes
+from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-FORMAT = "trunnion stability chart 1"
+Complex = NDArray[np.complex128]
+Resample = Callable[[Array, Array], tuple[Array, Array, Complex, NDArray[np.int8]]]
+FORMAT = "trunnion stability chart 2"
+
+
+@dataclass(frozen=True)
+class ChartPoint:
+    """One point of a chart: ``interpolated`` from a patch, or integrated where there is none."""
+
+    x: float
+    y: float
+    spectral_radius: float
+    error_estimate: float
+    verdict: Verdict
+    multipliers: Complex
+    interpolated: bool
+
+    def __str__(self) -> str:
+        return f"{self.verdict}: spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}"
+
+
+@dataclass(frozen=True)
+class SpotCheck:
+    """Direct integration at random pixels: worst ratio of the difference to its estimate, worst difference."""
+
+    points: int
+    worst_ratio: float
+    worst_difference: float
 
 
 @dataclass(frozen=True)
@@ -32,23 +62,79 @@ class StabilityChart:
 
     ``verdict`` holds the int8 codes of ``Verdict``; a failed point keeps its place as NaN. ``speed`` [rad/s]
     is the fixed input speed where no axis is the speed; ``period`` [rad] of input angle; ``remarks`` say what
-    was clipped.
+    was clipped or enlarged; ``function`` are the patches behind the pixels.
     """
 
     x: Array
     y: Array
-    x_label: str
-    y_label: str
+    x_parameter: str | Parameter
+    y_parameter: str | Parameter
     x_unit: str
     y_unit: str
     spectral_radius: Array
     error_estimate: Array
+    critical_multiplier: Complex
     verdict: NDArray[np.int8]
     speed: float | None
     period: float
     tolerance: float
+    statically_twisted: bool
     remarks: tuple[str, ...]
-    line: Driveline
+    line: Driveline | None
+    function: PatchedFunction = field(repr=False)
+    evaluate_point: Callable[[float, float], ChartPoint] | None = field(default=None, repr=False, compare=False)
+    resample: Resample | None = field(default=None, repr=False, compare=False)
+    spot_check: SpotCheck | None = None
+
+    @property
+    def x_label(self) -> str:
+        """Path or label of the parameter along x."""
+        return _label(self.x_parameter)
+
+    @property
+    def y_label(self) -> str:
+        """Path or label of the parameter along y."""
+        return _label(self.y_parameter)
+
+    def at(self, x: float, y: float) -> ChartPoint:
+        """Stability at any point of the chart's box, with multipliers, to the chart's accuracy.
+
+        Raises
+        ------
+        InputError : the point lies outside the box.
+        """
+        for label, value, axis in ((self.x_label, x, self.x), (self.y_label, y, self.y)):
+            if not axis.min() <= value <= axis.max():
+                raise InputError(
+                    f"lies outside the chart, which covers {axis.min():.6g} to {axis.max():.6g}",
+                    key=label,
+                    value=float(value),
+                    remedy="compute a larger chart",
+                )
+        if self.evaluate_point is None:
+            raise InputError("was read without its family and cannot be evaluated between pixels", element="chart")
+        return self.evaluate_point(float(x), float(y))
+
+    def zoom(self, x: Sequence[float], y: Sequence[float]) -> StabilityChart:
+        """The same chart on other pixels: ``x`` and ``y`` are (low, high, points) inside its box.
+
+        Patches are only evaluated anew; nothing is integrated where there are patches.
+        """
+        across = _inside(self.x, x, self.x_label)
+        up = _inside(self.y, y, self.y_label)
+        if self.resample is None:
+            raise InputError("was read without its family and cannot be resampled", element="chart")
+        radius, error, critical, verdict = self.resample(across, up)
+        return replace(
+            self, x=across, y=up, spectral_radius=radius, error_estimate=error, critical_multiplier=critical,
+            verdict=verdict,
+        )  # fmt: skip
+
+    def with_errors_times(self, factor: float) -> StabilityChart:
+        """The same chart with all error estimates enlarged and the verdicts drawn from them anew."""
+        error = self.error_estimate * factor
+        marginal = self.verdict == Verdict.MARGINAL
+        return replace(self, error_estimate=error, verdict=verdicts(self.spectral_radius, error, marginal))
 
     def count(self, verdict: Verdict) -> int:
         """Number of points with that verdict."""
@@ -64,35 +150,48 @@ class StabilityChart:
         """Labelled dataset with units, settings, driveline and error estimates."""
         import xarray as xr
 
-        settings = {
-            "format": FORMAT,
-            "version": __version__,
-            "period": self.period,
-            "tolerance": self.tolerance,
-            "remarks": json.dumps(list(self.remarks)),
-            "driveline": dumps(self.line),
-            "x_label": self.x_label,
-            "y_label": self.y_label,
-        }
-        if self.speed is not None:
-            settings["speed"] = self.speed
         return xr.Dataset(
             {
                 "spectral_radius": (("y", "x"), self.spectral_radius, {"units": "1"}),
                 "error_estimate": (("y", "x"), self.error_estimate, {"units": "1"}),
+                "critical_multiplier_real": (("y", "x"), self.critical_multiplier.real, {"units": "1"}),
+                "critical_multiplier_imaginary": (("y", "x"), self.critical_multiplier.imag, {"units": "1"}),
                 "verdict": (("y", "x"), self.verdict, flag_attributes()),
             },
             coords={
                 "x": ("x", self.x, {"units": self.x_unit, "long_name": self.x_label}),
                 "y": ("y", self.y, {"units": self.y_unit, "long_name": self.y_label}),
             },
-            attrs=settings,
+            attrs={
+                "format": FORMAT,
+                "version": __version__,
+                "period": self.period,
+                "tolerance": self.tolerance,
+                "statically_twisted": int(self.statically_twisted),
+                "remarks": json.dumps(list(self.remarks)),
+                "driveline": "" if self.line is None else dumps(self.line),
+                "x_parameter": _parameter_text(self.x_parameter),
+                "y_parameter": _parameter_text(self.y_parameter),
+                "speed": float("nan") if self.speed is None else self.speed,
+                "spot_check": json.dumps(asdict(self.spot_check) if self.spot_check else None),
+            },
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write netCDF (any netCDF-4 reader opens it); an existing file is replaced only when all is written."""
+        """Write netCDF-4, patches included; an existing file is replaced only when all is written."""
+        patches, direct = self.function.patches, self.function.direct
+        extra = {
+            "patch_box": (("patch", "edge"), _edges([p.box for p in patches])),
+            "direct_box": (("direct", "edge"), _edges(list(direct))),
+        }
+        if patches:
+            extra["patch_coefficients"] = (
+                ("patch", "quantity", "degree_v", "degree_u"),
+                np.stack([p.coefficients for p in patches]),
+            )
+            extra["patch_error"] = (("patch", "quantity"), np.stack([p.error for p in patches]))
         with written_whole(path) as temporary:
-            self.data.to_netcdf(temporary, engine="h5netcdf")
+            self.data.assign(extra).to_netcdf(temporary, engine="h5netcdf")
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per point: x, y, spectral radius, error estimate, verdict."""
@@ -107,10 +206,10 @@ class StabilityChart:
         with written_whole(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
             writer = csv.writer(stream)
             writer.writerow(header)
-            for i, y in enumerate(self.y):
-                for j, x in enumerate(self.x):
-                    radius, error = float(self.spectral_radius[i, j]), float(self.error_estimate[i, j])
-                    writer.writerow([repr(float(x)), repr(float(y)), radius, error, words[int(self.verdict[i, j])]])
+            for i, y in enumerate(self.y.tolist()):
+                rows = zip(self.spectral_radius[i].tolist(), self.error_estimate[i].tolist(), strict=True)
+                for x, code, (radius, error) in zip(self.x.tolist(), self.verdict[i].tolist(), rows, strict=True):
+                    writer.writerow([x, y, radius, error, words[code]])
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
@@ -119,46 +218,105 @@ class StabilityChart:
         return draw(self, axes, **options)
 
     def __str__(self) -> str:
-        worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
         counts = ", ".join(f"{n} {v}" for v in Verdict if (n := self.count(v)))
-        lines = [
-            f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}",
-            f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
-            f"{self.x_label} = {self.x[worst[1]]:.6g} {self.x_unit}, "
-            f"{self.y_label} = {self.y[worst[0]]:.6g} {self.y_unit}",
-            f"  largest error estimate {np.nanmax(self.error_estimate):.1e}",
-        ]
+        lines = [f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"]
+        if np.isfinite(self.spectral_radius).any():
+            worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
+            lines.append(
+                f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
+                f"{self.x_label} = {self.x[worst[1]]:.6g} {self.x_unit}, "
+                f"{self.y_label} = {self.y[worst[0]]:.6g} {self.y_unit}"
+            )
+            middle = np.nanmedian(self.error_estimate)
+            lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")
+        if self.function.patches:
+            lines.append(f"  {len(self.function.patches)} patches from {self.function.evaluations} integrations")
+        if self.spot_check is not None:
+            lines.append(
+                f"  checked at {self.spot_check.points} random points by direct integration: differences up to "
+                f"{self.spot_check.worst_ratio:.2g} of their estimates"
+            )
         return "\n".join([*lines, *(f"  note: {r}" for r in self.remarks)])
 
     __repr__ = __str__
 
 
-def load_chart(path: str | os.PathLike[str]) -> StabilityChart:
-    """Read a chart that ``StabilityChart.save`` wrote."""
+def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
+    """Read what ``StabilityChart.save`` wrote, without the means to integrate new points."""
     import xarray as xr
 
     try:
         with xr.open_dataset(path, engine="h5netcdf") as opened:
             data = opened.load()
     except FileNotFoundError:
-        raise InputError("does not exist", key="chart", value=str(path)) from None
+        raise InputError("does not exist", key="chart", value=str(path), remedy="check the path") from None
     except (OSError, ValueError):
-        raise InputError("is not a netCDF file", key="chart", value=str(path)) from None
+        raise InputError("is not a netCDF file", key="chart", value=str(path), remedy="give a saved chart") from None
     if data.attrs.get("format") != FORMAT:
-        raise InputError("is not a stability chart of this program", key="chart", value=str(path))
+        remedy = f'it must say format = "{FORMAT}"; compute it again'
+        raise InputError("is not a stability chart of this version", key="chart", value=str(path), remedy=remedy)
+    check = json.loads(data.attrs["spot_check"])
+    speed = float(data.attrs["speed"])
+    text = data.attrs["driveline"]
     return StabilityChart(
         x=data["x"].values,
         y=data["y"].values,
-        x_label=data.attrs["x_label"],
-        y_label=data.attrs["y_label"],
+        x_parameter=_parameter_of(data.attrs["x_parameter"]),
+        y_parameter=_parameter_of(data.attrs["y_parameter"]),
         x_unit=data["x"].attrs["units"],
         y_unit=data["y"].attrs["units"],
         spectral_radius=data["spectral_radius"].values,
         error_estimate=data["error_estimate"].values,
+        critical_multiplier=data["critical_multiplier_real"].values + 1j * data["critical_multiplier_imaginary"].values,
         verdict=data["verdict"].values.astype(np.int8),
-        speed=float(data.attrs["speed"]) if "speed" in data.attrs else None,
+        speed=None if np.isnan(speed) else speed,
         period=float(data.attrs["period"]),
         tolerance=float(data.attrs["tolerance"]),
+        statically_twisted=bool(data.attrs["statically_twisted"]),
         remarks=tuple(json.loads(data.attrs["remarks"])),
-        line=loads(data.attrs["driveline"]),
+        line=loads(text) if text else None,
+        function=_function_of(data),
+        spot_check=SpotCheck(**check) if check else None,
     )
+
+
+def _function_of(data: xr.Dataset) -> PatchedFunction:
+    boxes = [Box(*map(float, row)) for row in data["patch_box"].values]
+    direct = tuple(Box(*map(float, row)) for row in data["direct_box"].values)
+    if not boxes:
+        return PatchedFunction((), direct)
+    parts = zip(boxes, data["patch_coefficients"].values, data["patch_error"].values, strict=True)
+    return PatchedFunction(tuple(Patch(*part) for part in parts), direct)
+
+
+def _edges(boxes: list[Box]) -> Array:
+    return np.array([[b.u0, b.u1, b.v0, b.v1] for b in boxes], dtype=float).reshape(len(boxes), 4)
+
+
+def _inside(axis: Array, request: Sequence[float], label: str) -> Array:
+    if len(request) != 3:
+        raise InputError("must be (low, high, points)", key=label, value=tuple(request))
+    low, high, points = float(request[0]), float(request[1]), int(request[2])
+    if not (axis.min() <= low < high <= axis.max()) or points < 1:
+        raise InputError(
+            f"does not lie inside the chart, which covers {axis.min():.6g} to {axis.max():.6g}",
+            key=label,
+            value=(low, high, points),
+            remedy="give low < high inside it and at least one point",
+        )
+    return np.linspace(low, high, points)
+
+
+def _label(parameter: str | Parameter) -> str:
+    return parameter if isinstance(parameter, str) else parameter.label
+
+
+def _parameter_text(parameter: str | Parameter) -> str:
+    return json.dumps(parameter if isinstance(parameter, str) else asdict(parameter))
+
+
+def _parameter_of(text: str) -> str | Parameter:
+    read = json.loads(text)
+    if isinstance(read, str):
+        return read
+    return Parameter(read["label"], read["unit"], tuple(Term(**term) for term in read["terms"]))

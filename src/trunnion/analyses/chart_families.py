@@ -1,0 +1,198 @@
+"""What a stability chart samples: quantities that are analytic in both axes, with their errors.
+
+For up to three unknowns these are the characteristic coefficients of the monodromy matrix, beyond that its
+entries; the last quantity is always ∫ tr(M⁻¹C) dτ. Speed enters through 1/Ω, of which both are entire
+functions, so a speed axis is patched in 1/Ω.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.axes import Axis
+from trunnion.driveline.parameters import SPEED
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.lanes import chain_lanes, chain_program
+from trunnion.equations.topology import require_period
+from trunnion.numerics.chain_monodromy import Window, chain_monodromy, symmetry_phase
+from trunnion.numerics.chain_tables import ChainLanes
+from trunnion.numerics.characteristic import LARGEST, coefficients_from_matrices
+from trunnion.numerics.dense_monodromy import propagate
+from trunnion.systems.family import PeriodicLinearFamily
+
+Array = NDArray[np.float64]
+
+
+class ChartFamily(Protocol):
+    """Anything a chart can be made of."""
+
+    size: int
+    rigid_body: bool
+    period: float
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """Quantities and their error bounds at points (x, y), each (points, quantities)."""
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Axis values → the variable in which the quantities are smooth."""
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+
+
+def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]:
+    """Analytic quantities of monodromy matrices (points, m, m) and their error bounds."""
+    count, m = matrix.shape[:2]
+    if m <= LARGEST:
+        values, bounds = np.empty((count, m + 1)), np.empty((count, m + 1))
+        coefficients_from_matrices(matrix, error, values[:, :m], bounds[:, :m])
+    else:
+        values, bounds = np.empty((count, m * m + 1)), np.empty((count, m * m + 1))
+        values[:, :-1] = matrix.reshape(count, -1)
+        # Spread so that the Frobenius norm of the entries' bounds is the bound of the matrix.
+        bounds[:, :-1] = error[:, None] / m
+    values[:, -1], bounds[:, -1] = trace, 1e-12 * np.abs(trace)
+    return values, bounds
+
+
+@dataclass(frozen=True)
+class LineFamily:
+    """A driveline over two of its parameters."""
+
+    assembly: Assembly
+    x: Axis
+    y: Axis
+    speed: float
+    statically_twisted: bool
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.assembly.topology.size
+
+    @property
+    def rigid_body(self) -> bool:
+        """Whether a rigid-body pair of multipliers is to be set aside."""
+        return self.assembly.topology.free
+
+    @property
+    def period(self) -> float:
+        """Period [rad of input angle]."""
+        return 2 * np.pi * float(require_period(self.assembly.line, self.assembly.topology))
+
+    def lanes(self, x: Array, y: Array) -> ChainLanes:
+        """The kernel's numbers at points (x, y)."""
+        table = self.assembly.table(len(x), self.speed)
+        self.x.columns.put(table, x)
+        self.y.columns.put(table, y)
+        coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+        return chain_lanes(self.assembly.topology, coefficients)
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
+        program, period = chain_program(self.assembly.topology), self.period
+        lanes = self.lanes(x, y)
+        begin = symmetry_phase(program, lanes, period)
+        window = Window(0.0 if begin is None else begin, period, begin is not None)
+        # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
+        order = _kinematic_order(lanes)
+        sorted_lanes = lanes if order is None else ChainLanes(*(part[..., order] for part in lanes))
+        matrix, error, trace = chain_monodromy(program, sorted_lanes, window, tolerance, threads)
+        if order is not None:
+            back = np.argsort(order)
+            matrix, error, trace = matrix[back], error[back], trace[back]
+        return matrix, error, trace
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """See ``ChartFamily``."""
+        return quantities(*self.matrices(x, y, tolerance, threads))
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """1/Ω for a speed axis, the value itself otherwise."""
+        return self._swap(value, of_x)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        return self._swap(value, of_x)
+
+    def _swap(self, value: Array, of_x: bool) -> Array:
+        axis = self.x if of_x else self.y
+        return 1 / np.asarray(value) if axis.label == SPEED else np.asarray(value, dtype=float)
+
+
+def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
+    """An order that puts equal joint angles and phases side by side, or None where they are already."""
+    rows = [*lanes.cosine, *lanes.phase]
+    moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
+    if not moving:
+        return None
+    changes = sum(np.count_nonzero(np.diff(row)) for row in moving)
+    if changes < len(moving[0]) / 4:
+        return None
+    key = np.lexsort((1 / lanes.frequency, *moving))
+    sorted_changes = sum(np.count_nonzero(np.diff(row[key])) for row in moving)
+    return key if sorted_changes < changes / 4 else None
+
+
+@dataclass(frozen=True)
+class OwnFamily:
+    """A user's ``PeriodicLinearFamily`` over two of its parameters; ``middle`` is a typical point."""
+
+    family: PeriodicLinearFamily
+    x_name: str
+    y_name: str
+    middle: tuple[float, float]
+    rigid_body: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.family.size
+
+    @property
+    def period(self) -> float:
+        """Period in τ."""
+        return self.family.period
+
+    @cached_property
+    def _unit(self) -> Array:
+        """Units of the state at the typical point, kept everywhere so that entries of Z stay analytic."""
+        return propagate(self._member(*self.middle), self.period, self.size, 1e-6).scale
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Monodromy matrices in common units, their errors and ∫ tr(M⁻¹C) dτ, member by member."""
+        n, unit = self.size, self._unit
+        matrix, error, trace = np.empty((len(x), 2 * n, 2 * n)), np.empty(len(x)), np.empty(len(x))
+        for p in range(len(x)):
+            run = propagate(self._member(x[p], y[p]), self.period, n, tolerance)
+            matrix[p], trace[p] = run.monodromy * unit[None, :] / unit[:, None], run.damping_trace
+            change = run.scale / unit
+            error[p] = run.error * change.max() / change.min()
+        return matrix, error, trace
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """See ``ChartFamily``."""
+        return quantities(*self.matrices(x, y, tolerance, threads))
+
+    def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
+        values = {self.x_name: np.array([x]), self.y_name: np.array([y])}
+
+        def at(tau: Array) -> tuple[Array, Array, Array, Array]:
+            m, c, k = (part[0] for part in self.family.matrices(tau, values))
+            return m, c, k, np.zeros((len(tau), self.size))
+
+        return at
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Parameters are taken as they are."""
+        return np.asarray(value, dtype=float)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        return np.asarray(value, dtype=float)

@@ -1,0 +1,99 @@
+"""From analytic quantities to what a chart shows: spectral radius, its error, the critical multiplier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.characteristic import LARGEST, radii, roots_of
+from trunnion.results.verdict import verdicts
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Arrays of any one shape: spectral radius, error bound, critical multiplier, verdict code."""
+
+    radius: Array
+    error: Array
+    critical: Complex
+    verdict: NDArray[np.int8]
+
+
+def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
+    """Pixels from quantities (points, q) and their bounds (points, q); see ``chart_families.quantities``."""
+    m, trace = 2 * size, values[:, -1]
+    if m <= LARGEST and not rigid_body:
+        e, de = np.ascontiguousarray(values[:, :m]), np.ascontiguousarray(bounds[:, :m])
+        # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
+        e[:, -1] = np.exp(-trace)
+        de[:, -1] = e[:, -1] * bounds[:, -1] + 1e-15
+        radius, error = np.empty(len(e)), np.empty(len(e))
+        critical = np.empty(len(e), dtype=complex)
+        radii(e, de, radius, error, critical)
+    else:
+        radius, error, critical = _largest(values, bounds, m, rigid_body)
+    return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
+
+
+def multipliers_of(values: Array, size: int) -> Complex:
+    """All multipliers of one point from its quantities, by falling modulus."""
+    m = 2 * size
+    found = roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    return np.asarray(found[np.argsort(-np.abs(found))])
+
+
+def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Array, Array, Complex]:
+    """Critical eigenvalue of interpolated matrices, with its own condition number.
+
+    Eigenvectors of the critical multiplier alone come from two steps of inverse iteration; a full
+    decomposition would cost several times more.
+    """
+    if m <= LARGEST:
+        every = np.array([multipliers_of(v, m // 2) for v in values])
+        matrix_error = bounds[:, :-1].max(axis=1)
+    else:
+        matrix = values[:, :-1].reshape(-1, m, m)
+        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
+        every = np.full((len(values), m), np.nan, dtype=complex)
+        finite = np.isfinite(matrix).all(axis=(1, 2))
+        every[finite] = np.linalg.eigvals(matrix[finite])
+    if rigid_body:
+        keep = np.argsort(np.abs(every - 1), axis=1)[:, 2:]
+        every = np.take_along_axis(every, keep, axis=1)
+    which = np.abs(every).argmax(axis=1)[:, None]
+    critical = np.take_along_axis(every, which, axis=1)[:, 0]
+    apart = np.abs(every - critical[:, None])
+    np.put_along_axis(apart, which, np.inf, axis=1)
+    nearest = apart.min(axis=1) if every.shape[1] > 1 else np.full(len(values), np.inf)
+    if m <= LARGEST:
+        condition = 1 / np.minimum(nearest, 1.0)
+    else:
+        condition = _condition(values[:, :-1].reshape(-1, m, m), critical)
+    moved = matrix_error * condition
+    error = 2 * np.minimum(moved, np.sqrt(moved * np.maximum(nearest, matrix_error)))
+    return np.abs(critical), error, critical
+
+
+def _condition(matrix: Array, value: Complex) -> Array:
+    """‖left‖‖right‖/|left·right| of one eigenvalue of each matrix."""
+    count, m = matrix.shape[:2]
+    out = np.full(count, np.nan)
+    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(value)
+    if not finite.any():
+        return out
+    a, shift = matrix[finite], value[finite]
+    offset = shift * (1 + 1e-9) + 1e-9j
+    shifted = a - offset[:, None, None] * np.eye(m)
+    inverse = np.linalg.inv(shifted)
+    start = np.exp(1j * np.arange(m))[:, None]
+    right = inverse @ (inverse @ start)
+    left = inverse.transpose(0, 2, 1) @ (inverse.transpose(0, 2, 1) @ start)
+    dot = np.abs(np.sum(left * right, axis=(1, 2)))
+    norms = np.linalg.norm(left, axis=(1, 2)) * np.linalg.norm(right, axis=(1, 2))
+    out[finite] = np.clip(norms / np.maximum(dot, 1e-300), 1.0, 1e10)
+    return out

@@ -1,0 +1,218 @@
+"""A driveline as the kinetostatics see it: one step per element, shafts between joints as rigid members.
+
+A *step* leads from the station in front of an element to the one behind it. A *member* is everything that
+turns about one axis between two joints; its axis changes at every joint. A *train* is a run of members tied
+by joints; a Ratio ends it, because where its gears put the next axis is not part of the description.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import (
+    ConstantSpeed,
+    Disk,
+    DoubleCardanJoint,
+    HookeJoint,
+    IdealJoint,
+    Ratio,
+    Shaft,
+    TripodJoint,
+)
+from trunnion.errors import InputError
+from trunnion.joints import double_cardan, tripod
+
+Array = NDArray[np.float64]
+
+
+class Link(Enum):
+    """What a step does to the rotation."""
+
+    ROOT = "drive"
+    RIGID = "rigid"
+    SHAFT = "shaft"
+    HOOKE = "Hooke's joint"
+    IDEAL = "ideal joint"
+    TRIPOD = "tripod joint"
+    RATIO = "ratio"
+
+
+JOINTS = (Link.HOOKE, Link.IDEAL, Link.TRIPOD)
+
+
+@dataclass(frozen=True)
+class Step:
+    """From station ``parent`` to the station behind this step; SI units.
+
+    ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and
+    ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output speed.
+    """
+
+    link: Link
+    parent: int
+    name: str
+    member: int
+    angle: float = 0.0
+    plane: float = 0.0
+    amplitude: float = 0.0
+    fork_offset: float = 0.0
+    stiffness: float = np.inf
+    ratio: float = 1.0
+    near_inertia: float = 0.0
+    far_inertia: float = 0.0
+    load: float = 0.0
+
+
+@dataclass(frozen=True)
+class Member:
+    """A rigid shaft between joints: the joint step at its beginning (−1 at the start of a train), its shafts.
+
+    ``length`` [m] between its joints, NaN where it is not known.
+    """
+
+    joint: int
+    train: int
+    shafts: tuple[str, ...]
+    length: float
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Steps (``steps[0]`` is the drive), members and the line they come from."""
+
+    line: Driveline
+    steps: tuple[Step, ...]
+    members: tuple[Member, ...]
+
+    def of(self, *links: Link) -> tuple[int, ...]:
+        """Steps of these kinds, in order."""
+        return tuple(i for i, step in enumerate(self.steps) if step.link in links)
+
+    @property
+    def shafts(self) -> tuple[int, ...]:
+        """Steps that are Shafts."""
+        return self.of(Link.SHAFT)
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """Steps that bend the axis."""
+        return self.of(*JOINTS)
+
+    def children(self, station: int) -> tuple[int, ...]:
+        """Steps that start at a station."""
+        return tuple(i for i, step in enumerate(self.steps) if step.parent == station)
+
+    def mean_ratio(self, station: int) -> float:
+        """Mean speed at a station over the input speed (only Ratios change it)."""
+        value = 1.0
+        while station > 0:
+            value /= self.steps[station].ratio
+            station = self.steps[station].parent
+        return value
+
+
+def member_ratio(chain: Chain, member: int) -> float:
+    """Mean speed of a member over the input speed."""
+    return chain.mean_ratio(next(i for i, step in enumerate(chain.steps) if step.member == member))
+
+
+def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:
+    """Sort ``line`` into steps and members.
+
+    Parameters
+    ----------
+    lengths : joint-to-joint distance [m] by Shaft name, where the Shaft is not a tube of known length.
+
+    Raises
+    ------
+    InputError : the far end is prescribed as well as the near end.
+    """
+    draft = _Draft(line, lengths or {})
+    for i in range(len(line.elements)):
+        draft.add(i)
+    members = tuple(
+        Member(m.joint, m.train, tuple(m.shafts), m.length if m.length > 0 else np.nan) for m in draft.members
+    )
+    return Chain(line, tuple(draft.steps), members)
+
+
+@dataclass
+class _OpenMember:
+    joint: int
+    train: int
+    shafts: list[str]
+    length: float
+
+
+class _Draft:
+    def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
+        self.line, self.lengths = line, lengths
+        self.steps = [Step(Link.ROOT, -1, "drive", 0)]
+        self.members = [_OpenMember(-1, 0, [], 0.0)]
+        self.behind: list[int] = []
+
+    def add(self, i: int) -> None:
+        element, name, parent = self.line.elements[i], self.line.names[i], self.line.parents[i]
+        here = 0 if parent is None else self.behind[parent]
+        member = self.steps[here].member
+        if isinstance(element, Shaft):
+            half = element.moment_of_inertia / 2
+            here = self._step(
+                Link.SHAFT, here, name, member,
+                fork_offset=element.fork_offset, stiffness=element.torsional_stiffness,
+                near_inertia=half, far_inertia=half,
+            )  # fmt: skip
+            self.members[member].shafts.append(name)
+            self.members[member].length += self.lengths.get(name, element.length or 0.0)
+        elif isinstance(element, Disk):
+            inertia, load = element.moment_of_inertia, element.load_torque
+            here = self._step(Link.RIGID, here, name, member, far_inertia=inertia, load=load)
+        elif isinstance(element, HookeJoint):
+            here = self._joint(Link.HOOKE, here, name, angle=element.angle, plane=element.plane)
+        elif isinstance(element, IdealJoint):
+            here = self._joint(Link.IDEAL, here, name, angle=element.angle, plane=element.plane)
+        elif isinstance(element, TripodJoint):
+            size = float(tripod.amplitude(element.angle, element.radius / element.length))
+            sign = -1.0 if element.spider == "input" else 1.0
+            here = self._joint(
+                Link.TRIPOD, here, name, angle=element.angle, plane=element.plane, amplitude=sign * size
+            )
+        elif isinstance(element, DoubleCardanJoint):
+            first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
+            here = self._joint(
+                Link.HOOKE, here, f"{name}, first cross", angle=float(first), plane=element.plane
+            )
+            self.members[-1].shafts.append(f"{name}, yoke")
+            self.members[-1].length = element.yoke_length or 0.0
+            # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
+            here = self._joint(
+                Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi
+            )
+        elif isinstance(element, Ratio):
+            self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
+            here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)
+        elif isinstance(element, ConstantSpeed):
+            if i > 0:
+                raise InputError(
+                    "prescribes the output as well as the input",
+                    element=name,
+                    remedy="replace it by a Disk with the load_torque it exerts",
+                )
+            here = self._step(Link.RIGID, here, name, member)
+        else:
+            raise InputError("is not an element the kinetostatics know", element=name)
+        self.behind.append(here)
+
+    def _joint(self, link: Link, parent: int, name: str, **numbers: float) -> int:
+        train = self.members[self.steps[parent].member].train
+        self.members.append(_OpenMember(len(self.steps), train, [], 0.0))
+        return self._step(link, parent, name, len(self.members) - 1, **numbers)
+
+    def _step(self, link: Link, parent: int, name: str, member: int, **numbers: float) -> int:
+        self.steps.append(Step(link, parent, name, member, **numbers))
+        return len(self.steps) - 1

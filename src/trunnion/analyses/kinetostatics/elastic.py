@@ -1,0 +1,99 @@
+"""Twist of the shafts, consistent with motion and torque at every angle (S2's algorithm, without ξ ≈ const).
+
+A shaft twists by ξ = T/c under the torque T it passes on; the twist shifts the phase of every joint behind
+it, which changes the torques in front of those joints, and so on: a fixed point, found for all angles (and
+for the rates of ξ, as jets) at once. One round changes the twist by its last change times ∂T/∂φ /c, which is
+the twist itself times η′: a few hundredths for steel shafts, so that some ten rounds reach rounding.
+
+Inertia torques are those of the rigid line: quasi-static, right as long as the excitation, twice the shaft
+speed, stays well below the lowest elastic natural frequency ω₁ (they are too small by about 1 − (2Ω/ω₁)²).
+Damping in the shafts is left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.kinetostatics.chain import Chain
+from trunnion.analyses.kinetostatics.motion import Motion, drive_jet, walk
+from trunnion.analyses.kinetostatics.torques import Torques, torques
+from trunnion.errors import ComputationError
+from trunnion.numerics import jets
+
+Array = NDArray[np.float64]
+ROUNDS = 300
+MOTION_ORDER = 2
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What is done to the line: input, outer torque, pin friction, and whether inertias count."""
+
+    input_angle: Array
+    speed: float
+    acceleration: float
+    output_torque: float
+    pin_moment: float
+    inertia: bool
+
+    def jet(self, order: int) -> Array:
+        """Jet of the input rotation."""
+        return drive_jet(self.input_angle, self.speed, self.acceleration, order)
+
+
+def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Motion, Torques, dict[int, Array]]:
+    """Motion, torques and twists (jets by Shaft step [rad], far end minus near end; none if rigid)."""
+    inertial = rigid_accelerations(chain, drive, 0 if rigid else MOTION_ORDER) if drive.inertia else None
+    if rigid:
+        motion = walk(chain, drive.jet(MOTION_ORDER))
+        return motion, _torques(chain, motion, drive, 0, inertial), {}
+    twist: dict[int, Array] = {}
+    change = np.inf
+    for _ in range(ROUNDS):
+        motion = walk(chain, drive.jet(MOTION_ORDER), twist)
+        found = _torques(chain, motion, drive, MOTION_ORDER, inertial)
+        new = {i: -found.spring[i] / chain.steps[i].stiffness for i in chain.shafts}
+        before, change = change, _change(new, twist, drive.speed)
+        twist = new
+        if change < 1e-15 or (change < 1e-11 and change >= before):  # rounding
+            return motion, found, twist
+    worst = max(twist, key=lambda i: float(np.nanmax(np.abs(twist[i][0]))))
+    raise ComputationError(
+        f"twist does not settle in {ROUNDS} rounds (last change {change:.1e} rad): {chain.steps[worst].name} "
+        "yields more than its joints' torque allows; make it stiffer or lower the torque"
+    )
+
+
+def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Motion:
+    """S2's approximation: the motion with every twist held at its mean over the turn."""
+    mean = {i: jets.constant(float(np.mean(xi[0])), xi) for i, xi in twist.items()}
+    return walk(chain, drive.jet(MOTION_ORDER), mean)
+
+
+def rigid_accelerations(chain: Chain, drive: Drive, order: int) -> list[Array]:
+    """Jets of the acceleration of every station [rad/s²], shafts rigid."""
+    motion = walk(chain, drive.jet(order + 2))
+    return [jets.rate(jets.rate(a)) for a in motion.angle]
+
+
+def _torques(chain: Chain, motion: Motion, drive: Drive, order: int, inertial: list[Array] | None) -> Torques:
+    return torques(
+        chain,
+        motion,
+        order,
+        output_torque=drive.output_torque,
+        pin_moment=drive.pin_moment,
+        inertial=inertial,
+    )
+
+
+def _change(new: dict[int, Array], old: dict[int, Array], speed: float) -> float:
+    """Largest change [rad] of a twist, or of its rates per radian and radian² of input angle."""
+    if not old:
+        return np.inf if new else 0.0
+    return max(
+        float(np.max(np.abs(xi[k] - old[i][k]))) / speed**k for i, xi in new.items() for k in range(len(xi))
+    )

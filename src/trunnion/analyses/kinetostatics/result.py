@@ -1,0 +1,244 @@
+"""What ``kinetostatics`` gives back: arrays over the input angle, and the numbers read off them."""
+
+from __future__ import annotations
+
+import csv
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, largest, parts
+from trunnion.analyses.kinetostatics.supports import Supports
+from trunnion.driveline.driveline import Driveline
+from trunnion.results.files import written_whole
+from trunnion.results.finding import Finding
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ConstantTwist:
+    """How good S2's ξ ≈ constant is: this result against one with every twist at its mean.
+
+    ``variation`` [1] is (largest − smallest twist)/(2 |mean|) by shaft (NaN without twist); ``angle`` [rad],
+    ``speed`` [rad/s] and ``acceleration`` [rad/s²] are the largest errors of the output.
+    """
+
+    variation: Array
+    angle: float
+    speed: float
+    acceleration: float
+
+
+@dataclass(frozen=True, eq=False)
+class Kinetostatics:
+    """Motion, torques, couples and support forces of a line over the input angle; SI units.
+
+    Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan joint
+    counts as two), ``fork`` the input and output fork of each joint in turn.
+
+    Attributes
+    ----------
+    input_angle : (point,) rotation of the drive [rad]; ``points`` per turn, the end of a turn left out.
+    angle, speed, acceleration : (shaft, point) of the far end of each shaft [rad, rad/s, rad/s²], counted from
+        the unloaded line at input angle 0.
+    twist : (shaft, point) far end minus near end [rad]; zero where rigid.
+    torque : (shaft, point) [N m], positive with the twist, hence *negative* where power flows from the drive
+        to the load; ``transmitted`` is the same with the other sign.
+    output_angle, output_speed, output_acceleration : (point,) at the end of the line.
+    drive_torque : (point,) torque the drive must supply [N m].
+    output_torque : torque [N m] asked for at the end of the line, beside the Disks' own.
+    joint_angle : (joint, point) input angle χ of each joint from its own plane [rad].
+    joint_torque_in, joint_torque_out : (joint, point) transmitted into and out of each joint [N m].
+    secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane, toward
+        the side the line bends to) and v (normal to it, axis × u).
+    secondary_couple_rotating : (fork, 2, point) the same along the fork's arm and across it (axis × arm).
+    supports : forces on bearings and joint centres, where bearings were given.
+    constant_twist : how good a constant twist would be, for elastic shafts.
+    power_loss : (point,) heat of the crosses' pins [W].
+    power_residual : largest imbalance of power over the largest power [1]: rounding.
+    findings : what a colleague would remark.
+    """
+
+    line: Driveline
+    input_speed: float
+    input_acceleration: float
+    turns: int
+    rigid: bool
+    inertia: bool
+    mean_ratio: float
+    input_angle: Array
+    shafts: tuple[str, ...]
+    shaft_ratio: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    twist: Array
+    torque: Array
+    output_angle: Array
+    output_speed: Array
+    output_acceleration: Array
+    drive_torque: Array
+    output_torque: float
+    joints: tuple[str, ...]
+    joint_angle: Array
+    joint_torque_in: Array
+    joint_torque_out: Array
+    forks: tuple[str, ...]
+    fork_ratio: Array
+    secondary_couple: Array
+    secondary_couple_rotating: Array
+    supports: Supports | None
+    constant_twist: ConstantTwist | None
+    findings: tuple[Finding, ...]
+    power_loss: Array
+    power_residual: float
+
+    @property
+    def transmitted(self) -> Array:
+        """Torque of each shaft [N m], positive where power flows from the drive to the load (shaft, point)."""
+        return -self.torque
+
+    @cached_property
+    def irregularity(self) -> float:
+        """U = (largest − smallest output speed)/mean [1], over the turns computed."""
+        low, high = extremes(self.output_speed)
+        return float((high - low) / abs(self.input_speed * self.mean_ratio))
+
+    @property
+    def equivalent_angle(self) -> float:
+        """Angle [rad] of the single Hooke's joint with this irregularity."""
+        return float(equivalent_angle(self.irregularity))
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Largest angular acceleration of the output [rad/s²]."""
+        return float(largest(self.output_acceleration))
+
+    @property
+    def deviation(self) -> Array:
+        """Output angle minus mean ratio times input angle [rad], about its middle (point,)."""
+        lead = self.output_angle - self.mean_ratio * self.input_angle
+        low, high = extremes(lead)
+        return np.asarray(lead - (low + high) / 2)
+
+    @property
+    def homokinetic_deviation(self) -> float:
+        """Largest lead or lag of the output [rad]: half of what the output angle swings about uniform rotation."""
+        low, high = extremes(self.output_angle - self.mean_ratio * self.input_angle)
+        return float(high - low) / 2
+
+    @property
+    def speed_ratio(self) -> tuple[float, float]:
+        """Smallest and largest output speed over input speed."""
+        low, high = extremes(self.output_speed / self.input_speed)
+        return float(low), float(high)
+
+    @property
+    def efficiency(self) -> float:
+        """Mean of the power that arrives over mean of the power supplied [1]; 1 without friction."""
+        supplied = float(np.mean(self.drive_torque * self.input_speed))
+        return 1 - float(np.mean(self.power_loss)) / supplied if supplied else 1.0
+
+    def couple_parts(self, fork: str) -> Parts:
+        """Steady and turning parts of the secondary couple on a fork [N m]."""
+        f = _place(fork, self.forks, "fork")
+        return parts(self.secondary_couple[f], self.fork_ratio[f] * self.input_angle)
+
+    def support_parts(self, bearing: str) -> Parts:
+        """Steady and turning parts of the force on a bearing [N], by its name in ``supports.names``."""
+        names = self.supports.names if self.supports else ()
+        b = _place(bearing, names, "bearing")
+        assert self.supports is not None
+        return parts(self.supports.force[b], self.supports.ratio[b] * self.input_angle)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units and settings."""
+        from trunnion.analyses.kinetostatics.dataset import dataset
+
+        return dataset(self)
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """One line per input angle, one column per quantity and shaft, units in the heading."""
+        columns = dict(_columns(self))
+        with written_whole(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(columns)
+            writer.writerows([repr(float(x)) for x in row] for row in zip(*columns.values(), strict=True))
+
+    def table(self) -> list[dict[str, Any]]:
+        """One row per shaft: speed range, largest acceleration, torque range, largest twist; SI units."""
+        rows = []
+        for s, name in enumerate(self.shafts):
+            slow, fast = extremes(self.speed[s])
+            weak, strong = extremes(self.transmitted[s])
+            rows.append(
+                {
+                    "shaft": name,
+                    "slowest [rad/s]": float(slow),
+                    "fastest [rad/s]": float(fast),
+                    "largest acceleration [rad/s^2]": float(largest(self.acceleration[s])),
+                    "least torque [N*m]": float(weak),
+                    "largest torque [N*m]": float(strong),
+                    "largest twist [rad]": float(largest(self.twist[s])),
+                }
+            )
+        return rows
+
+    def plot(self, **options: Any) -> Figure:
+        """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
+        from trunnion.plots.kinetostatics import draw
+
+        return draw(self, **options)
+
+    def __str__(self) -> str:
+        from trunnion.analyses.kinetostatics.summary import summary
+
+        return summary(self)
+
+    __repr__ = __str__
+
+
+def _place(name: str, names: tuple[str, ...], what: str) -> int:
+    from trunnion.driveline.refusals import nearest
+    from trunnion.errors import InputError
+
+    if name not in names:
+        raise InputError(f"is not a {what} of this result", key=name, remedy=nearest(name, names))
+    return names.index(name)
+
+
+def _columns(result: Kinetostatics) -> list[tuple[str, Array]]:
+    columns = [("input angle [rad]", result.input_angle)]
+    for s, name in enumerate(result.shafts):
+        columns += [
+            (f"{name} angle [rad]", result.angle[s]),
+            (f"{name} speed [rad/s]", result.speed[s]),
+            (f"{name} acceleration [rad/s^2]", result.acceleration[s]),
+            (f"{name} twist [rad]", result.twist[s]),
+            (f"{name} torque [N*m]", result.torque[s]),
+        ]
+    columns += [
+        ("output angle [rad]", result.output_angle),
+        ("output speed [rad/s]", result.output_speed),
+        ("output acceleration [rad/s^2]", result.output_acceleration),
+        ("drive torque [N*m]", result.drive_torque),
+    ]
+    for f, name in enumerate(result.forks):
+        columns += [
+            (f"{name} couple {axis} [N*m]", c)
+            for axis, c in zip("uv", result.secondary_couple[f], strict=True)
+        ]
+    if result.supports:
+        for name, force in zip(result.supports.names, result.supports.force, strict=True):
+            columns += [(f"{name} force {axis} [N]", c) for axis, c in zip("uv", force, strict=True)]
+    return columns

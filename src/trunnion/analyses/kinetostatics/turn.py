@@ -1,0 +1,204 @@
+"""The question ``kinetostatics`` asks of a driveline, from the arguments to the result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, member_ratio
+from trunnion.analyses.kinetostatics.couples import secondary_couples
+from trunnion.analyses.kinetostatics.elastic import Drive, constant_twist, solve
+from trunnion.analyses.kinetostatics.friction import CrossFriction
+from trunnion.analyses.kinetostatics.measures import largest
+from trunnion.analyses.kinetostatics.motion import Motion, assembled
+from trunnion.analyses.kinetostatics.remarks import remarks
+from trunnion.analyses.kinetostatics.result import ConstantTwist, Kinetostatics
+from trunnion.analyses.kinetostatics.supports import Bearings, support_forces
+from trunnion.analyses.kinetostatics.torques import Torques, refuse_locking
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE, Kind, parse
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+FEWEST_POINTS = 8
+
+
+def kinetostatics(
+    line: Driveline,
+    speed: float | str = 1.0,
+    acceleration: float = 0.0,
+    *,
+    rigid: bool = True,
+    output_torque: float | str = 0.0,
+    inertia: bool = False,
+    friction: CrossFriction | None = None,
+    supports: Bearings | None = None,
+    lengths: Mapping[str, float | str] | None = None,
+    turns: int = 1,
+    points: int = 720,
+) -> Kinetostatics:
+    """Motion, torques, secondary couples and support forces of ``line`` over a turn of its input.
+
+    >>> r = kinetostatics(line, speed=tn.rpm(1500), supports=[("Shaft 1", -0.3, -0.1)])  # doctest: +SKIP
+
+    Parameters
+    ----------
+    line : the driveline; its first element is driven, whatever it is.
+    speed, acceleration : of the input, the same at every angle [rad/s, rad/s²].
+    rigid : shafts do not twist; False solves the twist under the torque at every angle.
+    output_torque : at the end of the line [N m], beside the Disks' load_torque; positive resists rotation.
+    inertia : count the inertia torques of the rigid line.
+    friction : in the bearings of every cross.
+    supports : (shaft, position, position) or (shaft, position) each [m]; see ``supports.support_forces``.
+    lengths : joint-to-joint lengths [m] by shaft, where the shaft is not a tube of known length.
+    turns, points : turns of the input, and points per turn.
+
+    Raises
+    ------
+    InputError : an argument out of its range, a prescribed output, bearings that cannot carry the load.
+    ComputationError : shafts so soft that the twist does not settle.
+    """
+    drive_speed = parse(speed, SPEED)
+    if not drive_speed > 0:
+        raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
+    _whole("turns", turns, 1)
+    _whole("points", points, FEWEST_POINTS)
+    if not np.isfinite(acceleration):
+        raise InputError(
+            "must be finite", key="acceleration", value=acceleration, remedy="write it in rad/s²"
+        )
+    if friction is not None and not isinstance(friction, CrossFriction):
+        raise InputError(
+            "is not a CrossFriction",
+            key="friction",
+            value=friction,
+            remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
+        )
+    train = chain(line, _lengths(line, lengths))
+    pin_moment = friction.pin_moment if friction else 0.0
+    refuse_locking(train, pin_moment)
+    input_angle = np.arange(turns * points) * (2 * np.pi / points)
+    torque = _number(output_torque, TORQUE, "output_torque")
+    drive = Drive(input_angle, drive_speed, float(acceleration), torque, pin_moment, inertia)
+    motion, passed, twist = solve(train, drive, rigid=rigid)
+    couples = secondary_couples(train, motion, passed, pin_moment)
+    forces = support_forces(train, couples, supports) if supports is not None else None
+    constant = None if rigid else _constant(train, drive, motion, twist)
+    zero = np.array(assembled(train))
+    steps, joints = train.steps, train.joints
+
+    def derivative(stations: Sequence[int], order: int) -> Array:
+        factor = (1, 1, 2)[order]
+        values = [factor * motion.angle[i][order] - (zero[i] if order == 0 else 0.0) for i in stations]
+        return np.reshape(values, (len(stations), len(input_angle)))
+
+    def stack(values: list[Array]) -> Array:
+        return np.reshape(values, (len(values), len(input_angle)))
+
+    last = len(steps) - 1
+    return Kinetostatics(
+        line=line,
+        input_speed=drive_speed,
+        input_acceleration=drive.acceleration,
+        turns=turns,
+        rigid=rigid,
+        inertia=inertia,
+        mean_ratio=train.mean_ratio(last),
+        input_angle=input_angle,
+        shafts=tuple(steps[i].name for i in train.shafts),
+        shaft_ratio=np.array([train.mean_ratio(i) for i in train.shafts]),
+        angle=derivative(train.shafts, 0),
+        speed=derivative(train.shafts, 1),
+        acceleration=derivative(train.shafts, 2),
+        twist=stack([twist[i][0] if i in twist else np.zeros_like(input_angle) for i in train.shafts]),
+        torque=stack([-passed.spring[i][0] for i in train.shafts]),
+        output_angle=derivative([last], 0)[0],
+        output_speed=derivative([last], 1)[0],
+        output_acceleration=derivative([last], 2)[0],
+        drive_torque=passed.out[0][0],
+        output_torque=torque,
+        joints=tuple(steps[i].name for i in joints),
+        joint_angle=stack([motion.chi[i][0] for i in joints]),
+        joint_torque_in=stack([passed.into[i][0] for i in joints]),
+        joint_torque_out=stack([passed.out[i][0] for i in joints]),
+        forks=couples.names,
+        fork_ratio=np.array([member_ratio(train, m) for m in couples.member]),
+        secondary_couple=couples.standing,
+        secondary_couple_rotating=couples.rotating,
+        supports=forces,
+        constant_twist=constant,
+        findings=remarks(train, drive, rigid, forces, turns),
+        power_loss=couples.friction_power,
+        power_residual=_power_residual(train, drive, motion, passed, twist, couples.friction_power),
+    )
+
+
+def _constant(train: Chain, drive: Drive, motion: Motion, twist: dict[int, Array]) -> ConstantTwist:
+    approximate = constant_twist(train, drive, twist).angle[-1] - motion.angle[-1]
+    variation = []
+    for i in train.shafts:
+        mean, swing = float(np.mean(twist[i][0])), float(np.ptp(twist[i][0]))
+        variation.append(swing / (2 * abs(mean)) if mean else np.nan)
+    angle, speed, half = (float(largest(np.abs(approximate[k]))) for k in range(3))
+    return ConstantTwist(np.array(variation), angle, speed, 2 * half)
+
+
+def _power_residual(
+    train: Chain, drive: Drive, motion: Motion, passed: Torques, twist: dict[int, Array], heat: Array
+) -> float:
+    """Largest imbalance of power over the largest power [1].
+
+    Supplied power = loads + heat of the joints + what springs and inertias take up. With elastic shafts the
+    inertia torques are those of the rigid line; the balance is that of the torques as they are used.
+    """
+    balance = passed.out[0][0] * drive.speed - heat
+    size = np.abs(balance)
+    for i, step in enumerate(train.steps[1:], start=1):
+        into, out = passed.into[i][0], passed.out[i][0]
+        front, behind = motion.angle[step.parent][1], motion.angle[i][1]
+        if step.link is Link.SHAFT:
+            spring = passed.spring[i][0]
+            taken = (into - spring) * front + (spring - out) * behind
+            if i in twist:
+                taken = taken - spring * twist[i][1]
+        elif step.link is Link.RIGID:
+            taken = (into - out) * behind
+        else:
+            continue
+        balance, size = balance - taken, np.maximum(size, np.abs(taken))
+    balance = balance - passed.out[-1][0] * motion.angle[-1][1]
+    scale = float(np.max(size))
+    return float(np.max(np.abs(balance))) / scale if scale else 0.0
+
+
+def _lengths(line: Driveline, lengths: Mapping[str, float | str] | None) -> dict[str, float]:
+    known = {}
+    for name, length in (lengths or {}).items():
+        if name not in line.names:
+            raise InputError(
+                "is not a Shaft of this driveline",
+                key="lengths",
+                value=name,
+                remedy=nearest(name, line.names),
+            )
+        known[name] = _number(length, LENGTH, f"lengths[{name!r}]")
+        if not known[name] > 0:
+            raise InputError(
+                "must be positive", element=name, key="lengths", value=length, remedy="write 0.8 [m]"
+            )
+    return known
+
+
+def _number(value: float | str, kind: Kind, key: str) -> float:
+    try:
+        return parse(value, kind)
+    except InputError as error:
+        raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+
+
+def _whole(key: str, value: int, least: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise InputError("must be a whole number", key=key, value=value, remedy=f"write {least} or more")

@@ -1,0 +1,191 @@
+"""Source text of the chain kernels around one step: error control, blocks of lanes, the whole period.
+
+The texts of this file and of ``lane_step_source`` or ``wide_step_source`` together make one module, because
+the compiler caches only what stands in one file.
+"""
+
+from __future__ import annotations
+
+from trunnion.numerics.lane_step_source import step_source
+from trunnion.numerics.runge_kutta import B, C
+from trunnion.numerics.wide_step_source import wide_step_source
+
+_IMPORTS = """\
+import numpy as np
+from numba import njit
+
+from trunnion.numerics.chain_tables import (
+    DAMPING,
+    EXTRA_DAMPING,
+    EXTRA_STIFFNESS,
+    FREQUENCY,
+    LANES,
+    NEAR,
+    NEAR_SLOPE,
+    OVER_MASS,
+    PER_ROW,
+    PER_TABLE,
+    PER_UNKNOWN,
+    STIFFNESS,
+    add_damping_trace,
+    empty_table,
+    fill,
+    gather,
+)
+from trunnion.numerics.half_period import whole_from_half
+"""
+
+_LANES_STATE = """\
+@njit(cache=True, nogil=True)
+def identity_state(n):
+    wide = 2 * n
+    u = np.zeros(wide * wide * LANES)
+    for i in range(wide):
+        for l in range(LANES):
+            u[(i * wide + i) * LANES + l] = 1.0
+    return u
+
+
+@njit(cache=True, nogil=True)
+def scratch(n):
+    return np.zeros(1)
+
+
+@njit(cache=True, nogil=True)
+def take_step(parent, table, unknown, h, u, un, spare, squares):
+    step_with_error(table, unknown, h, u, un, squares)
+
+
+@njit(cache=True, nogil=True)
+def matrices(u, n, out):
+    wide = 2 * n
+    for l in range(LANES):
+        for i in range(wide):
+            for c in range(wide):
+                out[l, i, c] = u[(c * wide + i) * LANES + l]
+"""
+
+_WIDE_STATE = """\
+@njit(cache=True, nogil=True)
+def identity_state(n):
+    wide = 2 * n
+    u = np.zeros((LANES, wide, wide))
+    for l in range(LANES):
+        for i in range(wide):
+            u[l, i, i] = 1.0
+    return u
+
+
+@njit(cache=True, nogil=True)
+def scratch(n):
+    return np.zeros((13, 2 * n, 2 * n))
+
+
+@njit(cache=True, nogil=True)
+def take_step(parent, table, unknown, h, u, un, spare, squares):
+    for l in range(LANES):
+        squares[l], squares[LANES + l] = wide_step(
+            parent, table, unknown, l, h, u[l], un[l], spare[12], spare[:12]
+        )
+
+
+@njit(cache=True, nogil=True)
+def matrices(u, n, out):
+    out[:] = u
+"""
+
+_DRIVER = """\
+@njit(cache=True, nogil=True)
+def propagate_block(program, block, table, begin, length, tolerance, extra, most_steps, out, error, trace):
+    n = len(program.parent)
+    u = identity_state(n)
+    un, spare = np.empty_like(u), scratch(n)
+    squares, local = np.empty(2 * LANES), np.empty(LANES)
+    error[:] = 0.0
+    trace[:] = 0.0
+    done, count = 0.0, 0
+    fastest = block.unknown[FREQUENCY * LANES : (FREQUENCY + 1) * LANES].max()
+    h = min(length / 4, 0.8 / fastest)
+    while done < length and count < most_steps:
+        count += 1
+        if done + h > length * (1 - 1e-12):
+            h = length - done
+        elif done + 1.8 * h > length:
+            h = (length - done) / 2
+        fill(program, block, begin + done, h, C, extra, table)
+        take_step(program.parent, table, block.unknown, h, u, un, spare, squares)
+        worst = 0.0
+        for l in range(LANES):
+            local[l] = squares[l] / np.sqrt(squares[l] + 0.01 * squares[LANES + l] + 1e-300)
+            worst = max(worst, local[l]) if local[l] == local[l] else np.inf
+        worst = LOCAL_TO_TRUE * worst * length / (tolerance * h)
+        if worst <= 1.0:
+            u, un = un, u
+            error += local
+            add_damping_trace(program.parent, block.unknown, table, B, h, trace)
+            done = length if done + h > length * (1 - 1e-12) else done + h
+        elif not worst < np.inf and h < 1e-7 * length:
+            break
+        h *= min(3.0, max(0.1, 0.9 * (worst + 1e-30) ** (-1 / 7.0)))
+    if done < length:
+        error[:] = np.nan
+        trace[:] = np.nan
+        out[:] = np.nan
+    else:
+        matrices(u, n, out)
+        for l in range(LANES):
+            norm = np.sqrt(np.sum(out[l] ** 2) / (2 * n))
+            error[l] = (LOCAL_TO_TRUE * error[l] + 1e-15 * count) * max(1.0, norm)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def integrate(program, lanes, first, last, begin, period, tolerance, half, extra, most_steps, matrix, error, trace):
+    n = len(program.parent)
+    out = np.empty((LANES, 2 * n, 2 * n))
+    block_error, block_trace = np.empty(LANES), np.empty(LANES)
+    start, end, damping = np.empty(n), np.empty(n), np.empty(n)
+    spare = np.empty((2, 2 * n, 2 * n))
+    length = period / 2 if half else period
+    steps = 0
+    for at in range(first, last, LANES):
+        block = gather(program, lanes, at)
+        table, ends = empty_table(program, block), empty_table(program, block)
+        asked = tolerance / 4 if half else tolerance
+        steps += propagate_block(
+            program, block, table, begin, length, asked, extra, most_steps, out, block_error, block_trace
+        )
+        if half:
+            fill(program, block, begin, length, ENDS, extra, ends)
+        for l in range(min(LANES, last - at)):
+            if half:
+                for i in range(n):
+                    start[i] = ends[i * PER_TABLE + NEAR * LANES + l]
+                    end[i] = ends[i * PER_TABLE + PER_ROW + NEAR * LANES + l]
+                    damping[i] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + l]
+                nu = block.unknown[FREQUENCY * LANES + l]
+                factor = whole_from_half(program.parent, start, end, damping, nu, out[l], spare, matrix[at + l])
+                error[at + l] = factor * block_error[l]
+                trace[at + l] = 2 * block_trace[l]
+            else:
+                matrix[at + l] = out[l]
+                error[at + l] = block_error[l]
+                trace[at + l] = block_trace[l]
+    return steps
+"""
+
+
+def lane_module_source(parent: tuple[int, ...], extra: bool) -> str:
+    """Whole module for a small tree of unknowns; ``extra``: static torque or angle-dependent inertia act."""
+    return "\n\n".join([_IMPORTS, _nodes(), step_source(parent, extra), _LANES_STATE, _DRIVER])
+
+
+def wide_module_source() -> str:
+    """Whole module for trees of any number of unknowns."""
+    return "\n\n".join([_IMPORTS, _nodes(), wide_step_source(), _WIDE_STATE, _DRIVER])
+
+
+def _nodes() -> str:
+    # The embedded estimate is of order 5; the order-8 solution that is kept was never further off than a
+    # twentieth of it on random chains (see tests/laws), so a tenth of it is reported and controlled.
+    return f"LOCAL_TO_TRUE = 0.1\nENDS = np.array([0.0, 1.0])\nC = np.array({[float(c) for c in C]!r})\nB = np.array({[float(b) for b in B]!r})\n"

@@ -1,0 +1,459 @@
+"""Time-dependent coefficients of jointed chains, for sixteen lanes at a time.
+
+One sine and cosine per time serve all lanes and joints: with C = cos 2χ, S = sin 2χ at a joint's input and
+D = 1 − sin²β (1 + C)/2, its output has
+
+    η = cos β / D,   cos 2ψ = (cos²β (1 + C) − (1 − C)) / 2D,   sin 2ψ = cos β S / D,
+
+and fork phases turn (C, S) by a constant. Only a ratio other than ±1 between two joints needs ψ itself.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LANES = 16
+
+
+class ChainProgram(NamedTuple):
+    """What all lanes share: who hangs on whom, and which joint's law acts where. Sources are −1 for "none".
+
+    parent (n,): parent unknown, −1 at a prescribed or missing root.
+    joint_speed_source, joint_rate (joints,): the joint whose output drives this one (−1: the input itself),
+        and the speed ratio in between.
+    joint_ratio_source, joint_ratio (joints,): the same within the joint's group, for r = da/da_ref.
+    near_source, near_ratio (n,): r of the near end of unknown i's shaft, within the parent's group.
+    near_speed_source, near_speed (n,): joint and factor giving the speed of the parent group's reference.
+    member_unknown, member_source, member_ratio (members,): inertias of groups that contain joints.
+    member_speed_source, member_speed (members,): speed of that group's reference.
+    """
+
+    parent: Integers
+    joint_speed_source: Integers
+    joint_rate: Array
+    joint_ratio_source: Integers
+    joint_ratio: Array
+    near_source: Integers
+    near_ratio: Array
+    near_speed_source: Integers
+    near_speed: Array
+    member_unknown: Integers
+    member_source: Integers
+    member_ratio: Array
+    member_speed_source: Integers
+    member_speed: Array
+
+
+class ChainLanes(NamedTuple):
+    """Numbers per lane, lanes last; unknowns are scaled by √J and time is the input angle.
+
+    cosine, phase (joints, lanes): cos β, and the constant part of χ since the source [rad].
+    stiffness κ = k/(JΩ²), damping d = c/(JΩ), scale √(J_i/J_parent), torque T̄/(J_parent Ω²): (n, lanes).
+    member_inertia J/J_i and member_load M/(J_i Ω²): (members, lanes).
+    frequency ν (lanes,): unit of the rates.
+    """
+
+    cosine: Array
+    phase: Array
+    stiffness: Array
+    damping: Array
+    scale: Array
+    torque: Array
+    member_inertia: Array
+    member_load: Array
+    frequency: Array
+
+
+# A block of lanes lives in three flat arrays, each a stack of rows of LANES numbers: per joint (constant rows,
+# then the moving rows of every stage), per unknown, and a table of rows per unknown and stage. One base address
+# and constant offsets are what lets the compiler vectorise, and all stages of a step are filled in one call:
+# separate arrays, or slices taken per stage, cost a factor of 3 to 15 (measured).
+STAGES = 12
+COSINE, TURN_COS, TURN_SIN, PHASE = 0, 1, 2, 3
+MOVING = 4
+COS2, SIN2, SPEED, ACCELERATION, RATIO, RATIO1, RATIO2, ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
+MOVING_ROWS = 8
+STIFFNESS, DAMPING, NEAR_SCALE, SLOPE_SCALE, TORQUE, FREQUENCY = 0, 1, 2, 3, 4, 5
+NEAR, NEAR_SLOPE, EXTRA_DAMPING, EXTRA_STIFFNESS, OVER_MASS = 0, 1, 2, 3, 4
+TABLE_ROWS = 5
+PER_STAGE, PER_JOINT = MOVING_ROWS * LANES, (MOVING + MOVING_ROWS * STAGES) * LANES
+PER_UNKNOWN, PER_ROW = 6 * LANES, TABLE_ROWS * LANES
+PER_TABLE = PER_ROW * STAGES
+
+
+class Block(NamedTuple):
+    """One block of lanes: flat rows (see above); κ, slopes and extra stiffness in units of ν.
+
+    ``alike``: all lanes have the same joint angles and phases, so one of them speaks for all.
+    """
+
+    joint: Array
+    unknown: Array
+    member_inertia: Array
+    member_load: Array
+    alike: bool
+
+
+@njit(cache=True, nogil=True)
+def gather(program, lanes, first):  # type: ignore[no-untyped-def]
+    """Lanes ``first`` … of the given ones as a block; the last lane is repeated to fill it."""
+    joints, n = lanes.cosine.shape[0], len(program.parent)
+    last = lanes.frequency.shape[0] - 1
+    joint = np.zeros(max(1, joints) * PER_JOINT)
+    unknown = np.zeros(n * PER_UNKNOWN)
+    members = lanes.member_inertia.shape[0]
+    inertia, load = np.zeros((members, LANES)), np.zeros((members, LANES))
+    alike = True
+    for lane in range(LANES):
+        at = min(first + lane, last)
+        nu = lanes.frequency[at]
+        for j in range(joints):
+            o = j * PER_JOINT + lane
+            same = lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
+            alike = alike and same
+            joint[o + COSINE * LANES] = lanes.cosine[j, at]
+            joint[o + PHASE * LANES] = lanes.phase[j, at]
+            if same and lane > 0:
+                joint[o + TURN_COS * LANES] = joint[o + TURN_COS * LANES - lane]
+                joint[o + TURN_SIN * LANES] = joint[o + TURN_SIN * LANES - lane]
+            else:
+                joint[o + TURN_COS * LANES] = math.cos(2 * lanes.phase[j, at])
+                joint[o + TURN_SIN * LANES] = math.sin(2 * lanes.phase[j, at])
+        for i in range(n):
+            o = i * PER_UNKNOWN + lane
+            scale = lanes.scale[i, at] * program.near_ratio[i]
+            unknown[o + STIFFNESS * LANES] = lanes.stiffness[i, at] / nu
+            unknown[o + DAMPING * LANES] = lanes.damping[i, at]
+            unknown[o + NEAR_SCALE * LANES] = scale
+            unknown[o + SLOPE_SCALE * LANES] = scale * program.near_speed[i] / nu
+            unknown[o + TORQUE * LANES] = lanes.torque[i, at] * program.near_ratio[i] / nu
+            unknown[o + FREQUENCY * LANES] = nu
+        for k in range(members):
+            inertia[k, lane] = lanes.member_inertia[k, at]
+            load[k, lane] = lanes.member_load[k, at]
+    return Block(joint, unknown, inertia, load, alike)
+
+
+@njit(cache=True, nogil=True)
+def empty_table(program, block):  # type: ignore[no-untyped-def]
+    """A table with everything filled in that does not depend on time."""
+    n = len(program.parent)
+    table = np.zeros(n * PER_TABLE)
+    for i in range(n):
+        for m in range(STAGES):
+            o = i * PER_TABLE + m * PER_ROW
+            for lane in range(LANES):
+                table[o + OVER_MASS * LANES + lane] = 1.0
+                if program.near_source[i] < 0:
+                    table[o + NEAR * LANES + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
+    return table
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-untyped-def]
+    """Coefficients at input angles ``begin + nodes · step`` into the stages of ``table``.
+
+    ``extra``: static torque on bent joints or angle-dependent inertia act, so those rows are filled too.
+    """
+    w, unknown, parent = block.joint, block.unknown, program.parent
+    speed_source, rates = program.joint_speed_source, program.joint_rate
+    ratio_source, ratios = program.joint_ratio_source, program.joint_ratio
+    near_source, near_speed_source = program.near_source, program.near_speed_source
+    curved = len(program.member_unknown) > 0
+    used = 1 if block.alike and not curved else LANES
+    unwrapped = False
+    for j in range(len(rates)):
+        unwrapped = unwrapped or (speed_source[j] >= 0 and abs(rates[j]) != 1.0)
+    for j in range(len(rates)):
+        own = w[j * PER_JOINT : (j + 1) * PER_JOINT]
+        driven = speed_source[j] < 0
+        source, within = max(speed_source[j], 0) * PER_JOINT, max(ratio_source[j], 0) * PER_JOINT
+        before = w[source : source + PER_JOINT]
+        if ratio_source[j] < 0 and not curved and not unwrapped:
+            if driven:
+                _plain_joint_on_drive(own, used, begin, step, nodes, rates[j], ratios[j])
+            else:
+                _plain_joint_on_joint(own, before, used, len(nodes), rates[j], ratios[j])
+            continue
+        if driven:
+            _input_from_drive(own, begin, step, nodes, rates[j])
+        else:
+            _input_from_joint(own, before, len(nodes), rates[j])
+        if unwrapped:
+            _unwrap(own, before, begin, step, nodes, driven, rates[j])
+        if ratio_source[j] < 0:
+            _first_in_group(own, len(nodes), ratios[j])
+        else:
+            _behind_in_group(own, w[within : within + PER_JOINT], len(nodes), ratios[j])
+        if curved:
+            _curve(own, len(nodes))
+        _pass_joint(own, len(nodes))
+    if extra:
+        for i in range(len(parent)):
+            rows = table[i * PER_TABLE : (i + 1) * PER_TABLE]
+            for m in range(len(nodes)):
+                for lane in range(LANES):
+                    rows[m * PER_ROW + EXTRA_STIFFNESS * LANES + lane] = 0.0
+    for i in range(len(parent)):
+        if near_source[i] >= 0 and parent[i] >= 0:
+            shaft = unknown[i * PER_UNKNOWN : (i + 1) * PER_UNKNOWN]
+            joint = w[near_source[i] * PER_JOINT : (near_source[i] + 1) * PER_JOINT]
+            rows = table[i * PER_TABLE : (i + 1) * PER_TABLE]
+            _shaft_behind_joint(joint, shaft, used == 1, len(nodes), rows)
+            if near_speed_source[i] >= 0:
+                driver = w[near_speed_source[i] * PER_JOINT : (near_speed_source[i] + 1) * PER_JOINT]
+                _times_speed(driver, used == 1, len(nodes), rows)
+            if extra:
+                above = table[parent[i] * PER_TABLE : (parent[i] + 1) * PER_TABLE]
+                _torque_on_joint(joint, shaft, used == 1, len(nodes), above)
+    if curved:
+        _members(program, block, len(nodes), table)
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _plain_joint_on_drive(own, used, begin, step, nodes, rate, factor):  # type: ignore[no-untyped-def]
+    """A joint alone in its group and driven by the input: all of its law in one pass."""
+    for m in range(len(nodes)):
+        angle = 2 * rate * (begin + nodes[m] * step)
+        c0, s0 = math.cos(angle), math.sin(angle)
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(used):
+            turn_c, turn_s, cb = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane], own[COSINE * LANES + lane]
+            c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
+            cb2 = cb * cb
+            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
+            eta = cb * over
+            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
+            own[o + SIN2 * LANES + lane] = eta * s
+            own[o + SPEED * LANES + lane] = rate * eta
+            own[o + RATIO * LANES + lane] = factor * eta
+            own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _plain_joint_on_joint(own, before, used, count, rate, factor):  # type: ignore[no-untyped-def]
+    """The same behind another joint, at its speed or reversed."""
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(used):
+            turn_c, turn_s, cb = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane], own[COSINE * LANES + lane]
+            c0, s0 = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
+            c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
+            cb2 = cb * cb
+            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
+            eta = cb * over
+            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
+            own[o + SIN2 * LANES + lane] = eta * s
+            own[o + SPEED * LANES + lane] = rate * eta * before[o + SPEED * LANES + lane]
+            own[o + RATIO * LANES + lane] = factor * eta
+            own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _input_from_drive(own, begin, step, nodes, rate):  # type: ignore[no-untyped-def]
+    """cos 2χ, sin 2χ, speed and acceleration at a joint's input, left where its output will stand."""
+    for m in range(len(nodes)):
+        angle = 2 * rate * (begin + nodes[m] * step)
+        c, s = math.cos(angle), math.sin(angle)
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
+            own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
+            own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
+            own[o + SPEED * LANES + lane] = rate
+            own[o + ACCELERATION * LANES + lane] = 0.0
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _input_from_joint(own, before, count, rate):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        if rate == 1.0 or rate == -1.0:
+            for lane in range(LANES):
+                turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
+                c, s = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
+                own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
+                own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
+        else:
+            # Behind such a ratio multiples of 2ψ do not suffice; ψ itself was kept.
+            for lane in range(LANES):
+                chi2 = 2 * (rate * before[o + ANGLE * LANES + lane] + own[PHASE * LANES + lane])
+                own[o + COS2 * LANES + lane] = math.cos(chi2)
+                own[o + SIN2 * LANES + lane] = math.sin(chi2)
+        for lane in range(LANES):
+            own[o + SPEED * LANES + lane] = rate * before[o + SPEED * LANES + lane]
+            own[o + ACCELERATION * LANES + lane] = rate * before[o + ACCELERATION * LANES + lane]
+
+
+@njit(cache=True, nogil=True)
+def _unwrap(own, before, begin, step, nodes, driven, rate):  # type: ignore[no-untyped-def]
+    """ψ, continuous over the period."""
+    for m in range(len(nodes)):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            angle = begin + nodes[m] * step if driven else before[o + ANGLE * LANES + lane]
+            chi = rate * angle + own[PHASE * LANES + lane]
+            cosine = own[COSINE * LANES + lane]
+            t = (1.0 - cosine) / (1.0 + cosine)
+            own[o + ANGLE * LANES + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _first_in_group(own, count, factor):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            own[o + RATIO * LANES + lane] = factor
+            own[o + RATIO1 * LANES + lane] = 0.0
+            own[o + RATIO2 * LANES + lane] = 0.0
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _behind_in_group(own, before, count, factor):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            own[o + RATIO * LANES + lane] = factor * before[o + RATIO * LANES + lane]
+            own[o + RATIO1 * LANES + lane] = factor * before[o + RATIO1 * LANES + lane]
+            own[o + RATIO2 * LANES + lane] = factor * before[o + RATIO2 * LANES + lane]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _curve(own, count):  # type: ignore[no-untyped-def]
+    """Second derivative of r behind the joint; before ``_pass_joint`` overwrites what it needs."""
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            cb, c, s = own[COSINE * LANES + lane], own[o + COS2 * LANES + lane], own[o + SIN2 * LANES + lane]
+            r, r1 = own[o + RATIO * LANES + lane], own[o + RATIO1 * LANES + lane]
+            sb2 = 1.0 - cb * cb
+            over = 1.0 / (1.0 - 0.5 * sb2 * (1.0 + c))
+            eta = cb * over
+            slope = -eta * sb2 * s * over
+            curvature = -2 * eta * sb2 * over * (c - sb2 * s * s * over)
+            before = own[o + RATIO2 * LANES + lane]
+            own[o + RATIO2 * LANES + lane] = eta * before + 3 * slope * r * r1 + curvature * r * r * r
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _pass_joint(own, count):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            cb, c, s = own[COSINE * LANES + lane], own[o + COS2 * LANES + lane], own[o + SIN2 * LANES + lane]
+            speed, r = own[o + SPEED * LANES + lane], own[o + RATIO * LANES + lane]
+            acceleration, r1 = own[o + ACCELERATION * LANES + lane], own[o + RATIO1 * LANES + lane]
+            cb2 = cb * cb
+            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
+            eta = cb * over
+            slope = eta * (cb2 - 1.0) * s * over
+            own[o + ACCELERATION * LANES + lane] = slope * speed * speed + eta * acceleration
+            own[o + SPEED * LANES + lane] = eta * speed
+            own[o + RATIO1 * LANES + lane] = eta * r1 + slope * r * r
+            own[o + RATIO * LANES + lane] = eta * r
+            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
+            own[o + SIN2 * LANES + lane] = eta * s
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _shaft_behind_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
+        if alike:
+            r, r1 = joint[o + RATIO * LANES], joint[o + RATIO1 * LANES]
+            for lane in range(LANES):
+                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * r
+                rows[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1
+        else:
+            for lane in range(LANES):
+                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
+                slope = shaft[SLOPE_SCALE * LANES + lane] * joint[o + RATIO1 * LANES + lane]
+                rows[t + NEAR_SLOPE * LANES + lane] = slope
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _times_speed(driver, alike, count, rows):  # type: ignore[no-untyped-def]
+    for m in range(count):
+        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
+        first = driver[o + SPEED * LANES]
+        if alike:
+            for lane in range(LANES):
+                rows[t + NEAR_SLOPE * LANES + lane] *= first
+        else:
+            for lane in range(LANES):
+                rows[t + NEAR_SLOPE * LANES + lane] *= driver[o + SPEED * LANES + lane]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _torque_on_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
+    """−r₁T̄ on the unknown in front of the joint."""
+    for m in range(count):
+        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
+        for lane in range(LANES):
+            slope = joint[o + RATIO1 * LANES] if alike else joint[o + RATIO1 * LANES + lane]
+            rows[t + EXTRA_STIFFNESS * LANES + lane] -= slope * shaft[TORQUE * LANES + lane]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def _members(program, block, count, table):  # type: ignore[no-untyped-def]
+    """Inertia that depends on the angle: members behind a joint of their own group."""
+    w, owner = block.joint, program.member_unknown
+    for m in range(count):
+        for k in range(len(owner)):
+            t = owner[k] * PER_TABLE + m * PER_ROW
+            for lane in range(LANES):
+                table[t + OVER_MASS * LANES + lane] = 0.0
+                table[t + EXTRA_DAMPING * LANES + lane] = 0.0
+        for k in range(len(owner)):
+            t, o = owner[k] * PER_TABLE + m * PER_ROW, MOVING * LANES + m * PER_STAGE
+            b, v = program.member_source[k] * PER_JOINT + o, program.member_speed_source[k] * PER_JOINT + o
+            factor, mean = program.member_ratio[k], program.member_speed[k]
+            for lane in range(LANES):
+                r, r1, r2, speed, acceleration = factor, 0.0, 0.0, mean, 0.0
+                if program.member_source[k] >= 0:
+                    r, r1 = factor * w[b + RATIO * LANES + lane], factor * w[b + RATIO1 * LANES + lane]
+                    r2 = factor * w[b + RATIO2 * LANES + lane]
+                if program.member_speed_source[k] >= 0:
+                    speed = mean * w[v + SPEED * LANES + lane]
+                    acceleration = mean * w[v + ACCELERATION * LANES + lane]
+                inertia, nu = block.member_inertia[k, lane], block.unknown[FREQUENCY * LANES + lane]
+                table[t + OVER_MASS * LANES + lane] += inertia * r * r
+                table[t + EXTRA_DAMPING * LANES + lane] += 2 * inertia * r * r1 * speed
+                curved = 2 * r * r1 * acceleration + (r1 * r1 + r * r2) * speed * speed
+                pull = inertia * curved + r1 * block.member_load[k, lane]
+                table[t + EXTRA_STIFFNESS * LANES + lane] += pull / nu
+        done = -1
+        for k in range(len(owner)):
+            if owner[k] != done:
+                t = owner[k] * PER_TABLE + m * PER_ROW
+                for lane in range(LANES):
+                    table[t + OVER_MASS * LANES + lane] = 1.0 / table[t + OVER_MASS * LANES + lane]
+            done = owner[k]
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def add_damping_trace(parent, unknown, table, weights, step, trace):  # type: ignore[no-untyped-def]
+    """∫ tr(M⁻¹C) dτ over one step, by the weights of its stages, added to ``trace`` per lane."""
+    for i in range(len(parent)):
+        shaft = unknown[i * PER_UNKNOWN : (i + 1) * PER_UNKNOWN]
+        rows = table[i * PER_TABLE : (i + 1) * PER_TABLE]
+        above = table[max(parent[i], 0) * PER_TABLE : (max(parent[i], 0) + 1) * PER_TABLE]
+        for m in range(STAGES):
+            weight, t = step * weights[m], m * PER_ROW
+            if weight == 0.0:
+                continue
+            for lane in range(LANES):
+                own = shaft[DAMPING * LANES + lane] + rows[t + EXTRA_DAMPING * LANES + lane]
+                trace[lane] += weight * own * rows[t + OVER_MASS * LANES + lane]
+            if parent[i] >= 0:
+                for lane in range(LANES):
+                    e, over = rows[t + NEAR * LANES + lane], above[t + OVER_MASS * LANES + lane]
+                    trace[lane] += weight * e * e * shaft[DAMPING * LANES + lane] * over

@@ -1,0 +1,283 @@
+"""Spectral radius from characteristic coefficients, for matrices of size 2, 4 and 6.
+
+The characteristic polynomial of Z is Σ_k (−1)^k e_k x^{m−k}, e_0 = 1. Its coefficients are analytic in every
+parameter of the system, the multipliers are not where they collide; so coefficients are what charts
+interpolate, and this file turns them into multipliers per pixel. If e_k is off by ε_k, the polynomial at a
+root σ moves by at most E = Σ ε_k |σ|^{m−k}, and with the other roots sorted by distance d₁ ≤ d₂ ≤ …
+
+    |δσ| ≤ 2 min(E/(d₁d₂⋯), (E/(d₂d₃⋯))^{1/2}, (E/(d₃⋯))^{1/3}).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+LARGEST = 6
+"""Largest matrix treated by coefficients; beyond, they are too ill-conditioned (interpolate Z itself)."""
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[no-untyped-def]
+    """Fill ``values`` (count, m) with e₁…e_m of each matrix and ``bounds`` with their errors.
+
+    Faddeev and Le Verrier: N₀ = I, e_k = tr(Z N_{k−1})/k, N_k = e_k I − Z N_{k−1}; ∂e_k/∂Z = N_{k−1}ᵀ up to
+    sign, so an error ``error`` (count,) of Z in the Frobenius norm moves e_k by at most error·‖N_{k−1}‖.
+    """
+    m = matrix.shape[1]
+    for p in range(matrix.shape[0]):
+        n = np.eye(m)
+        product = np.empty((m, m))
+        for k in range(1, m + 1):
+            square, trace = 0.0, 0.0
+            for i in range(m):
+                for j in range(m):
+                    square += n[i, j] * n[i, j]
+                    total = 0.0
+                    for q in range(m):
+                        total += matrix[p, i, q] * n[q, j]
+                    product[i, j] = total
+                trace += product[i, i]
+            values[p, k - 1] = trace / k
+            bounds[p, k - 1] = error[p] * math.sqrt(square) + 1e-16 * m * abs(trace)
+            for i in range(m):
+                for j in range(m):
+                    n[i, j] = -product[i, j]
+                n[i, i] += trace / k
+
+
+@njit(cache=True, nogil=True)
+def radii(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
+    """Spectral radius, its error and the critical multiplier for rows of coefficients.
+
+    values, bounds (count, m) with m = 2, 4 or 6; radius, error (count,) and critical (count,) complex are
+    filled. Rows that are not finite give NaN.
+    """
+    m = values.shape[1]
+    roots = np.zeros(m, dtype=np.complex128)
+    warm = False
+    for p in range(values.shape[0]):
+        finite = True
+        for k in range(m):
+            finite = finite and math.isfinite(values[p, k]) and math.isfinite(bounds[p, k])
+        if not finite:
+            radius[p], error[p], critical[p] = math.nan, math.nan, complex(math.nan, math.nan)
+            warm = False
+            continue
+        if m == 2:
+            _quadratic(values[p, 0], values[p, 1], roots, 0)
+        elif m == 4:
+            if not _quartic(values[p], roots):
+                _companion(values[p], roots)
+        else:
+            if not _aberth(values[p], roots, warm):
+                _companion(values[p], roots)
+            warm = True
+        radius[p], error[p], critical[p] = _judge(roots, bounds[p])
+
+
+@njit(cache=True, nogil=True)
+def _judge(roots, bounds):  # type: ignore[no-untyped-def]
+    """ρ, the bound on its error, and the root of largest modulus."""
+    m = len(roots)
+    best, own, upper, which = -1.0, 0.0, 0.0, 0
+    size = np.empty(m)
+    for i in range(m):
+        size[i] = abs(roots[i])
+        if size[i] > best:
+            best, which = size[i], i
+    for i in range(m):
+        moved, power = 0.0, 1.0
+        for k in range(m - 1, -1, -1):
+            moved += bounds[k] * power
+            power *= size[i]
+        # A root far inside cannot become the largest by an error this small: skip its distances.
+        if i != which and size[i] + 2 * moved ** (1 / m) < best:
+            continue
+        first, second, product = math.inf, math.inf, 1.0
+        for j in range(m):
+            if j != i:
+                d = abs(roots[i] - roots[j])
+                product *= d
+                if d < first:
+                    first, second = d, first
+                elif d < second:
+                    second = d
+        bound = moved / product if product > 0 else math.inf
+        if m > 2:
+            rest = product / first if first > 0 else _rest(roots, i, 1)
+            if rest > 0:
+                bound = min(bound, math.sqrt(moved / rest))
+            rest = rest / second if second > 0 else 0.0
+            if rest > 0:
+                bound = min(bound, (moved / rest) ** (1 / 3))
+        bound = min(bound, moved ** (1 / m) if m > 2 else math.sqrt(moved))
+        bound = 2 * bound
+        if i == which:
+            own = bound
+        upper = max(upper, size[i] + bound)
+    return best, max(own, upper - best), roots[which]
+
+
+@njit(cache=True, nogil=True)
+def _rest(roots, i, skip):  # type: ignore[no-untyped-def]
+    """Product of the distances from root i, the ``skip`` smallest left out."""
+    d = np.sort(np.array([abs(roots[i] - r) for j, r in enumerate(roots) if j != i]))
+    product = 1.0
+    for q in range(skip, len(d)):
+        product *= d[q]
+    return product
+
+
+@njit(cache=True, nogil=True)
+def _quadratic(total, product, roots, at):  # type: ignore[no-untyped-def]
+    """Roots of x² − total x + product into two places of ``roots``."""
+    half = total / 2
+    under = half * half - product
+    if under >= 0:
+        far = half + math.copysign(math.sqrt(under), half)
+        roots[at] = far
+        roots[at + 1] = product / far if far != 0 else 0.0
+    else:
+        rise = math.sqrt(-under)
+        roots[at], roots[at + 1] = complex(half, rise), complex(half, -rise)
+
+
+@njit(cache=True, nogil=True)
+def _quartic(e, roots):  # type: ignore[no-untyped-def]
+    """Roots of x⁴ − e₁x³ + e₂x² − e₃x + e₄ with e₄ > 0; False where the check of the factors fails.
+
+    Scaled so that e₄ = 1 it is (x² − px + q)(x² − sx + t) with qt = 1. With w = q + t the largest root of the
+    resolvent w³ − bw² + (ac − 4)w − (a² + c² − 4b) all four are real; Newton's method then removes the
+    rounding that the square roots bring in.
+    """
+    if not e[3] > 0:
+        return False
+    scale2 = math.sqrt(e[3])
+    scale = math.sqrt(scale2)
+    a, b, c = e[0] / scale, e[1] / scale2, e[2] / (scale2 * scale)
+    w = _largest_cubic_root(-b, a * c - 4, 4 * b - a * a - c * c)
+    spread = math.sqrt(max(0.25 * a * a - b + w, 0.0))
+    apart = math.sqrt(max(0.25 * w * w - 1, 0.0))
+    p, s = 0.5 * a + spread, 0.5 * a - spread
+    q, t = 0.5 * w + apart, 0.5 * w - apart
+    if abs(p * q + s * t - c) < abs(p * t + s * q - c):
+        q, t = t, q
+    for _ in range(3):
+        p, s, q, t = _polish(a, b, c, p, s, q, t)
+    size = 1 + abs(a) + abs(b) + abs(c)
+    left = abs(p + s - a) + abs(q + t + p * s - b) + abs(p * t + s * q - c) + abs(q * t - 1)
+    if not left < 1e-13 * size:
+        return False
+    _quadratic(p * scale, q * scale2, roots, 0)
+    _quadratic(s * scale, t * scale2, roots, 2)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _polish(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
+    """One Newton step on p + s = a, q + t + ps = b, pt + sq = c, qt = 1, if it is a small one."""
+    r1, r2, r3, r4 = a - p - s, b - q - t - p * s, c - p * t - s * q, 1 - q * t
+    # With ds = r1 − dp: dq + dt = u − v dp and s dq + p dt = g − h dp.
+    v, u, h, g = s - p, r2 - p * r1, t - q, r3 - q * r1
+    den = p - s
+    slope = -t * v * den + (q - t) * (s * v - h)
+    if abs(slope) < 1e-14 or den == 0.0:
+        return p, s, q, t
+    dp = ((r4 - t * u) * den - (q - t) * (g - s * u)) / slope
+    dt = (g - h * dp - s * (u - v * dp)) / den
+    dq = u - v * dp - dt
+    if abs(dp) + abs(dq) + abs(dt) > 1e-2 * (1 + abs(p) + abs(q)):
+        return p, s, q, t
+    return p + dp, s + r1 - dp, q + dq, t + dt
+
+
+@njit(cache=True, nogil=True)
+def _largest_cubic_root(c2, c1, c0):  # type: ignore[no-untyped-def]
+    """Largest real root of x³ + c₂x² + c₁x + c₀."""
+    third = c2 / 3
+    p = c1 / 3 - third * third
+    q = third * third * third - third * c1 / 2 + c0 / 2
+    under = q * q + p * p * p
+    if under > 0:
+        big = -q - math.copysign(math.sqrt(under), q)
+        root = math.copysign(abs(big) ** (1 / 3), big)
+        x = (root - p / root if root != 0 else 0.0) - third
+    else:
+        m = math.sqrt(max(-p, 0.0))
+        cosine = -q / (m * m * m) if m > 0 else 1.0
+        x = 2 * m * math.cos(math.acos(min(1.0, max(-1.0, cosine))) / 3) - third
+    for _ in range(2):
+        slope = (3 * x + 2 * c2) * x + c1
+        if slope != 0:
+            step = (((x + c2) * x + c1) * x + c0) / slope
+            if abs(step) < 1e-4 * (1 + abs(x)):
+                x -= step
+    return x
+
+
+@njit(cache=True, nogil=True)
+def _aberth(e, roots, warm):  # type: ignore[no-untyped-def]
+    """All roots at once by Aberth's iteration, from the neighbouring pixel's roots where there are any."""
+    m = len(e)
+    if not warm:
+        size = abs(e[m - 1]) ** (1 / m)
+        for i in range(m):
+            angle = 2 * math.pi * (i + 0.3) / m
+            roots[i] = size * complex(math.cos(angle), math.sin(angle))
+    for i in range(m):
+        # Two starts in one place would move together for ever.
+        roots[i] *= complex(1.0 + 1e-9 * (i + 1), 1e-9 * (i - 2))
+    for _ in range(60):
+        largest = 0.0
+        for i in range(m):
+            x = roots[i]
+            value, slope, sign = complex(1.0, 0.0), complex(0.0, 0.0), 1.0
+            rounding = 1.0
+            for k in range(m):
+                sign = -sign
+                slope = slope * x + value
+                value = value * x + sign * e[k]
+                rounding = rounding * abs(x) + abs(value)
+            if abs(value) <= 2e-16 * rounding or value == 0:
+                continue
+            newton = slope / value
+            for j in range(m):
+                if j != i:
+                    apart = x - roots[j]
+                    if apart != 0:
+                        newton -= 1 / apart
+            if newton == 0:
+                return False
+            step = 1 / newton
+            roots[i] = x - step
+            largest = max(largest, abs(step) / (1e-300 + abs(x)))
+        if largest < 1e-13:
+            return True
+    # Multiple roots converge slowly; what the iteration leaves is below their own sensitivity.
+    return largest < 1e-7
+
+
+@njit(cache=True, nogil=True)
+def _companion(e, roots):  # type: ignore[no-untyped-def]
+    m = len(e)
+    companion = np.zeros((m, m), dtype=np.complex128)
+    sign = 1.0
+    for k in range(m):
+        companion[0, k] = sign * e[k]
+        sign = -sign
+        if k + 1 < m:
+            companion[k + 1, k] = 1.0
+    found = np.linalg.eigvals(companion)
+    for i in range(m):
+        roots[i] = found[i]
+
+
+def roots_of(values: Array) -> NDArray[np.complex128]:
+    """All multipliers from one row of coefficients e₁…e_m."""
+    signs = (-1.0) ** np.arange(1, len(values) + 1)
+    return np.roots(np.concatenate([[1.0], signs * values])).astype(complex)

@@ -1,0 +1,93 @@
+"""Generated kernels: written once into a cache folder, compiled once, loaded from there ever after.
+
+The folder's name is a hash of every source that goes into a kernel and of the versions that compile it, so
+an edit or an upgrade starts a new folder and nothing stale is ever run. ``TRUNNION_CACHE`` moves it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import numba
+import numpy as np
+from platformdirs import user_cache_dir
+
+from trunnion.numerics import chain_driver_source, chain_tables, half_period
+
+SMALL = 3
+"""Largest number of unknowns whose step is written out as straight-line code."""
+
+
+def chain_kernel(parent: tuple[int, ...], extra: bool) -> ModuleType:
+    """The compiled module for a tree of unknowns; its ``integrate`` fills Z, error and ∫tr(M⁻¹C)dτ."""
+    return _load(*_name(parent, extra))
+
+
+def chain_kernel_is_compiled(parent: tuple[int, ...], extra: bool) -> bool:
+    """False when the first use of this kernel will spend some seconds compiling."""
+    name, _ = _name(parent, extra)
+    return any((_folder() / "__pycache__").glob(f"{name}.integrate-*.nbi"))
+
+
+def _name(parent: tuple[int, ...], extra: bool) -> tuple[str, tuple[tuple[int, ...], bool] | None]:
+    if len(parent) > SMALL:
+        return "chain_wide", None
+    tree = "_".join("root" if p < 0 else str(p) for p in parent)
+    return f"chain_{tree}{'_extra' if extra else ''}", (parent, extra)
+
+
+@cache
+def _load(name: str, small: tuple[tuple[int, ...], bool] | None) -> ModuleType:
+    source = (
+        chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
+    )
+    path = _folder() / f"{name}.py"
+    if not path.exists() or path.read_text(encoding="utf-8") != source:
+        _write(path, source)
+    full = f"trunnion_kernels.{_digest()}.{name}"
+    spec = importlib.util.spec_from_file_location(full, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[full] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _write(path: Path, source: str) -> None:
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    with os.fdopen(handle, "w", encoding="utf-8") as stream:
+        stream.write(source)
+    os.replace(temporary, path)
+
+
+@cache
+def _folder() -> Path:
+    chosen = Path(os.environ.get("TRUNNION_CACHE") or user_cache_dir("trunnion", appauthor=False))
+    folder = chosen / _digest()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError:
+        # A read-only home is no reason to fail: compile for this process only.
+        folder = Path(tempfile.mkdtemp(prefix="trunnion-"))
+    return folder
+
+
+@cache
+def _digest() -> str:
+    hashed = hashlib.sha256()
+    for module in (chain_tables, half_period):
+        assert module.__file__ is not None
+        hashed.update(Path(module.__file__).read_bytes())
+    hashed.update(chain_driver_source.wide_module_source().encode())
+    hashed.update(chain_driver_source.lane_module_source((-1, 0), True).encode())
+    hashed.update(f"{numba.__version__} {np.__version__} {sys.version}".encode())
+    return hashed.hexdigest()[:16]

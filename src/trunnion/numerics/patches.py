@@ -1,0 +1,170 @@
+"""A function of two variables as adaptive Chebyshev patches, known to a stated error everywhere.
+
+The quantities interpolated are analytic (characteristic coefficients or entries of the monodromy matrix,
+never multipliers). A rectangle is sampled at Chebyshev nodes of the first kind; where the last coefficients
+are not small it is halved along the offending variable. A rectangle with fewer pixels than nodes is left to
+direct evaluation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import dct
+
+Array = NDArray[np.float64]
+Evaluate = Callable[[Array, Array], tuple[Array, Array]]
+"""(u, v) of shape (points,) → values and error bounds, each (points, quantities)."""
+
+NODES = 48
+"""Nodes per variable: enough for two dozen oscillations, and a multiple of the kernel's lanes."""
+TAIL = 4
+"""Trailing coefficients that must be small."""
+DEEPEST = 14
+"""Halvings after which a patch counts as not converging."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """Rectangle u₀ ≤ u ≤ u₁, v₀ ≤ v ≤ v₁ in the patch variables."""
+
+    u0: float
+    u1: float
+    v0: float
+    v1: float
+
+    def halves(self, along_u: bool, along_v: bool) -> Iterator[Box]:
+        """The two or four parts."""
+        um, vm = (self.u0 + self.u1) / 2, (self.v0 + self.v1) / 2
+        for ua, ub in ((self.u0, um), (um, self.u1)) if along_u else ((self.u0, self.u1),):
+            for va, vb in ((self.v0, vm), (vm, self.v1)) if along_v else ((self.v0, self.v1),):
+                yield Box(ua, ub, va, vb)
+
+    def contains(self, u: float, v: float) -> bool:
+        """Whether the point lies in the rectangle, edges included (and rounding forgiven)."""
+        du, dv = 1e-12 * (abs(self.u0) + abs(self.u1)), 1e-12 * (abs(self.v0) + abs(self.v1))
+        return self.u0 - du <= u <= self.u1 + du and self.v0 - dv <= v <= self.v1 + dv
+
+
+@dataclass(frozen=True)
+class Patch:
+    """coefficients (quantity, NODES, NODES) of T_i(v) T_j(u); error (quantity,) of values anywhere inside."""
+
+    box: Box
+    coefficients: Array
+    error: Array
+
+    def grid(self, u: Array, v: Array) -> Array:
+        """Values on the grid of ``u`` and ``v`` inside the box; shape (v, u, quantity)."""
+        across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1))
+        up = _chebyshev(_to_unit(v, self.box.v0, self.box.v1))
+        # (q, i, j) · (j, u), then (v, i) · (q, i, u)
+        return np.moveaxis(up.T @ (self.coefficients @ across), 0, -1)
+
+
+@dataclass(frozen=True)
+class PatchedFunction:
+    """Patches that converged, and rectangles left to direct evaluation."""
+
+    patches: tuple[Patch, ...]
+    direct: tuple[Box, ...]
+    evaluations: int = 0
+    stubborn: int = field(default=0)
+
+    def find(self, u: float, v: float) -> Patch | None:
+        """The patch that contains a point, or None."""
+        return next((p for p in self.patches if p.box.contains(u, v)), None)
+
+
+def build(
+    evaluate: Evaluate, box: Box, u_pixels: Array, v_pixels: Array, tolerance: float, tick: Callable[[float], None]
+) -> PatchedFunction:
+    """Patch ``box`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
+
+    ``u_pixels``, ``v_pixels`` tell where direct evaluation is cheaper; ``tick`` is called with the share of
+    the box that is settled.
+    """
+    patches: list[Patch] = []
+    direct: list[Box] = []
+    todo = [(box, 0)]
+    evaluations = stubborn = 0
+    whole = (box.u1 - box.u0) * (box.v1 - box.v0)
+    settled = 0.0
+    while todo:
+        sampled: list[tuple[Box, int]] = []
+        for part, depth in todo:
+            pixels = _inside(u_pixels, part.u0, part.u1) * _inside(v_pixels, part.v0, part.v1)
+            if pixels <= 0.8 * NODES**2 or depth > DEEPEST:
+                direct.append(part)
+                settled += (part.u1 - part.u0) * (part.v1 - part.v0)
+                stubborn += depth > DEEPEST
+            else:
+                sampled.append((part, depth))
+        todo = []
+        for part, depth, values, errors in _sample(evaluate, sampled):
+            evaluations += NODES**2
+            coefficients, tail_u, tail_v, error = _transform(values, errors)
+            along_u, along_v = bool(tail_u > tolerance), bool(tail_v > tolerance)
+            if along_u or along_v:
+                todo += [(half, depth + 1) for half in part.halves(along_u, along_v)]
+            else:
+                patches.append(Patch(part, coefficients, error))
+                settled += (part.u1 - part.u0) * (part.v1 - part.v0)
+            tick(min(settled / whole, 1.0))
+    return PatchedFunction(tuple(patches), tuple(direct), evaluations, stubborn)
+
+
+BATCH = 24
+"""Boxes sampled in one call: enough to keep every thread busy, few enough to bound memory."""
+
+
+def _sample(
+    evaluate: Evaluate, boxes: list[tuple[Box, int]]
+) -> Iterator[tuple[Box, int, Array, Array]]:
+    unit = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+    for start in range(0, len(boxes), BATCH):
+        batch = boxes[start : start + BATCH]
+        u = np.concatenate([np.tile(_from_unit(unit, b.u0, b.u1), NODES) for b, _ in batch])
+        v = np.concatenate([np.repeat(_from_unit(unit, b.v0, b.v1), NODES) for b, _ in batch])
+        values, errors = evaluate(u, v)
+        for k, (box, depth) in enumerate(batch):
+            part = slice(k * NODES**2, (k + 1) * NODES**2)
+            yield box, depth, values[part], errors[part]
+
+
+def _transform(values: Array, errors: Array) -> tuple[Array, float, float, Array]:
+    """Chebyshev coefficients, the relative tails along u and v, and the error of each quantity."""
+    quantities = values.shape[1]
+    samples = values.T.reshape(quantities, NODES, NODES)
+    coefficients = dct(dct(samples, type=2, axis=1), type=2, axis=2) / NODES**2
+    coefficients[:, 0, :] /= 2
+    coefficients[:, :, 0] /= 2
+    size = np.abs(coefficients)
+    tail_u, tail_v = size[:, :, -TAIL:].max(axis=2).sum(axis=1), size[:, -TAIL:, :].max(axis=1).sum(axis=1)
+    scale = np.maximum(np.abs(samples).max(axis=(1, 2)), 1.0)
+    worst_u, worst_v = (tail_u / scale).max(), (tail_v / scale).max()
+    if not np.isfinite(worst_u + worst_v):
+        return coefficients, np.inf, np.inf, np.full(quantities, np.inf)
+    # Interpolation at these nodes enlarges node errors by less than log(NODES) in each variable; in practice
+    # errors of neighbouring nodes are alike and are not enlarged at all.
+    return coefficients, float(worst_u), float(worst_v), tail_u + tail_v + errors.max(axis=0)
+
+
+def _inside(pixels: Array, low: float, high: float) -> int:
+    return int(np.count_nonzero((pixels >= low) & (pixels <= high)))
+
+
+def _to_unit(x: Array, low: float, high: float) -> Array:
+    return np.clip((2 * x - low - high) / (high - low), -1.0, 1.0)
+
+
+def _from_unit(t: Array, low: float, high: float) -> Array:
+    return (low + high) / 2 + (high - low) / 2 * t
+
+
+def _chebyshev(t: Array) -> Array:
+    """T_i(t), shape (NODES, points)."""
+    return np.cos(np.arange(NODES)[:, None] * np.arccos(t)[None, :])

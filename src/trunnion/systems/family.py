@@ -1,0 +1,79 @@
+"""A family of periodic linear systems over named parameters: what a stability chart of your own needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.errors import InputError
+from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PeriodicLinearFamily:
+    """M x″ + C x′ + K x = 0 with periodic coefficients that depend on parameters.
+
+    Parameters
+    ----------
+    period : the common period in τ.
+    coefficients : callable(τ, **parameters) → (M, C, K). τ has shape (1, time) and each parameter (case, 1),
+        so that plain arithmetic broadcasts; each matrix is (n, n), or (case or 1, time or 1, n, n).
+    size : number of coordinates n.
+    parameters : default value of each parameter.
+    units : unit of each parameter, where it has one.
+
+    >>> import numpy as np
+    >>> def mathieu(tau, a, q):
+    ...     return np.eye(1), np.zeros((1, 1)), (a - 2 * q * np.cos(2 * tau))[..., None, None]
+    >>> family = PeriodicLinearFamily(np.pi, mathieu, 1, {"a": 1.0, "q": 0.5})
+    >>> family.matrices(np.zeros(3), {"a": np.array([1.0, 2.0])})[2].shape
+    (2, 3, 1, 1)
+    """
+
+    period: float
+    coefficients: Callable[..., tuple[Array, Array, Array]]
+    size: int
+    parameters: Mapping[str, float]
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.period) and self.period > 0):
+            raise InputError("must be a positive number", element="family", key="period", value=self.period)
+        if self.size < 1:
+            raise InputError("must be at least 1", element="family", key="size", value=self.size)
+
+    def matrices(self, tau: Array, values: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+        """M, C, K of shape (case, time, n, n) at times (time,) for parameter values (case,)."""
+        cases = max((np.size(v) for v in values.values()), default=1)
+        full = {k: np.broadcast_to(v, (cases,))[:, None] for k, v in {**self.parameters, **values}.items()}
+        parts = self.coefficients(np.asarray(tau)[None, :], **full)
+        shape = (cases, np.size(tau), self.size, self.size)
+        try:
+            m, c, k = (np.broadcast_to(np.asarray(p, dtype=float), shape) for p in parts)
+        except ValueError:
+            seen = ", ".join(str(np.shape(p)) for p in parts)
+            raise InputError(
+                f"returned arrays of shape {seen} that do not broadcast to (case, time, {self.size}, {self.size})",
+                element="family",
+                key="coefficients",
+                remedy="end each with the two matrix axes, e.g. (a - 2*q*cos(2*tau))[..., None, None]",
+            ) from None
+        return m, c, k
+
+    def system(self, **values: float) -> PeriodicLinearSystem:
+        """One member as a ``PeriodicLinearSystem``, for ``stability``."""
+        given = {k: np.array([float(v)]) for k, v in {**self.parameters, **values}.items()}
+
+        def at(tau: Array) -> Matrices:
+            m, c, k = (part[0] for part in self.matrices(tau, given))
+            return Matrices(m, c, k, np.zeros((len(tau), self.size)))
+
+        mean = at(self.period * (np.arange(64) + 0.5) / 64)
+        squares = np.linalg.eigvals(np.linalg.solve(mean.mass.mean(0), mean.stiffness.mean(0)))
+        found = tuple(map(float, np.sqrt(np.sort(np.maximum(squares.real, 0.0)))))
+        return PeriodicLinearSystem(self.period, at, self.size, frequencies=found)
