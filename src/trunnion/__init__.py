@@ -15,6 +15,13 @@ from typing import TYPE_CHECKING, Any
 from trunnion._version import __version__
 
 if TYPE_CHECKING:
+    from trunnion.analyses.kinetostatics import (
+        CrossFriction,
+        assembly_sensitivity,
+        check_limits,
+        kinetostatics,
+        phase_forks,
+    )
     from trunnion.analyses.natural_frequencies import natural_frequencies
     from trunnion.analyses.resonance_speeds import resonance_speeds
     from trunnion.analyses.stability import stability
@@ -22,6 +29,7 @@ if TYPE_CHECKING:
     from trunnion.driveline import (
         ConstantSpeed,
         Disk,
+        DoubleCardanJoint,
         Driveline,
         HookeJoint,
         IdealJoint,
@@ -29,6 +37,7 @@ if TYPE_CHECKING:
         Operation,
         Ratio,
         Shaft,
+        TripodJoint,
         deg,
         dump,
         dumps,
@@ -37,8 +46,11 @@ if TYPE_CHECKING:
         loads,
         rpm,
     )
+    from trunnion.driveline.cardan_angles import cardan_line
+    from trunnion.driveline.layout import combined_angle, layout
     from trunnion.driveline.parameters import Parameter, Term, pack
     from trunnion.errors import ComputationError, InputError, InputRemark
+    from trunnion.plots.layout import sketch
     from trunnion.published import catalogue
     from trunnion.systems.family import PeriodicLinearFamily
     from trunnion.systems.periodic_linear import PeriodicLinearSystem
@@ -50,6 +62,8 @@ _HOME = {
     "Disk": "trunnion.driveline",
     "HookeJoint": "trunnion.driveline",
     "IdealJoint": "trunnion.driveline",
+    "TripodJoint": "trunnion.driveline",
+    "DoubleCardanJoint": "trunnion.driveline",
     "Ratio": "trunnion.driveline",
     "Driveline": "trunnion.driveline",
     "Operation": "trunnion.driveline",
@@ -58,6 +72,10 @@ _HOME = {
     "loads": "trunnion.driveline",
     "dump": "trunnion.driveline",
     "dumps": "trunnion.driveline",
+    "layout": "trunnion.driveline.layout",
+    "combined_angle": "trunnion.driveline.layout",
+    "cardan_line": "trunnion.driveline.cardan_angles",
+    "sketch": "trunnion.plots.layout",
     "catalogue": "trunnion.published",
     "deg": "trunnion.driveline",
     "rpm": "trunnion.driveline",
@@ -72,6 +90,11 @@ _HOME = {
     "stability": "trunnion.analyses.stability",
     "stability_chart": "trunnion.analyses.stability_chart",
     "load_chart": "trunnion.analyses.stability_chart",
+    "kinetostatics": "trunnion.analyses.kinetostatics",
+    "CrossFriction": "trunnion.analyses.kinetostatics",
+    "check_limits": "trunnion.analyses.kinetostatics",
+    "phase_forks": "trunnion.analyses.kinetostatics",
+    "assembly_sensitivity": "trunnion.analyses.kinetostatics",
     "PeriodicLinearSystem": "trunnion.systems.periodic_linear",
     "PeriodicLinearFamily": "trunnion.systems.family",
     # errors

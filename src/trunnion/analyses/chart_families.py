@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Protocol
 
 import numpy as np
@@ -20,10 +20,12 @@ from trunnion.driveline.parameters import SPEED
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
-from trunnion.numerics.chain_monodromy import Window, chain_monodromy, symmetry_phase
-from trunnion.numerics.chain_tables import ChainLanes
+from trunnion.numerics.chain_monodromy import Window, chain_monodromy, chain_propagator, complete, symmetry_phase
+from trunnion.numerics.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.characteristic import LARGEST, coefficients_from_matrices
 from trunnion.numerics.dense_monodromy import propagate
+from trunnion.numerics.patches import NODES, Box, Evaluate, Grid
+from trunnion.numerics.slabs import Slabs, build_slabs, on_grids, slab_count
 from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
@@ -38,6 +40,9 @@ class ChartFamily(Protocol):
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """Quantities and their error bounds at points (x, y), each (points, quantities)."""
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """How to sample grids in the patch variables when building the patches of ``box``."""
 
     def to_patch(self, value: Array, of_x: bool) -> Array:
         """Axis values → the variable in which the quantities are smooth."""
@@ -98,8 +103,7 @@ class LineFamily:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
         program, period = chain_program(self.assembly.topology), self.period
         lanes = self.lanes(x, y)
-        begin = symmetry_phase(program, lanes, period)
-        window = Window(0.0 if begin is None else begin, period, begin is not None)
+        window = _window(program, lanes, period)
         # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
         order = _kinematic_order(lanes)
         sorted_lanes = lanes if order is None else ChainLanes(*(part[..., order] for part in lanes))
@@ -113,6 +117,41 @@ class LineFamily:
         """See ``ChartFamily``."""
         return quantities(*self.matrices(x, y, tolerance, threads))
 
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """By slabs where the period spans many radians of the highest mode, else by plain integration."""
+        corners = self._patch_lanes(np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2))
+        program = chain_program(self.assembly.topology)
+        window = _window(program, corners, self.period)
+        length = window.period / 2 if window.half else window.period
+        # ν is the root mean square of the modes; the highest is at most √n times that.
+        count = slab_count(float(corners.frequency.max()) * np.sqrt(self.size), length)
+        if count < FEWEST_SLABS or pixels < FEWEST_PIXELS:
+            return grid_by_grid(self, tolerance, threads)
+
+        def propagate(u: Array, v: Array, begin: float, stretch: float) -> tuple[Array, Array, Array]:
+            asked = tolerance / (4 * count)
+            return chain_propagator(program, self._patch_lanes(u, v), begin, stretch, asked, threads)
+
+        @cache
+        def slabs() -> Slabs:
+            return build_slabs(propagate, box, window.begin, length, 2 * self.size, count, tolerance / 4)
+
+        def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
+            return [
+                quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
+                for grid, parts in zip(grids, on_grids(slabs(), grids, threads), strict=True)
+            ]
+
+        # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
+        return Sampler(evaluate, direct_below=-1)
+
+    def _patch_lanes(self, u: Array, v: Array) -> ChainLanes:
+        return self.lanes(self.from_patch(u, True), self.from_patch(v, False))
+
+    def _grid_lanes(self, grid: Grid) -> ChainLanes:
+        u, v = grid
+        return self._patch_lanes(np.tile(u, len(v)), np.repeat(v, len(u)))
+
     def to_patch(self, value: Array, of_x: bool) -> Array:
         """1/Ω for a speed axis, the value itself otherwise."""
         return self._swap(value, of_x)
@@ -124,6 +163,40 @@ class LineFamily:
     def _swap(self, value: Array, of_x: bool) -> Array:
         axis = self.x if of_x else self.y
         return 1 / np.asarray(value) if axis.label == SPEED else np.asarray(value, dtype=float)
+
+
+FEWEST_SLABS = 3
+"""Below this a slab is not much shorter than the period, and patching it saves nothing."""
+
+
+FEWEST_PIXELS = 20_000
+"""Below this, pixels are integrated in less time than slabs are patched."""
+
+
+@dataclass(frozen=True)
+class Sampler:
+    """``evaluate`` for ``patches.build``, and the number of pixels up to which a box is not worth a patch."""
+
+    evaluate: Evaluate
+    direct_below: float
+
+
+def grid_by_grid(family: ChartFamily, tolerance: float, threads: int) -> Sampler:
+    """Sample grids by plain evaluation of all their points in one call."""
+
+    def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
+        u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
+        v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
+        values, bounds = family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
+        cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
+        return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
+
+    return Sampler(evaluate, 0.8 * NODES**2)
+
+
+def _window(program: ChainProgram, lanes: ChainLanes, period: float) -> Window:
+    begin = symmetry_phase(program, lanes, period)
+    return Window(0.0 if begin is None else begin, period, begin is not None)
 
 
 def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
@@ -179,6 +252,10 @@ class OwnFamily:
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
         return quantities(*self.matrices(x, y, tolerance, threads))
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """See ``ChartFamily``."""
+        return grid_by_grid(self, tolerance, threads)
 
     def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
         values = {self.x_name: np.array([x]), self.y_name: np.array([y])}

@@ -25,18 +25,22 @@ class Pixels:
 
 
 def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
-    """Pixels from quantities (points, q) and their bounds (points, q); see ``chart_families.quantities``."""
-    m, trace = 2 * size, values[:, -1]
+    """Pixels from quantities (q, points) and their bounds (q, points) or (q, 1).
+
+    See ``chart_families.quantities`` for what the quantities are.
+    """
+    m, trace = 2 * size, values[-1]
     if m <= LARGEST and not rigid_body:
-        e, de = np.ascontiguousarray(values[:, :m]), np.ascontiguousarray(bounds[:, :m])
+        e, de = values[:m].copy(), bounds[:m].copy()
         # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
-        e[:, -1] = np.exp(-trace)
-        de[:, -1] = e[:, -1] * bounds[:, -1] + 1e-15
-        radius, error = np.empty(len(e)), np.empty(len(e))
-        critical = np.empty(len(e), dtype=complex)
+        e[-1] = np.exp(-trace)
+        de[-1] = bounds[-1] + 1e-15
+        radius, error = np.empty(len(trace)), np.empty(len(trace))
+        critical = np.empty(len(trace), dtype=complex)
         radii(e, de, radius, error, critical)
     else:
-        radius, error, critical = _largest(values, bounds, m, rigid_body)
+        full = np.broadcast_to(bounds, values.shape)
+        radius, error, critical = _largest(values.T, full.T, m, rigid_body)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
 
 

@@ -69,7 +69,7 @@ def overview(
     speed: float | None = None,
     unit: str | None = None,
     points: tuple[int, int] = CHART_POINTS,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Overview:
     """Frequencies, resonance speeds, stability and findings of ``line`` over the range it runs in.
 
@@ -79,7 +79,7 @@ def overview(
     speed : operating speed [rad/s]; default the one of the description.
     unit : speed unit of the findings' sentences; default as ``speed_unit``.
     points : speeds × angles of the chart.
-    progress : called as progress(rows done, rows) while the chart is computed.
+    progress : called as progress(share done) while the chart is computed.
 
     Raises
     ------

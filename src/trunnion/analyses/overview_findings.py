@@ -53,13 +53,13 @@ def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iter
         there = stability(assembly, float(sweep.x[worst]))
         cause = f" ({_named(there.resonance)})" if there.resonance else ""
         edges = f"from {_plain(float(sweep.x[first]), unit)} to {_speed(float(sweep.x[last]), unit)}"
+        at = f"worst at {_speed(there.speed, unit)}, where"
         if first == last:
-            edges = f"at {_speed(float(sweep.x[first]), unit)}"
+            edges, at = f"at {_speed(there.speed, unit)}", "there"
         yield Finding(
             Gravity.DANGER,
-            f"At its own joint angles the line is unstable {edges}{cause}; worst at "
-            f"{_speed(there.speed, unit)}, where a disturbance doubles every "
-            f"{np.log(2) / there.growth_rate:.3g} s.",
+            f"At its own joint angles the line is unstable {edges}{cause}; {at} a disturbance doubles "
+            f"every {np.log(2) / there.growth_rate:.3g} s.",
         )
     if not bands and np.all(verdict == Verdict.STABLE):
         worst = int(np.argmax(radius))

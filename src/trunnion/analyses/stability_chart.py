@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,10 +157,8 @@ def _patched(
     if box.u0 == box.u1 or box.v0 == box.v1:
         return PatchedFunction((), (box,))
 
-    def evaluate(u: Array, v: Array) -> tuple[Array, Array]:
-        return family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance / 4, threads)
-
-    return build(evaluate, box, u, v, tolerance / 4, tell)
+    sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads)
+    return build(sampler.evaluate, box, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
 
 
 def _fill(
@@ -172,38 +171,46 @@ def _fill(
     left = np.ones(shape, dtype=bool)
     u, v = family.to_patch(x, True), family.to_patch(y, False)
 
-    def put(rows: NDArray[np.intp], columns: NDArray[np.intp], values: Array, bounds: Array) -> None:
+    def put(where: Any, values: Array, bounds: Array) -> None:
         found = judge(values, bounds, family.size, family.rigid_body)
-        radius[rows, columns], error[rows, columns] = found.radius, found.error
-        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
+        radius[where], error[where] = found.radius.reshape(radius[where].shape), found.error.reshape(radius[where].shape)
+        critical[where] = found.critical.reshape(radius[where].shape)
+        verdict[where] = found.verdict.reshape(radius[where].shape)
 
-    def fill_patch(task: tuple[int, NDArray[np.intp], NDArray[np.intp]]) -> None:
+    def fill_patch(task: tuple[int, slice, slice]) -> None:
         index, rows, columns = task
         patch = function.patches[index]
-        for part in _strips(rows, len(columns) * len(patch.error)):
-            values = patch.grid(u[columns], v[part]).reshape(len(part) * len(columns), -1)
-            bounds = np.broadcast_to(patch.error, values.shape)
-            put(np.repeat(part, len(columns)), np.tile(columns, len(part)), values, bounds)
+        width = (columns.stop - columns.start) * len(patch.error)
+        for part in _strips(rows, width):
+            values = patch.grid(u[columns], v[part])
+            put((part, columns), values.reshape(len(values), -1), patch.error[:, None])
 
     tasks = []
     for index, patch in enumerate(function.patches):
-        rows = np.flatnonzero((v >= patch.box.v0) & (v <= patch.box.v1))
-        columns = np.flatnonzero((u >= patch.box.u0) & (u <= patch.box.u1))
-        if len(rows) and len(columns):
+        rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
+        if rows.stop > rows.start and columns.stop > columns.start:
             tasks.append((index, rows, columns))
-            left[np.ix_(rows, columns)] = False
+            left[rows, columns] = False
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(fill_patch, tasks))
-    rows, columns = np.nonzero(left)
-    for start in range(0, len(rows), 65536):
-        r, c = rows[start : start + 65536], columns[start : start + 65536]
-        put(r, c, *family.evaluate(x[c], y[r], tolerance / 4, threads))
+    r, c = np.nonzero(left)
+    for start in range(0, len(r), 65536):
+        here = (r[start : start + 65536], c[start : start + 65536])
+        values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
+        put(here, np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T))
     return Pixels(radius, error, critical, verdict)
 
 
-def _strips(rows: NDArray[np.intp], per_row: int, limit: int = 2_000_000) -> list[NDArray[np.intp]]:
-    """Rows in strips of at most ``limit`` numbers, which bounds the memory of a patch."""
-    return np.array_split(rows, max(1, -(-len(rows) * per_row // limit)))
+def _between(axis: Array, low: float, high: float) -> slice:
+    """Places of a monotonic axis that lie between two values."""
+    inside = np.flatnonzero((axis >= low) & (axis <= high))
+    return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
+
+
+def _strips(rows: slice, per_row: int, limit: int = 500_000) -> list[slice]:
+    """Rows in strips of at most ``limit`` numbers: bounded memory, and work for every thread's cache."""
+    step = max(1, limit // max(per_row, 1))
+    return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]
 
 
 def _pointwise(
@@ -213,9 +220,9 @@ def _pointwise(
         u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
         patch = function.find(u, v)
         if patch is not None:
-            values, bounds = patch.grid(np.array([u]), np.array([v]))[0], patch.error[None]
+            values, bounds = patch.grid(np.array([u]), np.array([v])).reshape(-1, 1), patch.error[:, None]
         else:
-            values, bounds = family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1)
+            values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.rigid_body)
         return ChartPoint(
             x=x,
@@ -223,7 +230,7 @@ def _pointwise(
             spectral_radius=float(found.radius[0]),
             error_estimate=float(found.error[0]),
             verdict=Verdict(int(found.verdict[0])),
-            multipliers=multipliers_of(values[0], family.size),
+            multipliers=multipliers_of(values[:, 0], family.size),
             interpolated=patch is not None,
         )
 
@@ -245,7 +252,7 @@ def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, 
     rng = np.random.default_rng(chart.verdict.size)
     rows, columns = rng.integers(0, len(chart.y), SPOTS), rng.integers(0, len(chart.x), SPOTS)
     values, bounds = family.evaluate(chart.x[columns], chart.y[rows], max(tolerance * 1e-3, 1e-13), threads)
-    found = judge(values, bounds, family.size, family.rigid_body)
+    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
     off = np.abs(found.radius - chart.spectral_radius[rows, columns])
     allowed = chart.error_estimate[rows, columns] + found.error
     ratio = float(np.nanmax(off / allowed)) if np.isfinite(off).any() else float("nan")

@@ -41,6 +41,9 @@ UNITS = {
     "load_torque": "N*m",
     "angle": "rad",
     "plane": "rad",
+    "radius": "m",
+    "distance_ratio": "1",
+    "yoke_length": "m",
     "damping_ratio": "1",
     "damping_ratio_frequency": "rad/s",
 }

@@ -207,7 +207,7 @@ def _walk(line: Driveline) -> _Draft:
                 "is a double-Cardan joint without centring, which the dynamic equations do not have",
                 element=line.names[i],
                 key="distance_ratio",
-                remedy="leave distance_ratio out for a centred joint, or write two HookeJoints with a Shaft and Disk",
+                remedy="leave it out for a centred joint, or write two HookeJoints with a Shaft and a Disk",
             )
         elif not isinstance(element, IdealJoint | DoubleCardanJoint):
             raise InputError("is not an element of a driveline", element=line.names[i])

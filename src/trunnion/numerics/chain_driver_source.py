@@ -32,7 +32,6 @@ from trunnion.numerics.chain_tables import (
     fill,
     gather,
 )
-from trunnion.numerics.half_period import whole_from_half
 """
 
 _LANES_STATE = """\
@@ -140,37 +139,21 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
 
 
 @njit(cache=True, nogil=True)
-def integrate(program, lanes, first, last, begin, period, tolerance, half, extra, most_steps, matrix, error, trace):
+def integrate(program, lanes, first, last, begin, length, tolerance, extra, most_steps, matrix, error, trace):
     n = len(program.parent)
     out = np.empty((LANES, 2 * n, 2 * n))
     block_error, block_trace = np.empty(LANES), np.empty(LANES)
-    start, end, damping = np.empty(n), np.empty(n), np.empty(n)
-    spare = np.empty((2, 2 * n, 2 * n))
-    length = period / 2 if half else period
     steps = 0
     for at in range(first, last, LANES):
         block = gather(program, lanes, at)
-        table, ends = empty_table(program, block), empty_table(program, block)
-        asked = tolerance / 4 if half else tolerance
+        table = empty_table(program, block)
         steps += propagate_block(
-            program, block, table, begin, length, asked, extra, most_steps, out, block_error, block_trace
+            program, block, table, begin, length, tolerance, extra, most_steps, out, block_error, block_trace
         )
-        if half:
-            fill(program, block, begin, length, ENDS, extra, ends)
         for l in range(min(LANES, last - at)):
-            if half:
-                for i in range(n):
-                    start[i] = ends[i * PER_TABLE + NEAR * LANES + l]
-                    end[i] = ends[i * PER_TABLE + PER_ROW + NEAR * LANES + l]
-                    damping[i] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + l]
-                nu = block.unknown[FREQUENCY * LANES + l]
-                factor = whole_from_half(program.parent, start, end, damping, nu, out[l], spare, matrix[at + l])
-                error[at + l] = factor * block_error[l]
-                trace[at + l] = 2 * block_trace[l]
-            else:
-                matrix[at + l] = out[l]
-                error[at + l] = block_error[l]
-                trace[at + l] = block_trace[l]
+            matrix[at + l] = out[l]
+            error[at + l] = block_error[l]
+            trace[at + l] = block_trace[l]
     return steps
 """
 
@@ -188,4 +171,4 @@ def wide_module_source() -> str:
 def _nodes() -> str:
     # The embedded estimate is of order 5; the order-8 solution that is kept was never further off than a
     # twentieth of it on random chains (see tests/laws), so a tenth of it is reported and controlled.
-    return f"LOCAL_TO_TRUE = 0.1\nENDS = np.array([0.0, 1.0])\nC = np.array({[float(c) for c in C]!r})\nB = np.array({[float(b) for b in B]!r})\n"
+    return f"LOCAL_TO_TRUE = 0.1\nC = np.array({[float(c) for c in C]!r})\nB = np.array({[float(b) for b in B]!r})\n"

@@ -9,6 +9,7 @@ allow (see ``half_period``).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from trunnion.numerics.chain_tables import LANES, ChainLanes, ChainProgram
 from trunnion.numerics.compiled import chain_kernel
+from trunnion.numerics.half_period import whole_periods
 
 Array = NDArray[np.float64]
 MOST_STEPS = 200_000
@@ -43,6 +45,16 @@ def chain_monodromy(
     The error sums the local errors of the embedded pair, scaled by the norm of Z. A lane whose integration
     fails has NaN. Threads share blocks of lanes; the kernel releases the interpreter lock.
     """
+    length = window.period / 2 if window.half else window.period
+    asked = tolerance / 4 if window.half else tolerance
+    phi, error, trace = chain_propagator(program, lanes, window.begin, length, asked, threads)
+    return complete(program, lanes, window, phi, error, trace, threads)
+
+
+def chain_propagator(
+    program: ChainProgram, lanes: ChainLanes, begin: float, length: float, tolerance: float, threads: int = 1
+) -> tuple[Array, Array, Array]:
+    """The same for any stretch of input angle from ``begin`` on."""
     n, count = lanes.stiffness.shape
     matrix = np.empty((count, 2 * n, 2 * n))
     error, trace = np.empty(count), np.empty(count)
@@ -51,14 +63,33 @@ def chain_monodromy(
 
     def run(first: int, last: int) -> None:
         kernel.integrate(
-            program, lanes, first, last, window.begin, window.period, tolerance, window.half, extra,
-            MOST_STEPS, matrix, error, trace,
-        )  # fmt: skip
+            program, lanes, first, last, begin, length, tolerance, extra, MOST_STEPS, matrix, error, trace
+        )
 
-    if threads <= 1 or count <= LANES:
+    _in_pieces(run, count, threads)
+    return matrix, error, trace
+
+
+def complete(
+    program: ChainProgram, lanes: ChainLanes, window: Window, phi: Array, error: Array, trace: Array, threads: int = 1
+) -> tuple[Array, Array, Array]:
+    """Monodromy matrices from propagators over the window's length: over half the period where that suffices."""
+    if not window.half:
+        return phi, error, trace
+    matrix, error = np.empty_like(phi), error.copy()
+
+    def run(first: int, last: int) -> None:
+        whole_periods(program, lanes, first, last, window.begin, window.period / 2, phi, error, matrix)
+
+    _in_pieces(run, len(phi), threads)
+    return matrix, error, 2 * trace
+
+
+def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> None:
+    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together."""
+    if threads <= 1 or count <= 4 * LANES:
         run(0, count)
-        return matrix, error, trace
-    # Several pieces per thread, because slow lanes (low speeds) stand together.
+        return
     blocks = -(-count // LANES)
     edges = np.unique(np.linspace(0, blocks, 8 * threads + 1).astype(int)) * LANES
     with ThreadPoolExecutor(threads) as pool:
@@ -67,7 +98,6 @@ def chain_monodromy(
         ]
         for piece in pieces:
             piece.result()
-    return matrix, error, trace
 
 
 def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:

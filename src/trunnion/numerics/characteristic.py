@@ -52,85 +52,92 @@ def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[n
 
 @njit(cache=True, nogil=True)
 def radii(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
-    """Spectral radius, its error and the critical multiplier for rows of coefficients.
+    """Spectral radius, its error and the critical multiplier for columns of coefficients.
 
-    values, bounds (count, m) with m = 2, 4 or 6; radius, error (count,) and critical (count,) complex are
-    filled. Rows that are not finite give NaN.
+    values (m, count) with m = 2, 4 or 6; bounds (m, count), or (m, 1) where all columns share them; radius,
+    error (count,) and critical (count,) complex are filled. Columns that are not finite give NaN.
     """
-    m = values.shape[1]
+    m, count = values.shape
     roots = np.zeros(m, dtype=np.complex128)
+    e, size = np.empty(m), np.empty(m)
     warm = False
-    for p in range(values.shape[0]):
-        finite = True
+    for p in range(count):
+        b = p if bounds.shape[1] > 1 else 0
+        total = 0.0
         for k in range(m):
-            finite = finite and math.isfinite(values[p, k]) and math.isfinite(bounds[p, k])
-        if not finite:
+            e[k] = values[k, p]
+            total += e[k] + bounds[k, b]
+        if not math.isfinite(total):
             radius[p], error[p], critical[p] = math.nan, math.nan, complex(math.nan, math.nan)
             warm = False
             continue
         if m == 2:
-            _quadratic(values[p, 0], values[p, 1], roots, 0)
+            _quadratic(e[0], e[1], roots, 0)
         elif m == 4:
-            if not _quartic(values[p], roots):
-                _companion(values[p], roots)
+            if not _quartic(e, roots):
+                _companion(e, roots)
         else:
-            if not _aberth(values[p], roots, warm):
-                _companion(values[p], roots)
+            if not _aberth(e, roots, warm):
+                _companion(e, roots)
             warm = True
-        radius[p], error[p], critical[p] = _judge(roots, bounds[p])
+        which = 0
+        for i in range(m):
+            size[i] = math.sqrt(roots[i].real ** 2 + roots[i].imag ** 2)
+            if size[i] > size[which]:
+                which = i
+        own = _bound(roots, size, which, bounds, b)
+        upper = size[which] + own
+        for i in range(m):
+            if i != which and not _far_inside(size[i], size[which], bounds, b, m):
+                upper = max(upper, size[i] + _bound(roots, size, i, bounds, b))
+        radius[p], error[p], critical[p] = size[which], upper - size[which], roots[which]
 
 
 @njit(cache=True, nogil=True)
-def _judge(roots, bounds):  # type: ignore[no-untyped-def]
-    """ρ, the bound on its error, and the root of largest modulus."""
+def _moved(size, bounds, b, m):  # type: ignore[no-untyped-def]
+    """E, how far the polynomial may be off at a root of this modulus."""
+    moved = 0.0
+    for k in range(m):
+        moved = moved * size + bounds[k, b]
+    return moved
+
+
+@njit(cache=True, nogil=True)
+def _far_inside(size, largest, bounds, b, m):  # type: ignore[no-untyped-def]
+    """Whether a root cannot become the largest whatever its neighbours: |δσ| ≤ 2E^{1/m} at worst."""
+    margin = 0.5 * (largest - size)
+    power = margin
+    for _ in range(m - 1):
+        power *= margin
+    return power > _moved(size, bounds, b, m)
+
+
+@njit(cache=True, nogil=True)
+def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
     m = len(roots)
-    best, own, upper, which = -1.0, 0.0, 0.0, 0
-    size = np.empty(m)
-    for i in range(m):
-        size[i] = abs(roots[i])
-        if size[i] > best:
-            best, which = size[i], i
-    for i in range(m):
-        moved, power = 0.0, 1.0
-        for k in range(m - 1, -1, -1):
-            moved += bounds[k] * power
-            power *= size[i]
-        # A root far inside cannot become the largest by an error this small: skip its distances.
-        if i != which and size[i] + 2 * moved ** (1 / m) < best:
-            continue
-        first, second, product = math.inf, math.inf, 1.0
-        for j in range(m):
-            if j != i:
-                d = abs(roots[i] - roots[j])
-                product *= d
-                if d < first:
-                    first, second = d, first
-                elif d < second:
-                    second = d
-        bound = moved / product if product > 0 else math.inf
-        if m > 2:
-            rest = product / first if first > 0 else _rest(roots, i, 1)
-            if rest > 0:
-                bound = min(bound, math.sqrt(moved / rest))
-            rest = rest / second if second > 0 else 0.0
-            if rest > 0:
-                bound = min(bound, (moved / rest) ** (1 / 3))
-        bound = min(bound, moved ** (1 / m) if m > 2 else math.sqrt(moved))
-        bound = 2 * bound
-        if i == which:
-            own = bound
-        upper = max(upper, size[i] + bound)
-    return best, max(own, upper - best), roots[which]
-
-
-@njit(cache=True, nogil=True)
-def _rest(roots, i, skip):  # type: ignore[no-untyped-def]
-    """Product of the distances from root i, the ``skip`` smallest left out."""
-    d = np.sort(np.array([abs(roots[i] - r) for j, r in enumerate(roots) if j != i]))
-    product = 1.0
-    for q in range(skip, len(d)):
-        product *= d[q]
-    return product
+    moved = _moved(size[i], bounds, b, m)
+    first, second, rest = math.inf, math.inf, 1.0
+    for j in range(m):
+        if j != i:
+            x, y = roots[i].real - roots[j].real, roots[i].imag - roots[j].imag
+            d = math.sqrt(x * x + y * y)
+            if d < first:
+                first, second, d = d, first, second
+            elif d < second:
+                second, d = d, second
+            if d < math.inf:
+                rest *= d
+    # rest: product of all but the two smallest distances. One root, two or three move together as the
+    # distances are large or small beside what the error can do.
+    if m == 2:
+        return 2 * (moved / first if first * first > moved else math.sqrt(moved))
+    if rest == 0.0:
+        return 2 * moved ** (1 / m)
+    alone = moved / rest
+    if alone > second * second * second:
+        return 2 * alone ** (1 / 3)
+    pair = alone / second
+    return 2 * (math.sqrt(pair) if pair > first * first else pair / first)
 
 
 @njit(cache=True, nogil=True)

@@ -16,6 +16,42 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from trunnion.numerics.chain_tables import (
+    DAMPING,
+    FREQUENCY,
+    LANES,
+    NEAR,
+    PER_ROW,
+    PER_TABLE,
+    PER_UNKNOWN,
+    empty_table,
+    fill,
+    gather,
+)
+
+_ENDS = np.array([0.0, 1.0])
+
+
+@njit(cache=True, nogil=True)
+def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):  # type: ignore[no-untyped-def]
+    """Z of lanes first…last from their propagators ``phi`` over ``half``, and their errors in place."""
+    n = len(program.parent)
+    start, end, damping = np.empty(n), np.empty(n), np.empty(n)
+    spare = np.empty((2, 2 * n, 2 * n))
+    for at in range(first, last, LANES):
+        block = gather(program, lanes, at)
+        table = empty_table(program, block)
+        fill(program, block, begin, half, _ENDS, False, table)
+        for lane in range(min(LANES, last - at)):
+            for i in range(n):
+                start[i] = table[i * PER_TABLE + NEAR * LANES + lane]
+                end[i] = table[i * PER_TABLE + PER_ROW + NEAR * LANES + lane]
+                damping[i] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + lane]
+            nu = block.unknown[FREQUENCY * LANES + lane]
+            error[at + lane] *= whole_from_half(
+                program.parent, start, end, damping, nu, phi[at + lane], spare, matrix[at + lane]
+            )
+
 
 @njit(cache=True, nogil=True)
 def whole_from_half(parent, near_start, near_end, damping, frequency, phi, spare, z):  # type: ignore[no-untyped-def]

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.fft import dct
 
 Array = NDArray[np.float64]
-Evaluate = Callable[[Array, Array], tuple[Array, Array]]
-"""(u, v) of shape (points,) → values and error bounds, each (points, quantities)."""
+Grid = tuple[Array, Array]
+Evaluate = Callable[[list[Grid]], list[tuple[Array, Array]]]
+"""Grids (u (columns,), v (rows,)) → values and error bounds on each, (rows · columns, quantities), rows slow."""
 
 NODES = 48
 """Nodes per variable: enough for two dozen oscillations, and a multiple of the kernel's lanes."""
@@ -58,11 +59,11 @@ class Patch:
     error: Array
 
     def grid(self, u: Array, v: Array) -> Array:
-        """Values on the grid of ``u`` and ``v`` inside the box; shape (v, u, quantity)."""
+        """Values on the grid of ``u`` and ``v`` inside the box; shape (quantity, v, u)."""
         across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1))
         up = _chebyshev(_to_unit(v, self.box.v0, self.box.v1))
         # (q, i, j) · (j, u), then (v, i) · (q, i, u)
-        return np.moveaxis(up.T @ (self.coefficients @ across), 0, -1)
+        return np.asarray(up.T @ (self.coefficients @ across))
 
 
 @dataclass(frozen=True)
@@ -80,12 +81,19 @@ class PatchedFunction:
 
 
 def build(
-    evaluate: Evaluate, box: Box, u_pixels: Array, v_pixels: Array, tolerance: float, tick: Callable[[float], None]
+    evaluate: Evaluate,
+    box: Box,
+    u_pixels: Array,
+    v_pixels: Array,
+    tolerance: float,
+    *,
+    direct_below: float = 0.8 * NODES**2,
+    tick: Callable[[float], None] = lambda share: None,
 ) -> PatchedFunction:
     """Patch ``box`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
 
-    ``u_pixels``, ``v_pixels`` tell where direct evaluation is cheaper; ``tick`` is called with the share of
-    the box that is settled.
+    Rectangles with at most ``direct_below`` of the pixels ``u_pixels`` × ``v_pixels`` are left to direct
+    evaluation; ``tick`` is called with the share of the box that is settled.
     """
     patches: list[Patch] = []
     direct: list[Box] = []
@@ -97,7 +105,7 @@ def build(
         sampled: list[tuple[Box, int]] = []
         for part, depth in todo:
             pixels = _inside(u_pixels, part.u0, part.u1) * _inside(v_pixels, part.v0, part.v1)
-            if pixels <= 0.8 * NODES**2 or depth > DEEPEST:
+            if pixels <= direct_below or depth > DEEPEST:
                 direct.append(part)
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
                 stubborn += depth > DEEPEST
@@ -127,12 +135,9 @@ def _sample(
     unit = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
     for start in range(0, len(boxes), BATCH):
         batch = boxes[start : start + BATCH]
-        u = np.concatenate([np.tile(_from_unit(unit, b.u0, b.u1), NODES) for b, _ in batch])
-        v = np.concatenate([np.repeat(_from_unit(unit, b.v0, b.v1), NODES) for b, _ in batch])
-        values, errors = evaluate(u, v)
-        for k, (box, depth) in enumerate(batch):
-            part = slice(k * NODES**2, (k + 1) * NODES**2)
-            yield box, depth, values[part], errors[part]
+        grids = [(_from_unit(unit, b.u0, b.u1), _from_unit(unit, b.v0, b.v1)) for b, _ in batch]
+        for (box, depth), (values, errors) in zip(batch, evaluate(grids), strict=True):
+            yield box, depth, values, errors
 
 
 def _transform(values: Array, errors: Array) -> tuple[Array, float, float, Array]:

@@ -9,6 +9,7 @@ from typing import Any
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
+from trunnion.published.bicardan_elastic import bicardan_elastic
 from trunnion.published.three_shaft_cardan import three_shaft_cardan
 from trunnion.published.two_shaft_cardan import two_shaft_cardan
 
@@ -35,6 +36,12 @@ _ENTRIES = (
         "three shafts and two Hooke's joints, nondimensional",
         "Soltan Rezaee and co-authors, Modares Mechanical Engineering 12 (in Persian)",
         three_shaft_cardan,
+    ),
+    Entry(
+        "bicardan-elastic",
+        "two Hooke's joints and an elastic shaft between them, for kinetostatics",
+        "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant III, 2007",
+        bicardan_elastic,
     ),
 )
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from fractions import Fraction
+from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,8 +51,9 @@ JOINTS = (Link.HOOKE, Link.IDEAL, Link.TRIPOD)
 class Step:
     """From station ``parent`` to the station behind this step; SI units.
 
-    ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and
-    ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output speed.
+    ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the
+    tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and ``far_inertia``
+    [kg m²] sit at the two stations; ``ratio`` is input speed over output speed.
     """
 
     link: Link
@@ -119,6 +122,22 @@ class Chain:
 def member_ratio(chain: Chain, member: int) -> float:
     """Mean speed of a member over the input speed."""
     return chain.mean_ratio(next(i for i, step in enumerate(chain.steps) if step.member == member))
+
+
+def period_turns(chain: Chain) -> int:
+    """Fewest whole turns of the input after which every joint is back in phase (half a turn of its shaft)."""
+    fractions = {
+        n: e.fraction
+        for n, e in zip(chain.line.names, chain.line.elements, strict=True)
+        if isinstance(e, Ratio)
+    }
+    ratio, period = [Fraction(1)], 1
+    for step in chain.steps[1:]:
+        ratio.append(ratio[step.parent] / fractions.get(step.name, Fraction(1)))
+        if step.link in (Link.HOOKE, Link.TRIPOD):
+            orders = abs(ratio[-1]) * (2 if step.link is Link.HOOKE else 3)
+            period = lcm(period, orders.denominator)
+    return period
 
 
 def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:

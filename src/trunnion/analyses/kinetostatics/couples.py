@@ -7,11 +7,11 @@ input shaft feels −m and the output shaft +m; what is not along the shaft's ax
     input fork    (−A,  λ sin β sin χ/√D − B cos β/√D)   → M₁ tan β sin χ without friction
     output fork   ( B,  λ sin β cos χ − A √D)            → M₂ tan β cos ψ without friction
 
-which is S2's (4). In the *standing* frame (u in the joint plane toward the side the line bends to, v = axis × u
-normal to it) the input fork's arm stands at χ from u and the output fork's at ψ + 90°, so that each couple is
-a steady part −½ M tan β along u plus one of the same size that turns with the shaft at twice its speed.
-A constant-velocity joint passes its moment along the bisector of the two axes: −M tan(β/2) along u on both
-shafts, steady. (A tripod does so on average; ±0.3 % at 9°, ±0.5 % at 20°, three times a turn.)
+which is S2's (4). In the *standing* frame (u in the joint plane toward the side the line bends to, v = axis
+× u normal to it) the input fork's arm stands at χ from u and the output fork's at ψ + 90°, so that each
+couple is a steady part −½ M tan β along u plus one of the same size that turns with the shaft at twice its
+speed. A constant-velocity joint passes its moment along the bisector of the two axes: −M tan(β/2) along u
+on both shafts, steady. (A tripod does so on average; ±0.3 % at 9°, ±0.5 % at 20°, three times a turn.)
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Where the shafts of a line point: axes and planes in space from joint angles and planes.
 
-Each member has a frame (e, u, v): e along its axis from the drive to the load, v = e × u. The first member of
-a train points along x with u = −z (its first joint bends it downwards) and v = y. A joint with plane ϑ turns u
-and v about e by ϑ and then bends e toward u by its angle β:
+Each member has a frame (e, u, v): e along its axis from the drive to the load, v = e × u. The first member
+of a train points along x with u = −z (its first joint bends it downwards) and v = y. A joint with plane ϑ
+turns u and v about e by ϑ and then bends e toward u by its angle β:
 
     u_j = cos ϑ u + sin ϑ v,   v_j = −sin ϑ u + cos ϑ v
     e′ = cos β e + sin β u_j,  u′ = −sin β e + cos β u_j,  v′ = v_j

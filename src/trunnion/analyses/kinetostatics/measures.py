@@ -1,4 +1,4 @@
-"""Numbers an engineer compares: irregularity, equivalent angle, peaks, parts that stand and parts that turn."""
+"""Numbers an engineer compares: irregularity, equivalent angle, peaks, what stands and what turns."""
 
 from __future__ import annotations
 
@@ -63,8 +63,9 @@ def largest(values: Array) -> Array:
 class Parts:
     """What a vector that repeats with its shaft's rotation is made of.
 
-    ``steady`` stands still: its components along u and v. ``once`` turns with the shaft, ``twice`` at twice its
-    speed, ``twice_back`` at twice its speed the other way: amplitudes. ``largest`` is the largest magnitude.
+    ``steady`` stands still: its components along u and v. ``once`` turns with the shaft, ``twice`` at twice
+    its speed, ``twice_back`` at twice its speed the other way: amplitudes. ``largest`` is the largest
+    magnitude.
     """
 
     steady: tuple[float, float]
@@ -82,8 +83,8 @@ class Parts:
 def parts(vector: Array, angle: Array) -> Parts:
     """Split a vector (2, point) along u and v by the shaft's mean rotation ``angle`` [rad] at each point.
 
-    z = F_u + jF_v = Σ c_k e^{jkφ}; positive k turn in the sense of rotation. The points must cover whole turns
-    of the shaft.
+    z = F_u + jF_v = Σ c_k e^{jkφ}; positive k turn in the sense of rotation. The points must cover whole
+    turns of the shaft.
     """
     z = vector[0] + 1j * vector[1]
     c = {k: complex(np.mean(z * np.exp(-1j * k * angle))) for k in (0, 1, 2, -2)}

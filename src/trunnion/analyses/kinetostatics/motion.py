@@ -1,9 +1,10 @@
 """Rotation of every station over the input angle: exact kinematics, walked from the drive to the load.
 
-Each station carries the angle a of its fork (fork offsets included) as a jet, so that speed and acceleration
-come with it. A Hooke's joint takes χ = a − plane and gives a = ψ(χ) + 90° (its output fork stands a quarter
-turn from its input fork); ψ̇ = η(χ) χ̇ is integrated term by term. A shaft adds its fork offset and its twist;
-a ratio divides. These are S2's relations (2), (3), (5) and (6) with the twist's own rate kept.
+Each station carries the angle a of its fork (fork offsets included) as a jet, so that speed and
+acceleration come with it. A Hooke's joint takes χ = a − plane and gives a = ψ(χ) + 90° (its output fork
+stands a quarter turn from its input fork); ψ̇ = η(χ) χ̇ is integrated term by term. A shaft adds its fork
+offset and its twist; a ratio divides. These are S2's relations (2), (3), (5) and (6) with the twist's own
+rate kept.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ QUARTER_TURN = np.pi / 2
 
 @dataclass(frozen=True)
 class Motion:
-    """Jets by station: ``angle`` of the fork [rad]; at joint steps ``chi``, the input angle from their plane."""
+    """Jets [rad] by station: ``angle`` of the fork; at joint steps ``chi``, input angle from their plane."""
 
     angle: list[Array]
     chi: dict[int, Array]
@@ -56,8 +57,8 @@ def walk(
     ----------
     drive : jet of the input rotation, shape (order + 1, …).
     twist : jet of the twist of Shaft steps [rad] (far end minus near end); missing ones are rigid.
-    angle, plane, fork_offset : replace the line's numbers of single steps; they broadcast against ``drive[0]``,
-        so that many variants are walked at once.
+    angle, plane, fork_offset : replace the line's numbers of single steps; they broadcast against
+        ``drive[0]``, so that many variants are walked at once.
     """
     angle, plane, fork_offset, twist = angle or {}, plane or {}, fork_offset or {}, twist or {}
     stations, chis = [drive], {}

@@ -1,9 +1,9 @@
 """Fork offsets that make the output run as evenly as the joints allow.
 
-For small angles joint i turns the output by a phasor β_i² e^{2jχ_i}, and the line is as uneven as one joint of
-β_eq = |Σ β_i² e^{2jχ_i}|^½: phase the forks so that the phasors close. That rule picks the starts; the exact
-irregularity of the rigid line then decides, because at large angles closed phasors leave a fourth-power rest.
-Offsets repeat after half a turn.
+For small angles joint i turns the output by a phasor β_i² e^{2jχ_i}, and the line is as uneven as one joint
+of β_eq = |Σ β_i² e^{2jχ_i}|^½: phase the forks so that the phasors close. The exact rule (``equivalent``)
+replaces β² by the rapidity ln sec β and closes them on a hyperbolic plane, so three joints or more can be
+phased to run exactly evenly unless one of them outweighs all others. Offsets repeat after half a turn.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
+from trunnion.analyses.kinetostatics import equivalent
+from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, period_turns
 from trunnion.analyses.kinetostatics.measures import equivalent_angle, extremes, phasor_angle
-from trunnion.analyses.kinetostatics.motion import QUARTER_TURN, drive_jet, walk
+from trunnion.analyses.kinetostatics.motion import drive_jet, walk
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE, parse
 from trunnion.driveline.refusals import nearest
@@ -25,25 +26,31 @@ from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
 HALF_TURN = np.pi
-COARSE = 8000
-"""Offset combinations tried by the phasor rule."""
-STARTS = 12
-MOST_COMBINATIONS = 200_000
+STARTS, POLISHED = 4000, 6
+MOST_POSITIONS = 200_000
 POINTS = 96
+"""Angles per turn where the output has to be sampled."""
 
 
 @dataclass(frozen=True, eq=False)
 class Phasing:
     """The best fork offsets found for a line.
 
-    ``offsets`` [rad] by shaft in (−90°, 90°]; ``irregularity`` and ``equivalent_angle`` [1, rad] of the line so
-    phased, ``before`` the irregularity as it was; ``phasor_angle`` [rad] what the small-angle rule says of the
-    result; ``line`` the driveline with these offsets; ``pitch`` [rad] of the splines they were rounded to.
+    Attributes
+    ----------
+    offsets : fork offset [rad] of each shaft between two joints, in (−90°, 90°] (with splines, (−180°,
+        180°]).
+    irregularity, before : of the output with these offsets, and with the line's own [1].
+    bound : what no phasing of these joints can go below [1]; None where tripods or ratios leave it unknown.
+    phasor_angle : equivalent angle [rad] that the small-angle rule gives for these offsets.
+    pitch : of the splines [rad] the offsets are multiples of, if one was given for all shafts.
+    line : the driveline with these offsets.
     """
 
     offsets: dict[str, float]
     irregularity: float
     before: float
+    bound: float | None
     phasor_angle: float
     pitch: float | None
     line: Driveline
@@ -54,11 +61,14 @@ class Phasing:
         return float(equivalent_angle(self.irregularity))
 
     def __str__(self) -> str:
-        steps = f", splines of {self.pitch / DEGREE:.4g} deg" if self.pitch else ""
+        steps = f" on splines of {self.pitch / DEGREE:.4g} deg" if self.pitch else ""
         rows = [
-            f"fork phasing of {len(self.offsets)} shafts{steps}: irregularity {self.irregularity:.4g} (before "
-            f"{self.before:.4g}), as one Hooke's joint of {self.equivalent_angle / DEGREE:.4g} deg"
+            f"fork phasing of {len(self.offsets)} shaft{'s' * (len(self.offsets) > 1)}{steps}: irregularity "
+            f"{self.irregularity:.4g} (before {self.before:.4g}), as one Hooke's joint of "
+            f"{self.equivalent_angle / DEGREE:.4g} deg"
         ]
+        if self.bound is not None:
+            rows[0] += f"; these joints cannot do better than {self.bound:.4g}"
         rows += [f"  {name}: fork offset {x / DEGREE:.4f} deg" for name, x in self.offsets.items()]
         return "\n".join(rows)
 
@@ -70,54 +80,56 @@ def phase_forks(line: Driveline, pitch: float | str | Mapping[str, float | str] 
 
     Parameters
     ----------
-    line : with two Hooke's joints or more; its own offsets are where it starts from and what it falls back on.
-    pitch : spline pitch [rad], for all shafts or by shaft name: offsets are then whole multiples of it.
+    line : with two joints or more that have an irregularity of their own.
+    pitch : spline pitch [rad], for all shafts or by shaft name: those offsets are then whole multiples of it.
 
     Raises
     ------
-    InputError : no shaft between two joints, a pitch that is not positive, or too many spline positions.
+    InputError : no shaft between two such joints, or a pitch that is not positive.
     """
     train = chain(line)
     free = phased_shafts(train)
     if not free:
         raise InputError(
-            "has no Shaft between two Hooke's joints whose forks could be turned",
+            "has no Shaft between two joints whose forks could be turned",
             element="driveline",
-            remedy="put a Shaft between the joints",
+            remedy="put a Shaft between two Hooke's joints",
         )
     pitches = _pitches(train, free, pitch)
     own = np.array([train.steps[i].fork_offset for i in free])
-    before = float(irregularity_of(train, free, own[None])[0])
-    best, least = own, before
-    if any(np.isfinite(p) for p in pitches):
-        candidates = _spline_positions(pitches, _continuous(train, free, own))
-        values = irregularity_of(train, free, candidates)
-        best, least = candidates[int(values.argmin())], float(values.min())
-    else:
-        found = _continuous(train, free, own)
-        value = float(irregularity_of(train, free, found[None])[0])
-        if value < least:
-            best, least = found, value
-    best = -((-best + HALF_TURN / 2) % HALF_TURN - HALF_TURN / 2)
+    best = _continuous(train, free, own)
+    if np.any(np.isfinite(pitches)):
+        positions = _spline_positions(pitches, best)
+        best = positions[int(irregularity_of(train, free, positions).argmin())]
+    # half a turn need not be a whole number of splines: those offsets are kept within a whole turn
+    turn = np.where(np.isfinite(pitches), 2 * HALF_TURN, HALF_TURN)
+    best = turn / 2 - (turn / 2 - best) % turn
     offsets = {train.steps[i].name: float(x) for i, x in zip(free, best, strict=True)}
     phased = line
     for name, x in offsets.items():
         phased = phased.replace(name, fork_offset=x)
-    common = pitches[0] if np.isfinite(pitches[0]) and len(set(pitches)) == 1 else None
-    return Phasing(offsets, least, before, float(_phasors(train, free, best[None])[0]), common, phased)
+    return Phasing(
+        offsets=offsets,
+        irregularity=float(irregularity_of(train, free, best[None])[0]),
+        before=float(irregularity_of(train, free, own[None])[0]),
+        bound=equivalent.least_irregularity(train) if equivalent.is_one_joint(train) else None,
+        phasor_angle=float(phasor_angle(*equivalent.phasors(chain(phased)))),
+        pitch=float(pitches[0]) if np.isfinite(pitches[0]) and np.ptp(pitches) == 0 else None,
+        line=phased,
+    )
 
 
 def phased_shafts(train: Chain) -> tuple[int, ...]:
-    """The first Shaft step between each two neighbouring joints that are not ideal."""
-    found = []
-    for j in train.of(Link.HOOKE, Link.TRIPOD):
-        shaft, i = None, train.steps[j].parent
-        while i > 0 and train.steps[i].link not in (Link.HOOKE, Link.TRIPOD):
-            if train.steps[i].link is Link.SHAFT:
-                shaft = i
-            i = train.steps[i].parent
-        if i > 0 and shaft is not None and shaft not in found:
-            found.append(shaft)
+    """The first Shaft between each two neighbouring joints that are not ideal, on the way to the output."""
+    found: list[int] = []
+    shaft, seen = None, False
+    for i in equivalent.path(train):
+        link = train.steps[i].link
+        if link is Link.SHAFT and seen and shaft is None:
+            shaft = i
+        elif link in (Link.HOOKE, Link.TRIPOD):
+            found += [shaft] if shaft is not None else []
+            shaft, seen = None, True
     return tuple(found)
 
 
@@ -126,110 +138,102 @@ def irregularity_of(
     free: tuple[int, ...],
     offsets: Array,
     *,
-    points: int = POINTS,
-    turns: int = 1,
-    **changed: Mapping[int, Array],
+    angle: Mapping[int, Array] | None = None,
+    plane: Mapping[int, Array] | None = None,
 ) -> Array:
     """Exact irregularity U of the rigid line for each row of ``offsets`` (case, free shaft).
 
-    ``changed`` replaces ``angle`` or ``plane`` of joint steps, arrays (case,). Extremes are refined from
-    ``points`` per turn.
+    ``angle`` and ``plane`` replace those of joint steps, arrays (case,).
     """
-    drive = drive_jet(np.arange(turns * points) * (2 * np.pi / points), 1.0, 0.0, 1)[:, None]
-    shafts = {i: offsets[:, k, None] for k, i in enumerate(free)}
-    others = {key: {i: x[:, None] for i, x in steps.items()} for key, steps in changed.items()}
-    speed = walk(train, drive, fork_offset=shafts, **others).angle[-1][1]
-    low, high = extremes(np.broadcast_to(speed, (len(offsets), speed.shape[-1])))
+    shafts = {i: offsets[:, k] for k, i in enumerate(free)}
+    if equivalent.is_one_joint(train):
+        lines = equivalent.matrices(train, len(offsets), angle=angle, plane=plane, fork_offset=shafts)
+        return equivalent.irregularity(lines)
+    input_angle: Array = np.arange(period_turns(train) * POINTS, dtype=np.float64) * (2 * np.pi / POINTS)
+    drive = drive_jet(input_angle, 1.0, 0.0, 1)[:, None]
+
+    def column(values: Mapping[int, Array] | None) -> dict[int, Array]:
+        return {i: x[:, None] for i, x in (values or {}).items()}
+
+    motion = walk(train, drive, angle=column(angle), plane=column(plane), fork_offset=column(shafts))
+    speed = np.broadcast_to(motion.angle[-1][1], (len(offsets), drive.shape[-1]))
+    low, high = extremes(speed)
     return np.asarray((high - low) / abs(train.mean_ratio(len(train.steps) - 1)))
 
 
-def _phasors(train: Chain, free: tuple[int, ...], offsets: Array) -> Array:
-    """β_eq [rad] of the small-angle rule for each row of ``offsets``."""
-    a = [np.zeros(len(offsets))]
-    angles, phases = [], []
-    for i, step in enumerate(train.steps[1:], start=1):
-        here = a[step.parent]
-        if step.link is Link.SHAFT:
-            here = here + (offsets[:, free.index(i)] if i in free else step.fork_offset)
-        elif step.link is Link.HOOKE:
-            angles.append(step.angle)
-            phases.append(here - step.plane)
-            here = phases[-1] + QUARTER_TURN + step.fork_offset
-        elif step.link in (Link.IDEAL, Link.TRIPOD):
-            here = here - step.plane
-        elif step.link is Link.RATIO:
-            here = here / step.ratio
-        a.append(here)
-    return phasor_angle(np.array(angles), np.stack(phases, axis=-1))
-
-
 def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:
-    """Offsets of the least irregularity: best phasors first, exact kinematics after."""
-    from scipy.optimize import minimize
-
+    """Offsets of least irregularity; of several equally good ones the nearest to the line's own."""
     n = len(free)
-    rng = np.random.default_rng(0)
-    per_shaft = max(int(COARSE ** (1 / n)), 2)
-    if per_shaft >= 12:
+    per_shaft = int(STARTS ** (1 / n))
+    if per_shaft >= 8:
         grid = np.stack(np.meshgrid(*[np.arange(per_shaft) * HALF_TURN / per_shaft] * n), -1).reshape(-1, n)
     else:
-        grid = rng.uniform(0, HALF_TURN, (COARSE, n))
+        grid = np.random.default_rng(0).uniform(0, HALF_TURN, (STARTS, n))
     candidates = np.vstack([own, grid])
-    rule = _phasors(train, free, candidates)
-    starts = candidates[np.argsort(rule, kind="stable")[: 25 * STARTS]]
-    exact = irregularity_of(train, free, starts)
-    best, least = own, float(irregularity_of(train, free, own[None])[0])
-    for start in starts[np.argsort(exact, kind="stable")[:STARTS]]:
-        # the rule's optimum near this start, then the exact one from there
-        closed = minimize(lambda x: float(_phasors(train, free, x[None])[0]) ** 4, start, method="BFGS", tol=1e-16).x
-        for begin in (start, closed):
-            polished = minimize(
-                lambda x: float(irregularity_of(train, free, x[None])[0]),
-                begin,
-                method="Nelder-Mead",
-                options={"xatol": 1e-11, "fatol": 1e-15, "maxiter": 400 * n, "initial_simplex": _simplex(begin)},
-            )
-            if polished.fun < least:
-                best, least = polished.x, float(polished.fun)
-        if least < 1e-14:
-            break
-    return best
+    value = irregularity_of(train, free, candidates)
+    starts = candidates[np.argsort(value, kind="stable")[:POLISHED]]
+    ends = np.array([_polish(train, free, start) for start in starts] + [own])
+    value = irregularity_of(train, free, ends)
+    good = ends[value <= value.min() + 1e-13]
+    away = np.abs((good - own + HALF_TURN / 2) % HALF_TURN - HALF_TURN / 2)
+    return np.asarray(good[int(away.max(axis=1).argmin())])
 
 
-def _simplex(centre: Array) -> Array:
-    return np.vstack([centre, centre + 0.02 * np.eye(len(centre))])
+def _polish(train: Chain, free: tuple[int, ...], start: Array) -> Array:
+    from scipy.optimize import least_squares, minimize
+
+    if equivalent.is_one_joint(train):
+
+        def rest(x: Array) -> Array:
+            shafts = {i: x[None, k] for k, i in enumerate(free)}
+            return equivalent.departure(equivalent.matrices(train, 1, fork_offset=shafts))[0]
+
+        return np.asarray(least_squares(rest, start, xtol=1e-15, ftol=1e-15, gtol=1e-15).x)
+    options = {"xatol": 1e-10, "fatol": 1e-14, "maxiter": 400 * len(free)}
+    return np.asarray(
+        minimize(
+            lambda x: float(irregularity_of(train, free, x[None])[0]),
+            start,
+            method="Nelder-Mead",
+            options=options,
+        ).x
+    )
 
 
-def _spline_positions(pitches: list[float], near: Array) -> Array:
+def _spline_positions(pitches: Array, near: Array) -> Array:
     """All spline positions in half a turn, or those around the continuous optimum where they are too many."""
-    whole = [
-        np.arange(0, HALF_TURN - 1e-9, p) if np.isfinite(p) else np.array([x])
-        for p, x in zip(pitches, near, strict=True)
-    ]
-    count = int(np.prod([float(len(w)) for w in whole]))
-    if count > MOST_COMBINATIONS:
-        whole = [
-            p * (np.round(x / p) + np.arange(-2, 3)) if np.isfinite(p) else np.array([x])
-            for p, x in zip(pitches, near, strict=True)
-        ]
-    return np.array(list(product(*whole)))
+
+    def positions(pitch: float, x: float, around: bool) -> Array:
+        if not np.isfinite(pitch):
+            return np.array([x])
+        if around:
+            return pitch * (np.round(x / pitch) + np.arange(-2, 3))
+        # a whole turn, because half a turn need not be a whole number of splines
+        return np.arange(0, 2 * np.pi - 1e-9, pitch)
+
+    each = [positions(p, x, False) for p, x in zip(pitches, near, strict=True)]
+    if float(np.prod([float(len(e)) for e in each])) > MOST_POSITIONS:
+        each = [positions(p, x, True) for p, x in zip(pitches, near, strict=True)]
+    return np.array(list(product(*each)))
 
 
 def _pitches(
     train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[str, float | str] | None
-) -> list[float]:
+) -> Array:
     names = [train.steps[i].name for i in free]
     given = dict(pitch) if isinstance(pitch, Mapping) else {n: pitch for n in names if pitch is not None}
     pitches = dict.fromkeys(names, np.inf)
     for name, value in given.items():
         if name not in names:
             raise InputError(
-                "is not a Shaft between two Hooke's joints", key="pitch", value=name, remedy=nearest(name, names)
+                "is not a Shaft between two joints", key="pitch", value=name, remedy=nearest(name, names)
             )
         try:
             pitches[name] = parse(value, ANGLE)
         except InputError as error:
             raise InputError(error.problem, key="pitch", value=value, remedy=error.remedy) from None
         if not pitches[name] > 0:
-            raise InputError("must be positive", key="pitch", value=value, remedy='write "10 deg": 36 splines')
-    return [pitches[n] for n in names]
+            raise InputError(
+                "must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines'
+            )
+    return np.array([pitches[n] for n in names])

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
-from trunnion.analyses.kinetostatics.chain import Chain, Link
+from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
 from trunnion.analyses.kinetostatics.elastic import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
-from trunnion.driveline.elements import Ratio
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
 NEAR_RESONANCE = 1 / 3
-"""Excitation frequency over the lowest elastic frequency up to which inertia torques count as quasi-static."""
+"""Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
 
 
 def remarks(
@@ -27,8 +24,8 @@ def remarks(
         found += [
             Finding(
                 Gravity.NOTE,
-                f"{name} lies between two shafts of two bearings each and is taken to carry no force: what it "
-                "carries depends on how well they line up",
+                f"{name} lies between two shafts of two bearings each and is taken to carry no force: what "
+                "it carries depends on how well they line up",
             )
             for name in supports.idle
         ]
@@ -63,37 +60,21 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
         Finding(
             grave,
             f"{torque} do not hold at this speed: the joints excite at {excitation:.4g} rad/s, the lowest "
-            f"elastic natural frequency is {lowest:.4g} rad/s (trusted up to a third of it), so {effect}; ask "
-            "stability() for the linear response",
+            f"elastic natural frequency is {lowest:.4g} rad/s (trusted up to a third of it), so {effect}; "
+            "ask stability() for the linear response",
         )
     ]
 
 
 def _repeats(chain: Chain, turns: int) -> list[Finding]:
     """Whether the turns asked for cover a whole period of a line with ratios."""
-    ratio = {i: Fraction(1) for i in range(len(chain.steps))}
-    exact = {n: e for n, e in zip(chain.line.names, chain.line.elements, strict=True) if isinstance(e, Ratio)}
-    for i, step in enumerate(chain.steps[1:], start=1):
-        ratio[i] = ratio[step.parent] / (exact[step.name].fraction if step.link is Link.RATIO else 1)
-    after = [i for i in chain.joints if ratio[i] != 1]
-    # a joint repeats after half a turn of its own shaft
-    period = 1
-    for i in after:
-        period = _common(period, Fraction(1) / (2 * abs(ratio[i])))
+    period = period_turns(chain)
     if turns % period == 0:
         return []
     return [
         Finding(
             Gravity.NOTE,
-            f"behind a Ratio the motion repeats after {period} turns of the input, not after {turns}: extremes "
-            f"and means are those of the turns shown (turns={period} shows all)",
+            f"behind a Ratio the motion repeats after {period} turns of the input, not after {turns}: "
+            f"extremes and means are those of the turns shown (turns={period} shows all)",
         )
     ]
-
-
-def _common(whole: int, turns: Fraction) -> int:
-    """Fewest whole input turns that are also a multiple of ``turns``."""
-    period = turns.numerator // turns.denominator if turns.denominator == 1 else turns.numerator
-    from math import lcm
-
-    return lcm(whole, period)

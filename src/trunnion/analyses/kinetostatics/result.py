@@ -42,14 +42,14 @@ class ConstantTwist:
 class Kinetostatics:
     """Motion, torques, couples and support forces of a line over the input angle; SI units.
 
-    Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan joint
-    counts as two), ``fork`` the input and output fork of each joint in turn.
+    Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan
+    joint counts as two), ``fork`` the input and output fork of each joint in turn.
 
     Attributes
     ----------
     input_angle : (point,) rotation of the drive [rad]; ``points`` per turn, the end of a turn left out.
-    angle, speed, acceleration : (shaft, point) of the far end of each shaft [rad, rad/s, rad/s²], counted from
-        the unloaded line at input angle 0.
+    angle, speed, acceleration : (shaft, point) of the far end of each shaft [rad, rad/s, rad/s²], counted
+        from the unloaded line at input angle 0.
     twist : (shaft, point) far end minus near end [rad]; zero where rigid.
     torque : (shaft, point) [N m], positive with the twist, hence *negative* where power flows from the drive
         to the load; ``transmitted`` is the same with the other sign.
@@ -58,8 +58,8 @@ class Kinetostatics:
     output_torque : torque [N m] asked for at the end of the line, beside the Disks' own.
     joint_angle : (joint, point) input angle χ of each joint from its own plane [rad].
     joint_torque_in, joint_torque_out : (joint, point) transmitted into and out of each joint [N m].
-    secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane, toward
-        the side the line bends to) and v (normal to it, axis × u).
+    secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane,
+        toward the side the line bends to) and v (normal to it, axis × u).
     secondary_couple_rotating : (fork, 2, point) the same along the fork's arm and across it (axis × arm).
     supports : forces on bearings and joint centres, where bearings were given.
     constant_twist : how good a constant twist would be, for elastic shafts.
@@ -104,7 +104,7 @@ class Kinetostatics:
 
     @property
     def transmitted(self) -> Array:
-        """Torque of each shaft [N m], positive where power flows from the drive to the load (shaft, point)."""
+        """Torque of each shaft [N m], positive from the drive to the load (shaft, point)."""
         return -self.torque
 
     @cached_property
@@ -132,7 +132,7 @@ class Kinetostatics:
 
     @property
     def homokinetic_deviation(self) -> float:
-        """Largest lead or lag of the output [rad]: half of what the output angle swings about uniform rotation."""
+        """Largest lead or lag of the output [rad]: half its swing about uniform rotation."""
         low, high = extremes(self.output_angle - self.mean_ratio * self.input_angle)
         return float(high - low) / 2
 

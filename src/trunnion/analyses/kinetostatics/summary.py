@@ -44,8 +44,8 @@ def _output(r: Kinetostatics) -> list[str]:
     return [
         f"  output speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
         f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",
-        f"  output leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular acceleration "
-        f"{r.peak_acceleration:.5g} rad/s^2",
+        f"  output leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
+        f"acceleration {r.peak_acceleration:.5g} rad/s^2",
     ]
 
 
@@ -93,6 +93,6 @@ def _twists(r: Kinetostatics) -> list[str]:
     s = int(np.argmax(largest(r.twist)))
     return [
         f"  largest twist {largest(r.twist)[s]:.4g} rad in {r.shafts[s]}, varying by ± "
-        f"{100 * constant.variation[s]:.3g} % of its mean over the turn; taken as constant, the output speed is off "
-        f"by {constant.speed / r.input_speed:.2g} of the input speed"
+        f"{100 * constant.variation[s]:.3g} % of its mean over the turn; taken as constant, the output speed "
+        f"is off by {constant.speed / r.input_speed:.2g} of the input speed"
     ]

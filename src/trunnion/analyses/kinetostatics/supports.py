@@ -7,9 +7,9 @@ its joint centres, and its bearings. What holds it is told by the number of its 
 - one: a radial force; the shaft passes thrust on to its neighbours (a centre bearing in rubber);
 - none: it hangs between two joints with a sliding spline, which passes no thrust.
 
-A joint between two shafts of two bearings each would carry force only where these are out of line; it is taken
-to carry none. Forces and moments of every shaft vanish: 3 + 2 equations each (torsion is the business of
-``torques``), linear with constant coefficients, so one factorisation serves all angles.
+A joint between two shafts of two bearings each would carry force only where these are out of line; it is
+taken to carry none. Forces and moments of every shaft vanish: 3 + 2 equations each (torsion is the business
+of ``torques``), linear with constant coefficients, so one factorisation serves all angles.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class Supports:
 
     ``force`` (bearing, 2, point): of the shaft on its bearing, along u and v of the joint in front of the
     shaft (on the first shaft: of the joint behind it at plane 0). ``joint_force`` (joint, 3, point): of the
-    shaft in front of the joint on the one behind it, along e, u, v of the one behind.
-    ``ratio`` (bearing,) is the mean speed of the bearing's shaft over the input's; ``idle`` names joints taken
-    to carry no force.
+    shaft in front of the joint on the one behind it, along e, u, v of the one behind. ``ratio`` (bearing,)
+    is the mean speed of the bearing's shaft over the input's; ``idle`` names joints taken to carry no
+    force.
     """
 
     names: tuple[str, ...]
@@ -172,7 +172,7 @@ class _Statics:
         for r, entry in enumerate(self.right):
             if entry is not None:
                 right[r] = -(entry[1] @ on_member[entry[0]]) / self.scale
-        solution = np.linalg.lstsq(matrix, right, rcond=None)[0]
+        solution = np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0], dtype=np.float64)
         n, b = 3 * len(self.joints), len(self.bearings)
         in_space = solution[:n].reshape(len(self.joints), 3, points)
         local = [self.frames[self._back(j)] @ f for j, f in zip(self.joints, in_space, strict=True)]
@@ -180,9 +180,9 @@ class _Statics:
         return Supports(
             tuple(f"{self._shaft(m)} at {x:g} m" for m, x in self.bearings),
             np.array([member_ratio(self.chain, m) for m, _ in self.bearings]),
-            solution[n : n + 2 * b].reshape(b, 2, points),
+            np.asarray(solution[n : n + 2 * b].reshape(b, 2, points), dtype=np.float64),
             tuple(steps[j].name for j in self.joints),
-            np.reshape(local, (len(self.joints), 3, points)),
+            np.asarray(np.reshape(local, (len(self.joints), 3, points)), dtype=float),
             tuple(steps[j].name for j in self.idle),
         )
 
@@ -216,9 +216,9 @@ class _Statics:
             loose = np.abs(left[:, rank:]).sum(axis=1)
             m = self.owner[int(loose.argmax())]
             count = len(self.placed.get(m, ()))
+            own = ("no bearing", "one bearing", "its bearings")[count]
             raise InputError(
-                f"is not held: {('no bearing', 'one bearing')[count] if count < 2 else 'its bearings'} and its "
-                "neighbours cannot carry its couple",
+                f"is not held: {own} and its neighbours cannot carry its couple",
                 element=self._shaft(m),
                 key="supports",
                 remedy="give it two bearings, or give them to the shafts it hangs on",

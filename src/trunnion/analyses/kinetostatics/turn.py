@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.kinetostatics.bearings import Bearings
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, member_ratio
 from trunnion.analyses.kinetostatics.couples import secondary_couples
 from trunnion.analyses.kinetostatics.elastic import Drive, constant_twist, solve
@@ -15,7 +16,7 @@ from trunnion.analyses.kinetostatics.measures import largest
 from trunnion.analyses.kinetostatics.motion import Motion, assembled
 from trunnion.analyses.kinetostatics.remarks import remarks
 from trunnion.analyses.kinetostatics.result import ConstantTwist, Kinetostatics
-from trunnion.analyses.kinetostatics.supports import Bearings, support_forces
+from trunnion.analyses.kinetostatics.supports import support_forces
 from trunnion.analyses.kinetostatics.torques import Torques, refuse_locking
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE, Kind, parse
@@ -80,7 +81,7 @@ def kinetostatics(
     train = chain(line, _lengths(line, lengths))
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
-    input_angle = np.arange(turns * points) * (2 * np.pi / points)
+    input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
     torque = _number(output_torque, TORQUE, "output_torque")
     drive = Drive(input_angle, drive_speed, float(acceleration), torque, pin_moment, inertia)
     motion, passed, twist = solve(train, drive, rigid=rigid)

@@ -1,0 +1,110 @@
+"""What errors of assembly do to the evenness of the output: each alone, and all at their worst together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.kinetostatics.chain import Link, chain
+from trunnion.analyses.kinetostatics.measures import equivalent_angle
+from trunnion.analyses.kinetostatics.phasing import irregularity_of, phased_shafts
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.quantities import ANGLE, DEGREE, parse
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+MOST_TOGETHER = 12
+"""Errors up to which every combination of signs is tried; beyond, 4096 random ones."""
+
+
+@dataclass(frozen=True, eq=False)
+class AssemblySensitivity:
+    """Irregularity with each angle off by ± ``error``.
+
+    ``names`` are parameters as "HookeJoint 1.angle"; ``below`` and ``above`` (name,) the irregularities
+    with the error taken off and added; ``nominal`` without errors; ``worst`` with all of them, signs at
+    their worst.
+    """
+
+    error: float
+    names: tuple[str, ...]
+    below: Array
+    above: Array
+    nominal: float
+    worst: float
+
+    @property
+    def effect(self) -> Array:
+        """Largest change of the irregularity by each error alone [1]."""
+        return np.maximum(np.abs(self.below - self.nominal), np.abs(self.above - self.nominal))
+
+    def __str__(self) -> str:
+        rows = [
+            f"assembly errors of ± {self.error / DEGREE:.4g} deg: irregularity {self.nominal:.4g} without, "
+            f"up to {self.worst:.4g} with all together (as one Hooke's joint of "
+            f"{equivalent_angle(self.worst) / DEGREE:.3g} deg)"
+        ]
+        rows += [
+            f"  {self.names[k]}: {self.below[k]:.4g} with − error, {self.above[k]:.4g} with + error"
+            for k in np.argsort(-self.effect, kind="stable")
+        ]
+        return "\n".join(rows)
+
+    __repr__ = __str__
+
+
+def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> AssemblySensitivity:
+    """Irregularity of the output under errors of joint angles, planes and fork offsets.
+
+    The first joint's plane and the offset in front of it only turn the origin and are left out.
+
+    Parameters
+    ----------
+    error : size of every error [rad].
+    """
+    try:
+        size = parse(error, ANGLE)
+    except InputError as refused:
+        raise InputError(refused.problem, key="error", value=error, remedy=refused.remedy) from None
+    if not size > 0:
+        raise InputError("must be positive", key="error", value=error, remedy='write "1 deg", say')
+    train = chain(line)
+    hooke, shafts = train.of(Link.HOOKE), phased_shafts(train)
+    if not hooke:
+        raise InputError(
+            "has no Hooke's joint", element="driveline", remedy="its output is as even as its input"
+        )
+    places = (
+        [("angle", i) for i in hooke]
+        + [("plane", i) for i in hooke[1:]]
+        + [("fork_offset", i) for i in shafts]
+    )
+
+    def spread(signs: Array) -> Array:
+        """U for each row of signs (case, place)."""
+        change: dict[str, dict[int, Array]] = {"angle": {}, "plane": {}, "fork_offset": {}}
+        for k, (key, i) in enumerate(places):
+            change[key][i] = getattr(train.steps[i], key) + size * signs[:, k]
+        offsets = (
+            np.stack([change["fork_offset"][i] for i in shafts], axis=1)
+            if shafts
+            else np.empty((len(signs), 0))
+        )
+        return irregularity_of(train, shafts, offsets, angle=change["angle"], plane=change["plane"])
+
+    single = np.eye(len(places))
+    if len(places) <= MOST_TOGETHER:
+        together = np.array(list(product((-1.0, 1.0), repeat=len(places))))
+    else:
+        together = np.random.default_rng(0).choice((-1.0, 1.0), (2**MOST_TOGETHER, len(places)))
+    return AssemblySensitivity(
+        error=size,
+        names=tuple(f"{train.steps[i].name}.{key}" for key, i in places),
+        below=spread(-single),
+        above=spread(single),
+        nominal=float(spread(np.zeros((1, len(places))))[0]),
+        worst=float(max(spread(together).max(), spread(single).max(), spread(-single).max())),
+    )

@@ -1,0 +1,85 @@
+"""Commands about descriptions: the catalogue, starter files, the schema of the format."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trunnion.cli.options import Json
+from trunnion.cli.output import console, table, write_json
+from trunnion.errors import InputError
+
+
+def catalogue(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="Print this driveline as TOML.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """List the published drivelines, or print one as a file to start from."""
+    from trunnion.published import catalogue as published
+    from trunnion.published import entries
+
+    if name is None:
+        rows = [{"name": e.name, "title": e.title, "source": e.source} for e in entries()]
+        if as_json:
+            write_json("catalogue", {"entries": rows})
+        else:
+            table(console(), rows)
+        return
+    from trunnion.driveline.files import dumps
+
+    text = dumps(published(name))
+    entry = next(e for e in entries() if e.name == name)
+    if as_json:
+        write_json("catalogue", {"name": name, "title": entry.title, "source": entry.source, "toml": text})
+    else:
+        typer.echo(f"# {entry.title}\n# {entry.source}\n\n{text}", nl=False)
+
+
+def new(
+    starter: Annotated[
+        str | None, typer.Argument(metavar="[STARTER]", help="Without one, list what there is.")
+    ] = None,
+    path: Annotated[Path | None, typer.Argument(help="File to write; default: STARTER.toml here.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Write a commented driveline file to start from."""
+    from trunnion.driveline.starter import STARTERS
+    from trunnion.driveline.starter import starter as starter_text
+
+    if starter is None:
+        rows = [{"starter": name, "what it is": about} for name, about in STARTERS.items()]
+        if as_json:
+            write_json("new", {"starters": rows})
+        else:
+            table(console(), rows)
+        return
+    text = starter_text(starter)
+    target = path or Path(f"{starter}.toml")
+    _write_new(target, text, force)
+    if as_json:
+        write_json("new", {"written": str(target)})
+    else:
+        typer.echo(f"wrote {target}; look at it with: trunnion analyze {target}")
+
+
+def _write_new(target: Path, text: str, force: bool) -> None:
+    from trunnion.results.files import written_whole
+
+    if target.exists() and not target.is_dir() and not force:
+        remedy = "choose another name, or replace it with --force"
+        raise InputError("exists already", key="output", value=str(target), remedy=remedy)
+    with written_whole(target) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def schema(as_json: Json = False) -> None:
+    """Print the JSON Schema of driveline files, with the SI unit of every quantity."""
+    from trunnion.driveline.schema import json_schema
+
+    typer.echo(json.dumps(json_schema(), indent=2))

@@ -1,0 +1,75 @@
+"""Where charts are written; everything that can be refused is refused before the computation."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from trunnion.errors import InputError
+from trunnion.plots.style import FORMATS
+
+if TYPE_CHECKING:
+    from trunnion.driveline.operation import Operation
+    from trunnion.results.chart import StabilityChart
+
+DATA_FORMATS = ("nc", "csv")
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written to; makes nothing yet."""
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    if not there.is_dir():
+        _refuse(
+            folder, "is a file, not a folder" if there == folder else f"cannot be made, {there} is a file"
+        )
+    if not os.access(there, os.W_OK):
+        _refuse(folder, "cannot be written to")
+
+
+def check_outputs(paths: Sequence[Path]) -> None:
+    """Refuse endings that say no format, folders in the place of files, and places that cannot be written."""
+    for path in paths:
+        if path.is_dir():
+            _refuse(path, "is a folder", f"name a file in it, such as {path / 'chart.png'}")
+        if path.suffix.removeprefix(".").lower() not in (*FORMATS, *DATA_FORMATS):
+            known = ", ".join(f".{ending}" for ending in (*FORMATS, *DATA_FORMATS))
+            _refuse(path, "has no ending that names a format", f"end it in one of {known}")
+        if not path.parent.is_dir():
+            _refuse(path, "lies in no folder", f"create the folder {path.parent}")
+        if not os.access(path.parent, os.W_OK):
+            _refuse(path, "cannot be written")
+
+
+def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> NoReturn:
+    raise InputError(problem, key="--output", value=str(path), remedy=remedy) from None
+
+
+def chart_files(
+    chart: StabilityChart, folder: Path, stem: str, unit: str, operating: Operation | None = None
+) -> list[Path]:
+    """Picture and data of a chart in ``folder``, which is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        _refuse(folder, f"cannot be made: {error.strerror}")
+    names = [folder / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
+    return [write_chart(chart, path, unit, operating) for path in names]
+
+
+def write_chart(chart: StabilityChart, path: Path, unit: str, operating: Operation | None = None) -> Path:
+    """Write ``chart`` in the format that the ending of ``path`` names."""
+    ending = path.suffix.removeprefix(".").lower()
+    if ending == "nc":
+        chart.save(path)
+    elif ending == "csv":
+        chart.to_csv(path)
+    else:
+        from trunnion.plots.stability_chart import draw
+        from trunnion.plots.style import save
+
+        save(draw(chart, unit=unit, operating=operating).figure.figure, path)
+    return path

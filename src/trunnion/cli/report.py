@@ -1,0 +1,193 @@
+"""Results as text for the terminal and as plain values for JSON, speeds in the unit asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.analyses.overview import speed_unit
+from trunnion.cli import output
+from trunnion.plots.quantity_axes import quantity_axis
+from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from trunnion.analyses.natural_frequencies import NaturalFrequencies
+    from trunnion.analyses.overview import Overview
+    from trunnion.analyses.resonance_speeds import ResonanceSpeeds
+    from trunnion.analyses.stability import Stability
+    from trunnion.driveline.driveline import Driveline
+    from trunnion.results.chart import StabilityChart
+
+MOST_ROWS = 24
+"""Resonances that an overview prints."""
+
+
+def print_overview(out: Console, seen: Overview) -> None:
+    """Everything of an overview, the findings last, where they are read."""
+    unit, (low, high) = seen.unit, seen.speed_range
+    out.print(str(seen.line), soft_wrap=True)
+    output.heading(out, "Natural frequencies, all joints straight")
+    output.table(out, seen.natural_frequencies.table(frequency_unit(seen.line)))
+    span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
+    able = [
+        row
+        for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True)
+        if r.opens
+    ]
+    output.heading(out, f"Resonance speeds {span} that can open: {len(able) or 'none'}")
+    if able:
+        output.table(out, [{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
+    if len(able) > MOST_ROWS:
+        out.print(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds")
+    if seen.stability is not None:
+        output.heading(out, f"Stability at {show_speed(seen.stability.speed, unit)}")
+        out.print(seen.stability.describe(unit))
+    if seen.chart is not None:
+        output.heading(out, "Stability chart, all joints at one angle")
+        out.print(chart_text(seen.chart, unit))
+    output.heading(out, "Findings")
+    output.findings(out, seen.findings)
+
+
+def print_written(out: Console, written: Sequence[Path]) -> None:
+    """The paths, one a line, never broken."""
+    if written:
+        output.heading(out, "Written")
+    for path in written:
+        out.print(f"  {path}", soft_wrap=True)
+
+
+def chart_text(chart: StabilityChart, unit: str) -> str:
+    """What a chart covers, how its points count, the worst, and what was clipped."""
+    across = quantity_axis(chart.x_label, chart.x_unit, unit)
+    up = quantity_axis(chart.y_label, chart.y_unit, unit)
+    counts = ", ".join(f"{n} {v}" for v in Verdict if (n := chart.count(v)))
+    lines = [
+        f"  {axis.said(values)}, {len(values)} points" for axis, values in ((across, chart.x), (up, chart.y))
+    ]
+    if chart.speed is not None:
+        lines.append(f"  at {show_speed(chart.speed, unit)}")
+    lines.append(f"  {counts}")
+    if chart.count(Verdict.FAILED) < chart.verdict.size:
+        i, j = np.unravel_index(np.nanargmax(chart.spectral_radius), chart.spectral_radius.shape)
+        radius, error = chart.spectral_radius[i, j], chart.error_estimate[i, j]
+        lines.append(
+            f"  largest spectral radius {radius:.6g} ± {error:.1e} at "
+            f"{across.value(float(chart.x[j]))}, {up.value(float(chart.y[i]))}"
+        )
+    return "\n".join([*lines, *(f"  {remark}" for remark in chart.remarks)])
+
+
+def frequency_unit(line: Driveline) -> str:
+    """Hz, or rad/s for a line whose speeds are in rad/s (nondimensional ones)."""
+    return "rad/s" if speed_unit(line) == "rad/s" else "Hz"
+
+
+def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
+    """An overview as plain values; angles in rad, speeds in ``speed_unit``, frequencies in Hz."""
+    factor = speed_factor(seen.unit)
+    return {
+        "driveline": seen.line.name,
+        "elements": list(seen.line.names),
+        "speed_unit": seen.unit,
+        "speed_range": [end * factor for end in seen.speed_range],
+        "angle_range": list(seen.angle_range),
+        "natural_frequencies": modes_json(seen.natural_frequencies, "Hz"),
+        "resonance_speeds": resonances_json(seen.resonance_speeds, seen.unit),
+        "stability": None if seen.stability is None else stability_json(seen.stability, seen.unit),
+        "stability_chart": None if seen.chart is None else chart_json(seen.chart, seen.unit, written),
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in seen.findings],
+        "written": [str(path) for path in written],
+    }
+
+
+def stability_json(result: Stability, unit: str) -> dict[str, Any]:
+    """Speeds in ``unit``, growth in 1/s, the period in rad of input angle."""
+    response = result.response
+    shafts = [] if response is None else [
+        {"shaft": name, "twist_amplitude": t, "torque_amplitude": f, "torque_mean": m}
+        for name, t, f, m in zip(
+            response.shafts,
+            response.twist_amplitude.tolist(),
+            response.torque_amplitude.tolist(),
+            response.torque_mean.tolist(),
+            strict=True,
+        )
+    ]  # fmt: skip
+    return {
+        "speed": result.speed * speed_factor(unit),
+        "speed_unit": unit,
+        "verdict": str(result.verdict),
+        "spectral_radius": result.spectral_radius,
+        "error_estimate": result.error_estimate,
+        "growth_rate": result.growth_rate,
+        "growth_rate_error": result.growth_rate_error,
+        "period": result.period,
+        "multipliers": result.multipliers,
+        "multiplier_error": result.multiplier_error,
+        "resonance": None if result.resonance is None else str(result.resonance),
+        "forced_response": shafts,
+        "forced_response_linear": None if response is None else response.linear,
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings_in(unit)],
+    }
+
+
+def chart_json(chart: StabilityChart, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+    """What the chart covers and counts; the points themselves are in the files written."""
+
+    def ends(label: str, si_unit: str, values: Any) -> dict[str, Any]:
+        factor, shown = (speed_factor(unit), unit) if label == "speed" else (1.0, si_unit)
+        ends = {"low": float(values[0]) * factor, "high": float(values[-1]) * factor}
+        return {"parameter": label, "unit": shown, **ends, "points": len(values)}
+
+    return {
+        "x": ends(chart.x_label, chart.x_unit, chart.x),
+        "y": ends(chart.y_label, chart.y_unit, chart.y),
+        "speed": None if chart.speed is None else chart.speed * speed_factor(unit),
+        "speed_unit": unit,
+        "counts": {str(v): chart.count(v) for v in Verdict},
+        "unstable_share": chart.unstable_share,
+        "remarks": list(chart.remarks),
+        "written": [str(path) for path in written],
+    }
+
+
+def modes_json(modes: NaturalFrequencies, unit: str) -> dict[str, Any]:
+    """Frequencies in ``unit`` and mode shapes by the names of the inertias."""
+    return {
+        "frequency_unit": unit,
+        "rigid_body": modes.rigid_body,
+        "modes": [
+            {
+                "frequency": float(w) * speed_factor(unit),
+                "damping_ratio": float(z),
+                "shape": dict(zip(modes.names, shape.tolist(), strict=True)),
+            }
+            for w, z, shape in zip(modes.frequency, modes.damping_ratio, modes.shape.T, strict=True)
+        ],
+    }
+
+
+def resonances_json(found: ResonanceSpeeds, unit: str) -> dict[str, Any]:
+    """Resonances by ascending speed in ``unit``."""
+    return {
+        "speed_unit": unit,
+        "orders": found.orders,
+        "resonances": [
+            {
+                "speed": r.speed * speed_factor(unit),
+                "kind": r.kind,
+                "modes": list(r.modes),
+                "order": r.order,
+                "formula": r.formula,
+                "opens": r.opens,
+            }
+            for r in found
+        ],
+    }

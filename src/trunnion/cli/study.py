@@ -1,0 +1,189 @@
+"""Commands that compute: read the options, call one analysis, print or write what came out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.options import (
+    File,
+    Json,
+    LoadCase,
+    Points,
+    Speed,
+    Unit,
+    file_stem,
+    read_axis,
+    read_line,
+    read_points,
+    read_speed,
+    read_unit,
+)
+
+DEFAULT_FOLDER = Path("trunnion-out")
+
+
+def analyze(
+    file: File,
+    folder: Annotated[
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder for chart and data.")
+    ] = DEFAULT_FOLDER,
+    speed: Speed = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    points: Points = "200x150",
+    as_json: Json = False,
+) -> None:
+    """Frequencies, resonance speeds, stability, a chart, and the findings in plain sentences."""
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    size, at = read_points(points), read_speed(speed, unit)
+    from trunnion.analyses.overview import overview
+    from trunnion.cli.files import chart_files, check_folder
+    from trunnion.cli.report import overview_json, print_overview, print_written
+
+    check_folder(folder)
+    with output.progress("stability chart") as advance:
+        seen = overview(line, speed=at, unit=unit, points=size, progress=advance)
+    written = (
+        [] if seen.chart is None else chart_files(seen.chart, folder, file_stem(file), unit, seen.operation)
+    )
+    if as_json:
+        output.write_json("analyze", overview_json(seen, written))
+        return
+    out = output.console()
+    print_overview(out, seen)
+    print_written(out, written)
+
+
+def stability(
+    file: File,
+    speed: Speed = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    as_json: Json = False,
+) -> None:
+    """Floquet stability at one speed, with the linear forced response."""
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    at = read_speed(speed, unit)
+    from trunnion.analyses.stability import stability as judge
+    from trunnion.cli.report import stability_json
+
+    with output.compile_notice():
+        result = judge(line, at)
+    if as_json:
+        output.write_json("stability", stability_json(result, unit))
+        return
+    out = output.console()
+    out.print(result.describe(unit))
+    output.heading(out, "Findings")
+    output.findings(out, result.findings_in(unit))
+
+
+def stability_chart(
+    file: File,
+    x: Annotated[
+        str,
+        typer.Option(
+            "--x", metavar="PARAMETER:LOW:HIGH:POINTS[:log]", help="Or PARAMETER alone for the file's range."
+        ),
+    ] = "speed",
+    y: Annotated[str, typer.Option("--y", metavar="PARAMETER:LOW:HIGH:POINTS[:log]")] = "HookeJoint *.angle",
+    speed: Speed = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    points: Points = "200x150",
+    to: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="PATH",
+            help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Stability over any two parameters, as picture and data.
+
+    Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
+    """
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    nx, ny = read_points(points)
+    at = read_speed(speed, unit)
+    from trunnion.analyses.stability_chart import stability_chart as compute
+    from trunnion.cli.files import chart_files, check_folder, check_outputs, write_chart
+    from trunnion.cli.report import chart_json, chart_text, print_written
+    from trunnion.equations.coefficients import assemble
+
+    assembly = assemble(line)
+    across = read_axis(x, assembly, unit, nx, "--x")
+    up = read_axis(y, assembly, unit, ny, "--y")
+    if to:
+        check_outputs(to)
+    else:
+        check_folder(DEFAULT_FOLDER)
+    with output.progress("stability chart") as advance:
+        chart = compute(assembly, across, up, speed=at, progress=advance)
+    if to:
+        written = [write_chart(chart, path, unit) for path in to]
+    else:
+        written = chart_files(chart, DEFAULT_FOLDER, file_stem(file), unit)
+    if as_json:
+        output.write_json("stability-chart", chart_json(chart, unit, written))
+        return
+    out = output.console()
+    out.print(chart_text(chart, unit))
+    print_written(out, written)
+
+
+def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) -> None:
+    """Natural frequencies and damping ratios with all joints straight."""
+    line = read_line(file)
+    from trunnion.analyses.natural_frequencies import natural_frequencies as find
+    from trunnion.cli.report import frequency_unit, modes_json
+
+    unit = read_unit(line, unit or frequency_unit(line))
+
+    modes = find(line)
+    if as_json:
+        output.write_json("natural-frequencies", modes_json(modes, unit))
+        return
+    out = output.console()
+    out.print(f"{len(modes.frequency)} natural frequencies, all joints straight")
+    output.table(out, modes.table(unit))
+
+
+def resonance_speeds(
+    file: File,
+    orders: Annotated[int, typer.Option("--orders", help="Highest order k.", min=1, max=20)] = 2,
+    everywhere: Annotated[
+        bool, typer.Option("--all", help="Also those outside the file's speed_range.")
+    ] = False,
+    unit: Unit = None,
+    as_json: Json = False,
+) -> None:
+    """Named parametric resonance speeds in the operating range, and which of them can open."""
+    line = read_line(file)
+    unit = read_unit(line, unit)
+    from trunnion.analyses.resonance_speeds import resonance_speeds as find
+
+    found = find(line, orders)
+    limits = line.operation.speed_range if line.operation else None
+    shown = found if everywhere or limits is None else found.within(*limits)
+    if as_json:
+        from trunnion.cli.report import resonances_json
+
+        output.write_json("resonance-speeds", resonances_json(shown, unit))
+        return
+    out = output.console()
+    rows: list[dict[str, Any]] = shown.table(unit)
+    where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
+    out.print(f"{len(rows)} resonance speeds up to order {orders}{where}")
+    if rows:
+        output.table(out, rows)

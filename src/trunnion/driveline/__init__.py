@@ -1,0 +1,47 @@
+"""What the user describes: elements, the driveline they form, its files, its units.
+
+Importing this package loads pydantic and nothing heavier; pint is loaded when the first unit is read.
+"""
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import (
+    ConstantSpeed,
+    Disk,
+    DoubleCardanJoint,
+    Element,
+    HookeJoint,
+    IdealJoint,
+    Ratio,
+    Shaft,
+    TripodJoint,
+)
+from trunnion.driveline.files import dump, dumps, load, loads
+from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.quantities import deg, hz, rpm
+from trunnion.driveline.schema import json_schema
+from trunnion.driveline.starter import STARTERS, starter
+
+__all__ = [
+    "STARTERS",
+    "ConstantSpeed",
+    "Disk",
+    "DoubleCardanJoint",
+    "Driveline",
+    "Element",
+    "HookeJoint",
+    "IdealJoint",
+    "LoadCase",
+    "Operation",
+    "Ratio",
+    "Shaft",
+    "TripodJoint",
+    "deg",
+    "dump",
+    "dumps",
+    "hz",
+    "json_schema",
+    "load",
+    "loads",
+    "rpm",
+    "starter",
+]

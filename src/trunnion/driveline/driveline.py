@@ -1,0 +1,222 @@
+"""The driveline: elements in order, each hanging on the one before it or on the one it names."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Iterable
+from functools import cached_property
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, field_validator, model_validator
+
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Name, Ratio, Shaft
+from trunnion.driveline.operation import Operation
+from trunnion.driveline.quantities import Dimensionless, Frequency
+from trunnion.driveline.refusals import about, nearest, refuse
+from trunnion.driveline.summary import summary
+from trunnion.errors import InputError, InputRemark
+
+
+class Driveline(BaseModel):
+    """A chain of elements from the drive to the load, with branches where an element says ``after``.
+
+    Parameters
+    ----------
+    elements : from the input to the output.
+    name, description : for titles and reports.
+    damping_ratio : one damping ratio for the whole line instead of damping in the shafts.
+    damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
+    operation : where it runs.
+
+    Raises
+    ------
+    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    elements: tuple[SerializeAsAny[Element], ...]
+    name: Name | None = None
+    description: str | None = None
+    damping_ratio: Dimensionless | None = None
+    damping_ratio_frequency: Frequency | None = None
+    operation: Operation | None = None
+
+    def __init__(
+        self,
+        elements: Iterable[Element],
+        *,
+        name: str | None = None,
+        description: str | None = None,
+        damping_ratio: float | str | None = None,
+        damping_ratio_frequency: float | str | None = None,
+        operation: Operation | None = None,
+    ) -> None:
+        data: dict[str, Any] = {
+            "elements": _checked(elements),
+            "name": name,
+            "description": description,
+            "damping_ratio": damping_ratio,
+            "damping_ratio_frequency": damping_ratio_frequency,
+            "operation": operation,
+        }
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element="driveline") from None
+        if self.damping_ratio is not None and self.damping_ratio < 0:
+            remark = "is negative and feeds energy into the line; write it positive unless that is meant"
+            warnings.warn(
+                InputRemark(f"driveline.damping_ratio = {self.damping_ratio:g}: {remark}"), stacklevel=2
+            )
+
+    @field_validator("operation", mode="before")
+    @classmethod
+    def _is_operation(cls, value: object) -> object:
+        if value is not None and not isinstance(value, Operation):
+            raise InputError("is not an Operation", remedy='write tn.Operation(speed="1500 rpm"), say')
+        return value
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        _check_names(self.names)
+        _check_ends(self, self.parents)
+        _check_damping(self)
+        _check_loads(self)
+        return self
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Name of every element: as given, or its kind and its ordinal among all of that kind ("Shaft 2")."""
+        seen: Counter[str] = Counter()
+        names = []
+        for element in self.elements:
+            seen[element.kind] += 1
+            names.append(element.name or f"{element.kind} {seen[element.kind]}")
+        return tuple(names)
+
+    @cached_property
+    def parents(self) -> tuple[int | None, ...]:
+        """Index of the element each one follows: the one named in ``after``, or the previous; first None."""
+        return tuple(_parent(self, i) for i in range(len(self.elements)))
+
+    def index(self, name: str) -> int:
+        """Place of the element called `name`; InputError with the nearest name where there is none."""
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise InputError(
+                "is not an element of this driveline", key=str(name), remedy=nearest(str(name), self.names)
+            ) from None
+
+    def with_load(self, case: str) -> Driveline:
+        """The same line under the torques of one of its load cases; disks not named there keep theirs."""
+        loads = (self.operation or Operation()).load_case(case).loads
+        changed = [
+            type(e)(**{**e.stated, "load_torque": loads[n]}) if n in loads else e
+            for e, n in zip(self.elements, self.names, strict=True)
+        ]
+        return self._but(elements=changed)
+
+    def replace(self, name: str, **changes: Any) -> Driveline:
+        """The same line with fields of the element called `name` changed; None takes a field away.
+
+        ``line.replace("HookeJoint 1", angle="15 deg")``
+        """
+        place = self.index(name)
+        old = self.elements[place]
+        stated = {key: value for key, value in {**old.stated, **changes}.items() if value is not None}
+        try:
+            new = type(old)(**stated)
+        except InputError as error:
+            raise about(error, name) from None
+        return self._but(elements=[*self.elements[:place], new, *self.elements[place + 1 :]])
+
+    def _but(self, **changes: Any) -> Driveline:
+        return Driveline(**{**{key: getattr(self, key) for key in type(self).model_fields}, **changes})
+
+    def __repr__(self) -> str:
+        return summary(self)
+
+    __str__ = __repr__
+
+
+def _checked(elements: Iterable[Element]) -> tuple[Element, ...]:
+    remedy = "write tn.Driveline([tn.ConstantSpeed(), tn.Shaft(...), tn.Disk(...)])"
+    if isinstance(elements, Element) or not isinstance(elements, Iterable):
+        raise InputError(f"must be a list, not a {type(elements).__name__}", key="elements", remedy=remedy)
+    checked = tuple(elements)
+    if not checked:
+        raise InputError("has no elements", element="driveline", remedy=remedy)
+    for i, element in enumerate(checked, start=1):
+        if not isinstance(element, Element):
+            raise InputError("is not an element", element=f"element {i}", value=element, remedy=remedy)
+    return checked
+
+
+def _check_names(names: tuple[str, ...]) -> None:
+    for name, count in Counter(names).items():
+        if count > 1:
+            places = " and ".join(str(i) for i, n in enumerate(names, start=1) if n == name)
+            raise InputError(
+                f"names elements {places}", element=name, key="name", remedy="rename one of them"
+            )
+
+
+def _parent(line: Driveline, place: int) -> int | None:
+    after, name = line.elements[place].after, line.names[place]
+    if after is None:
+        return place - 1 if place else None
+    where: dict[str, Any] = {"element": name, "key": "after", "value": after}
+    if after not in line.names[:place]:
+        if after in line.names:
+            raise InputError("does not come earlier", **where, remedy=f"move {name} behind {after}")
+        raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
+    parent = line.names.index(after)
+    if not isinstance(line.elements[parent], Disk | ConstantSpeed | Ratio):
+        remedy = "branches leave from a Disk, a ConstantSpeed or a Ratio; put a Disk there"
+        raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
+    return parent
+
+
+def _check_ends(line: Driveline, parents: tuple[int | None, ...]) -> None:
+    """A prescribed rotation in mid-line would cut it into two independent ones."""
+    for i, element in enumerate(line.elements):
+        if isinstance(element, ConstantSpeed) and i > 0 and i in parents:
+            follower = line.names[parents.index(i)]
+            remedy = f"make it the first or the last of its branch, or hang {follower} elsewhere with after"
+            raise InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)
+
+
+def _check_damping(line: Driveline) -> None:
+    if line.damping_ratio is None:
+        if line.damping_ratio_frequency is not None:
+            remedy = "write damping_ratio = 0.02, say, or leave it out"
+            raise InputError("stands without damping_ratio", key="damping_ratio_frequency", remedy=remedy)
+        return
+    if line.damping_ratio_frequency is not None and not line.damping_ratio_frequency > 0:
+        raise InputError("must be positive", key="damping_ratio_frequency", remedy='write "50 Hz", say')
+    for element, name in zip(line.elements, line.names, strict=True):
+        if isinstance(element, Shaft) and (element.damping or element.loss_factor is not None):
+            key = "damping" if element.damping else "loss_factor"
+            remedy = "leave out one of the two"
+            raise InputError(
+                "stands beside the line's damping_ratio",
+                element=name,
+                key=key,
+                value=getattr(element, key),
+                remedy=remedy,
+            )
+
+
+def _check_loads(line: Driveline) -> None:
+    disks = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Disk)]
+    for case in line.operation.load_cases if line.operation else ():
+        for name, torque in case.loads.items():
+            if name not in disks:
+                problem = "is not a Disk of this driveline"
+                if name in line.names:
+                    problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
+                where = f"load case {case.name}"
+                raise InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))

@@ -1,0 +1,498 @@
+"""What a driveline is made of.
+
+Every element is a frozen value that checks itself when it is made: unknown, missing, wrongly dimensioned and
+non-physical numbers are refused with an :class:`~trunnion.errors.InputError` of one line. Numbers are in SI
+units; strings with units ("12 deg") are taken everywhere. What the user states stays as stated; what follows
+from it (a tube's stiffness, a tooth ratio) is a property.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
+
+from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.quantities import (
+    DEGREE,
+    RATIO,
+    Angle,
+    Damping,
+    Density,
+    Dimensionless,
+    Frequency,
+    Inertia,
+    Kind,
+    Length,
+    Pressure,
+    Quantity,
+    Stiffness,
+    Torque,
+)
+from trunnion.driveline.refusals import refuse
+from trunnion.errors import InputError, InputRemark
+
+LARGE_ANGLE = 45 * DEGREE
+"""Bend angle [rad] above which a file gets a remark; most joints are not built for more."""
+
+Doubt = tuple[str, str, str]
+"""(key, what is odd, what to do about it)."""
+
+
+def is_name(value: object) -> bool:
+    """Whether `value` can be a name: one line of text; no *, which stands for "all" in parameter paths."""
+    return (
+        isinstance(value, str) and value == value.strip() != "" and value.isprintable() and "*" not in value
+    )
+
+
+def _name(value: object) -> object:
+    if not is_name(value):
+        raise InputError(
+            "is not a name", value=value, remedy="write one line of text without * or outer blanks"
+        )
+    return value
+
+
+Name = Annotated[str, BeforeValidator(_name)]
+
+
+class Element(BaseModel):
+    """Base of all elements.
+
+    Parameters
+    ----------
+    name : how messages, parameters and plots call it; by default its kind and ordinal, as "Shaft 2".
+    after : name of the earlier element it hangs on, where a branch leaves the chain; by default the previous
+        element.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    example: ClassVar[str] = ""
+
+    name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
+    after: Name | None = Field(
+        default=None, description="earlier element it hangs on; default: the previous one"
+    )
+
+    def __init__(self, **data: Any) -> None:
+        label = data["name"] if is_name(data.get("name")) else type(self).__name__
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element=label, example=self.example) from None
+        for key, problem, remedy in self.doubts():
+            remark = InputError(problem, element=label, key=key, value=getattr(self, key), remedy=remedy)
+            warnings.warn(InputRemark(str(remark)), stacklevel=2)
+
+    @property
+    def kind(self) -> str:
+        """The class name: what ``type`` says in a file."""
+        return type(self).__name__
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults: ``type(e)(**e.stated) == e``."""
+        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
+
+    def doubts(self) -> Iterator[Doubt]:
+        """What is accepted with a remark."""
+        yield from ()
+
+    def file_doubts(self) -> Iterator[Doubt]:
+        """What earns a remark when it comes from a file, where nobody explores on purpose."""
+        yield from ()
+
+    @classmethod
+    def quantity_of(cls, key: str) -> Kind | None:
+        """The physical kind of field `key`, or None where it is not a quantity."""
+        field = cls.model_fields[key]
+        marks = [*field.metadata]
+        for part in getattr(field.annotation, "__args__", ()):  # Optional[Annotated[...]]
+            marks += getattr(part, "__metadata__", ())
+        return next((mark.kind for mark in marks if isinstance(mark, Quantity)), None)
+
+
+class ConstantSpeed(Element):
+    """A prescribed rotation: the drive, and at the far end of a line a clamp that turns with it.
+
+    The speed itself belongs to the analysis (or to the file's ``[operation]``), not to the driveline.
+    """
+
+
+class Shaft(Element):
+    """A torsional spring and damper, optionally a tube with its own inertia (lumped half to each end).
+
+    Parameters
+    ----------
+    stiffness : torsional stiffness [N m/rad]; or else the tube's geometry.
+    damping : viscous damping [N m s/rad]; negative is allowed with a remark.
+    outer_diameter, inner_diameter, length : of the tube [m]; inner_diameter = 0 is a solid bar.
+    shear_modulus : G [Pa].
+    density : ρ [kg/m³]; 0 leaves the tube without inertia.
+    young_modulus : E [Pa], for bending.
+    loss_factor, loss_factor_frequency : instead of `damping`, η at a frequency ω [rad/s]: c = ηk/ω.
+    fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
+        the angle of the fork from the joint plane.
+    """
+
+    example: ClassVar[str] = 'stiffness = "12 kN*m/rad"'
+
+    stiffness: Stiffness | None = Field(default=None, description="torsional stiffness; or give the tube")
+    damping: Damping = Field(default=0.0, description="viscous damping")
+    outer_diameter: Length | None = Field(default=None, description="of the tube")
+    inner_diameter: Length | None = Field(
+        default=None, description="of the tube; 0 for a solid bar, as by default"
+    )
+    length: Length | None = Field(default=None, description="of the tube")
+    shear_modulus: Pressure | None = Field(default=None, description="of the tube's material; steel 79.3 GPa")
+    density: Density | None = Field(
+        default=None, description="of the tube's material; 0: no inertia, as by default"
+    )
+    young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
+    loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
+    loss_factor_frequency: Frequency | None = Field(
+        default=None, description="at which the loss factor holds"
+    )
+    fork_offset: Angle = Field(
+        default=0.0, description="angle between the forks at the two ends; 0 is in line"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _tube_defaults(cls, data: Any) -> Any:
+        return _with_defaults(data, "outer_diameter", inner_diameter=0.0, density=0.0)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        tube = ("outer_diameter", "inner_diameter", "length", "shear_modulus", "density", "young_modulus")
+        _one_way(self, "stiffness", tube, ("outer_diameter", "length", "shear_modulus"))
+        _positive(self, "stiffness", "outer_diameter", "length", "shear_modulus", "young_modulus")
+        _not_negative(self, "inner_diameter", "density", "loss_factor")
+        _positive(self, "loss_factor_frequency")
+        _bore(self)
+        if self.loss_factor is not None and self.loss_factor_frequency is None:
+            remedy = 'write the frequency at which it holds, for example "50 Hz"'
+            raise InputError("is missing beside loss_factor", key="loss_factor_frequency", remedy=remedy)
+        if self.loss_factor is None and self.loss_factor_frequency is not None:
+            raise InputError(
+                "is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say"
+            )
+        if self.loss_factor is not None and self.damping != 0.0:
+            remedy = "leave one of the two out"
+            raise InputError("stands beside loss_factor", key="damping", value=self.damping, remedy=remedy)
+        return self
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """k [N m/rad], as stated or from the tube."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.outer_diameter and self.length and self.shear_modulus and self.inner_diameter is not None
+        return tube_stiffness(self.outer_diameter, self.inner_diameter, self.length, self.shear_modulus)
+
+    @property
+    def damping_coefficient(self) -> float:
+        """c [N m s/rad], as stated or from the loss factor."""
+        if self.loss_factor is None or self.loss_factor_frequency is None:
+            return self.damping
+        return self.loss_factor * self.torsional_stiffness / self.loss_factor_frequency
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment of the whole tube [kg m²]; 0 where no density is stated."""
+        if not self.density:
+            return 0.0
+        assert self.outer_diameter and self.length and self.inner_diameter is not None
+        return tube_inertia(self.outer_diameter, self.inner_diameter, self.length, self.density)
+
+    def doubts(self) -> Iterator[Doubt]:
+        if self.damping < 0:
+            yield (
+                "damping",
+                "is negative and feeds energy into the line",
+                "write it positive unless that is meant",
+            )
+
+
+class Disk(Element):
+    """A rigid inertia: flywheel, flange, gear, roll, wheel.
+
+    Parameters
+    ----------
+    inertia : polar moment of inertia [kg m²]; or else the geometry.
+    outer_diameter, inner_diameter, thickness : [m]; inner_diameter = 0 has no bore.
+    density : ρ [kg/m³].
+    load_torque : outer torque [N m]; positive resists rotation.
+    """
+
+    example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
+
+    inertia: Inertia | None = Field(default=None, description="polar moment of inertia; or give the geometry")
+    outer_diameter: Length | None = Field(default=None, description="of the disk")
+    inner_diameter: Length | None = Field(default=None, description="of its bore; 0 by default")
+    thickness: Length | None = Field(default=None, description="of the disk")
+    density: Density | None = Field(default=None, description="of its material; steel 7850 kg/m^3")
+    load_torque: Torque = Field(default=0.0, description="outer torque; positive resists rotation")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bore_default(cls, data: Any) -> Any:
+        return _with_defaults(data, "outer_diameter", inner_diameter=0.0)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        needed = ("outer_diameter", "thickness", "density")
+        _one_way(self, "inertia", ("inner_diameter", *needed), needed)
+        _positive(self, "inertia", *needed)
+        _not_negative(self, "inner_diameter")
+        _bore(self)
+        return self
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment [kg m²], as stated or from the geometry."""
+        if self.inertia is not None:
+            return self.inertia
+        assert self.outer_diameter and self.thickness and self.density and self.inner_diameter is not None
+        return disk_inertia(self.outer_diameter, self.inner_diameter, self.thickness, self.density)
+
+
+class _Joint(Element):
+    """What all kinds of joint share: a bend angle below 90°."""
+
+    @field_validator("angle", check_fields=False)
+    @classmethod
+    def _bendable(cls, angle: float) -> float:
+        if abs(angle) < 90 * DEGREE:
+            return angle
+        remedy = 'numbers are radians: write tn.deg(12) or "12 deg" for twelve degrees'
+        raise InputError("must be less than 90 deg", value=angle, remedy=remedy)
+
+    def file_doubts(self) -> Iterator[Doubt]:
+        angle: float = getattr(self, "angle", 0.0)
+        if abs(angle) > LARGE_ANGLE:
+            yield (
+                "angle",
+                f"is {angle / DEGREE:g} deg, more than most joints allow (45 deg)",
+                "check the angle",
+            )
+
+
+class HookeJoint(_Joint):
+    """A Hooke's (Cardan, universal) joint: a cross between two forks.
+
+    Parameters
+    ----------
+    angle : bend angle between its two shafts [rad], less than 90°.
+    plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+    """
+
+    example: ClassVar[str] = 'angle = "12 deg"'
+
+    angle: Angle = Field(description="bend angle between the two shafts")
+    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+
+
+class IdealJoint(_Joint):
+    """A constant-velocity joint: passes rotation unchanged.
+
+    Parameters
+    ----------
+    angle : bend angle [rad]; for drawings, secondary couples and support forces.
+    plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+    """
+
+    angle: Angle = Field(default=0.0, description="bend angle, for drawings and secondary couples")
+    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+
+
+class TripodJoint(_Joint):
+    """A tripod joint: three trunnions of one shaft in three axial tracks of the other.
+
+    Parameters
+    ----------
+    angle : bend angle between its two shafts [rad], less than 90°.
+    radius : distance of the trunnions' rollers from the spider's centre [m].
+    length : of the shaft that carries the spider, from the spider to the joint at its far end [m].
+    plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+    spider : the side the spider is on, "output" (the housing drives) or "input".
+    """
+
+    example: ClassVar[str] = 'angle = "8 deg", radius = "30 mm" and length = "0.5 m"'
+
+    angle: Angle = Field(description="bend angle between the two shafts")
+    radius: Length = Field(description="of the rollers about the spider's centre")
+    length: Length = Field(description="of the shaft that carries the spider, up to the joint at its far end")
+    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+    spider: Literal["input", "output"] = Field(
+        default="output", description='side the spider is on: "input" or "output"'
+    )
+
+    @field_validator("spider", mode="before")
+    @classmethod
+    def _a_side(cls, side: object) -> object:
+        if side in ("input", "output"):
+            return side
+        raise InputError("is not a side of the joint", value=side, remedy='write "input" or "output"')
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        _positive(self, "radius", "length")
+        return self
+
+
+class DoubleCardanJoint(_Joint):
+    """Two crosses on a common centre yoke.
+
+    Parameters
+    ----------
+    angle : bend angle between its two shafts [rad], less than 90°.
+    plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+    distance_ratio : for a joint without centring device, distance of the first cross from the point where the
+        two axes meet over that of the second; by default the joint is centred and both crosses bend equally.
+    yoke_length : between the two crosses [m], for support forces.
+    """
+
+    example: ClassVar[str] = 'angle = "20 deg"'
+
+    angle: Angle = Field(description="bend angle between the two shafts")
+    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+    distance_ratio: Dimensionless | None = Field(
+        default=None,
+        description="without centring: distance of the first cross to where the axes meet over the second's",
+    )
+    yoke_length: Length | None = Field(
+        default=None, description="between the two crosses, for support forces"
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        _positive(self, "distance_ratio", "yoke_length")
+        return self
+
+
+def _tooth_number(value: object) -> object:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError("must be a whole number of teeth", value=value, remedy="write a positive integer")
+    return value
+
+
+Teeth = Annotated[int, BeforeValidator(_tooth_number)]
+
+
+class Ratio(Element):
+    """An ideal gear or final drive: rigid, lossless, without inertia.
+
+    Parameters
+    ----------
+    ratio : input speed over output speed; negative reverses.
+    teeth_in, teeth_out : tooth numbers instead; the ratio is teeth_out/teeth_in, exactly, and both shafts
+        count their rotation positive in their own sense of turning.
+    """
+
+    example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"
+
+    ratio: Dimensionless | None = Field(
+        default=None, description="input speed over output speed; negative reverses"
+    )
+    teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
+    teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        _one_way(self, "ratio", ("teeth_in", "teeth_out"), ("teeth_in", "teeth_out"))
+        if self.ratio == 0:
+            raise InputError(
+                "must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed"
+            )
+        return self
+
+    @property
+    def fraction(self) -> Fraction:
+        """The speed ratio exactly: from the tooth numbers, or the decimal as it was written."""
+        if self.teeth_in is not None and self.teeth_out is not None:
+            return Fraction(self.teeth_out, self.teeth_in)
+        return Fraction(str(self.ratio))
+
+    @property
+    def speed_ratio(self) -> float:
+        """Input speed over output speed."""
+        return float(self.fraction)
+
+
+KINDS: dict[str, type[Element]] = {
+    kind.__name__: kind
+    for kind in (ConstantSpeed, Shaft, Disk, HookeJoint, IdealJoint, TripodJoint, DoubleCardanJoint, Ratio)
+}
+"""The elements by the name that ``type`` gives them in a file."""
+
+
+def _with_defaults(data: Any, given: str, **defaults: float) -> Any:
+    """Defaults that hold only where `given` is: elsewhere the keys stay unset and are no parameters."""
+    if isinstance(data, dict) and data.get(given) is not None:
+        return data | {k: v for k, v in defaults.items() if data.get(k) is None}
+    return data
+
+
+def _one_way(element: Element, direct: str, other: tuple[str, ...], needed: tuple[str, ...]) -> None:
+    """Refuse unless exactly one of two descriptions is given, and the second in full."""
+    stated = [key for key in other if getattr(element, key) is not None]
+    if getattr(element, direct) is not None:
+        if stated:
+            remedy = f"leave out either {direct} or {', '.join(stated)}"
+            raise InputError(
+                f"stands beside {direct}", key=stated[0], value=getattr(element, stated[0]), remedy=remedy
+            )
+        return
+    missing = [key for key in needed if getattr(element, key) is None]
+    if stated and missing:
+        raise InputError(
+            f"is missing beside {stated[0]}", key=missing[0], remedy=f"needed are {', '.join(needed)}"
+        )
+    if missing:
+        remedy = (
+            f"write {element.example}, or {', '.join(needed)}"
+            if direct != "ratio"
+            else f"write {element.example}"
+        )
+        raise InputError("is missing", key=direct, remedy=remedy)
+
+
+def _positive(element: Element, *keys: str) -> None:
+    for key in keys:
+        value = getattr(element, key)
+        if value is not None and not value > 0:
+            raise InputError("must be positive", key=key, value=value, remedy=_advice(element, key))
+
+
+def _not_negative(element: Element, *keys: str) -> None:
+    for key in keys:
+        value = getattr(element, key)
+        if value is not None and value < 0:
+            raise InputError("must not be negative", key=key, value=value, remedy=_advice(element, key))
+
+
+def _advice(element: Element, key: str) -> str:
+    kind = element.quantity_of(key) or RATIO
+    return f'write for example "{kind.example}"' if kind is not RATIO else f"write for example {kind.example}"
+
+
+def _bore(element: Any) -> None:
+    outer, inner = element.outer_diameter, element.inner_diameter
+    if outer is not None and inner is not None and inner >= outer:
+        problem = f"must be smaller than outer_diameter = {outer:g} m"
+        raise InputError(
+            problem, key="inner_diameter", value=inner, remedy="check the units, or swap the two"
+        )

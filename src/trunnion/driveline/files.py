@@ -1,0 +1,282 @@
+"""Drivelines as TOML files: read, write, and say in one line what is wrong and where.
+
+::
+
+    format = 1
+    name = "..."
+
+    [operation]
+    speed = "1500 rpm"
+
+    [[element]]
+    type = "Shaft"
+    stiffness = "12 kN*m/rad"
+
+Reading, writing and reading again gives an equal driveline: units are written where they read back exactly.
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+import warnings
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import KINDS, Element, is_name
+from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
+from trunnion.driveline.refusals import about, nearest
+from trunnion.errors import InputError, InputRemark
+
+FORMAT = 1
+TOP_KEYS = (
+    "format",
+    "name",
+    "description",
+    "damping_ratio",
+    "damping_ratio_frequency",
+    "operation",
+    "element",
+)
+
+
+def load(path: str | os.PathLike[str]) -> Driveline:
+    """Read a driveline from a TOML file.
+
+    Raises
+    ------
+    InputError : the file cannot be read, is not TOML or describes no driveline; names file and place.
+    """
+    return loads(_read(Path(path)), source=Path(path).name)
+
+
+def loads(text: str, *, source: str = "") -> Driveline:
+    """Read a driveline from TOML text; `source` is what messages call it."""
+    try:
+        return _driveline(_toml(text), source)
+    except InputError as error:
+        raise _located(error, source) from None
+
+
+def dumps(line: Driveline) -> str:
+    """`line` as TOML text that reads back as an equal driveline."""
+    top: dict[str, Any] = {"format": FORMAT}
+    for key in ("name", "description", "damping_ratio"):
+        if getattr(line, key) is not None:
+            top[key] = getattr(line, key)
+    if line.damping_ratio_frequency is not None:
+        top["damping_ratio_frequency"] = written(line.damping_ratio_frequency, SPEED, "Hz")
+    blocks = [_block("", top)]
+    if line.operation is not None:
+        blocks += _operation_blocks(line.operation)
+    blocks += [_block("[[element]]", _element_table(element)) for element in line.elements]
+    return "\n".join(blocks)
+
+
+def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
+    """Write `line` to a TOML file; the file appears whole or stays as it was."""
+    target = Path(path)
+    if target.is_dir():
+        raise InputError("is a folder", key=str(target), remedy="name a file in it")
+    target = Path(os.path.realpath(target))  # a link keeps pointing at what it points at
+    draft = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        try:
+            draft.write_text(dumps(line), encoding="utf-8", newline="\n")
+            os.replace(draft, target)
+        finally:
+            draft.unlink(missing_ok=True)
+    except OSError as error:
+        remedy = "check that the folder exists and that you may write there"
+        raise InputError(f"cannot be written ({error.strerror})", key=str(path), remedy=remedy) from None
+
+
+def _read(path: Path) -> str:
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        there = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
+        remedy = (
+            nearest(path.name, there)
+            if there
+            else 'check the path, or start one with "trunnion new two-shaft"'
+        )
+        raise InputError("file not found", key=str(path), remedy=remedy) from None
+    except IsADirectoryError:
+        raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
+    except OSError as error:
+        if path.is_dir():  # Windows reports a folder as a denied permission
+            raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
+        raise InputError(
+            f"cannot be read ({error.strerror})", key=str(path), remedy="check the file"
+        ) from None
+    if not raw.strip():
+        raise InputError("is empty", key=str(path), remedy='start from "trunnion new two-shaft"')
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = "\0"
+    if "\0" in text:
+        remedy = "save it as UTF-8 text, or name the driveline's TOML file"
+        raise InputError("is not a text file in UTF-8", key=str(path), remedy=remedy)
+    return text
+
+
+def _toml(text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        remedy = 'write lines as key = value, with text and units in quotes: angle = "12 deg"'
+        raise InputError(f"is not valid TOML: {error}", remedy=remedy) from None
+    except RecursionError:
+        raise InputError("is not valid TOML: nested too deeply", remedy="remove the extra brackets") from None
+
+
+def _driveline(table: dict[str, Any], source: str) -> Driveline:
+    # an unknown key comes before a missing one: "formt = 1" is a slip of the pen, not a missing format
+    for key, value in table.items():
+        if key not in TOP_KEYS:
+            unused = [k for k in TOP_KEYS if k not in table]
+            raise InputError("unknown key", key=key, value=value, remedy=nearest(key, unused))
+    _check_format(table)
+    elements = _elements(table.get("element"), source)
+    operation = _operation(table["operation"]) if "operation" in table else None
+    rest = {k: v for k, v in table.items() if k not in ("format", "element", "operation")}
+    return Driveline(elements, operation=operation, **rest)
+
+
+def _check_format(table: dict[str, Any]) -> None:
+    number = table.get("format")
+    if "format" not in table:
+        raise InputError("is missing", key="format", remedy=f"write format = {FORMAT} in the first line")
+    if isinstance(number, int) and not isinstance(number, bool) and number > FORMAT:
+        remedy = f"this version reads format = {FORMAT}; install a newer Trunnion"
+        raise InputError("is a later format", key="format", value=number, remedy=remedy)
+    if type(number) is not int or number != FORMAT:
+        raise InputError(
+            "is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}"
+        )
+
+
+def _elements(tables: Any, source: str) -> list[Element]:
+    if isinstance(tables, dict):
+        raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
+    if not isinstance(tables, list) or not tables:
+        remedy = (
+            'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
+        )
+        raise InputError("has no elements", key="element", remedy=remedy)
+    seen: Counter[str] = Counter()
+    return [_element(table, place, seen, source) for place, table in enumerate(tables, start=1)]
+
+
+def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element:
+    if not isinstance(table, dict):
+        raise InputError(
+            "is not a table", element=f"element {place}", value=table, remedy="write [[element]]"
+        )
+    data = dict(table)
+    kind = data.pop("type", None)
+    name = data.get("name")
+    own = name if is_name(name) else None
+    if kind is None:
+        near = [key for key in data if key.lower() in ("typ", "kind", "types", "element")]
+        remedy = f"write type instead of {near[0]}" if near else 'write type = "Shaft", say'
+        label = f"{own} (element {place})" if own else f"element {place}"
+        raise InputError("is missing", element=label, key="type", remedy=remedy)
+    if not isinstance(kind, str) or kind not in KINDS:
+        label = f"{own} (element {place})" if own else f"element {place}"
+        remedy = nearest(str(kind), KINDS)
+        raise InputError("unknown element type", element=label, key="type", value=kind, remedy=remedy)
+    seen[kind] += 1
+    label = f"{own or f'{kind} {seen[kind]}'} (element {place})"
+    try:
+        with warnings.catch_warnings():
+            # said again below, with the place in the file
+            warnings.simplefilter("ignore", InputRemark)
+            element = KINDS[kind](**data)
+    except InputError as error:
+        raise about(error, label) from None
+    for key, problem, remedy in (*element.doubts(), *element.file_doubts()):
+        remark = InputError(problem, element=label, key=key, value=data.get(key), remedy=remedy)
+        warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
+    return element
+
+
+def _operation(table: Any) -> Operation:
+    if not isinstance(table, dict):
+        raise InputError(
+            "is not a table", key="operation", value=table, remedy="write [operation] on its own line"
+        )
+    data = dict(table)
+    if "load_cases" in data:  # the name in Python; a file repeats [[operation.load_case]]
+        raise InputError(
+            "unknown key", element="operation", key="load_cases", remedy='did you mean "load_case"?'
+        )
+    cases = data.pop("load_case", [])
+    if not isinstance(cases, list):
+        remedy = "write [[operation.load_case]] with double brackets"
+        raise InputError("is a single table", element="operation", key="load_case", remedy=remedy)
+    return Operation(
+        **data, load_cases=[_load_case(case, place) for place, case in enumerate(cases, start=1)]
+    )
+
+
+def _load_case(case: Any, place: int) -> LoadCase:
+    label = f"load case {place}"
+    if not isinstance(case, dict):
+        raise InputError("is not a table", element=label, value=case, remedy="write [[operation.load_case]]")
+    try:
+        return LoadCase(**case)
+    except InputError as error:
+        if is_name(case.get("name")):
+            raise
+        raise about(error, label) from None
+
+
+def _located(error: InputError, source: str) -> InputError:
+    """The same complaint with the file's name in front."""
+    if not source:
+        return error
+    element = f"{source}: {error.element}" if error.element else ""
+    key = error.key if error.element else f"{source}: {error.key}" if error.key else source
+    return InputError(error.problem, element=element, key=key, value=error.value, remedy=error.remedy)
+
+
+def _element_table(element: Element) -> dict[str, Any]:
+    table: dict[str, Any] = {"type": element.kind}
+    for key, value in element.stated.items():
+        kind = element.quantity_of(key)
+        table[key] = value if kind is None else written(value, kind)
+    return table
+
+
+def _operation_blocks(operation: Operation) -> list[str]:
+    def ends(values: tuple[float, float], kind: Kind, unit: str | None) -> list[float | str]:
+        return [written(value, kind, unit) for value in values]
+
+    table: dict[str, Any] = {}
+    if operation.speed is not None:
+        table["speed"] = written(operation.speed, SPEED, operation.speed_unit)
+    if operation.speed_range is not None:
+        table["speed_range"] = ends(operation.speed_range, SPEED, operation.speed_unit)
+    if operation.angle_range is not None:
+        table["angle_range"] = ends(operation.angle_range, ANGLE, None)
+    if operation.speed_unit != "rpm":
+        table["speed_unit"] = operation.speed_unit
+    blocks = [_block("[operation]", table)]
+    for case in operation.load_cases:
+        blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
+        blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
+    return blocks
+
+
+def _block(header: str, table: dict[str, Any]) -> str:
+    import tomli_w
+
+    # one table at a time: given the whole document, tomli_w writes short tables inline
+    body = tomli_w.dumps(table)
+    return f"{header}\n{body}" if header else body

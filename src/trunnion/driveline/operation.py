@@ -1,0 +1,168 @@
+"""Where a driveline runs: speed, ranges and load cases. Analyses take it as their default question."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
+
+from trunnion.driveline.elements import Name, is_name
+from trunnion.driveline.quantities import (
+    ANGLE,
+    DEGREE,
+    SPEED,
+    TORQUE,
+    Kind,
+    Speed,
+    Torque,
+    json_schema_of,
+    parse,
+)
+from trunnion.driveline.refusals import nearest, refuse
+from trunnion.errors import InputError
+
+SPEED_UNITS = ("rpm", "Hz", "rad/s")
+
+
+def _range_of(kind: Kind, example: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    def read(value: Any) -> tuple[float, float]:
+        remedy = f"write two values, the lower first, such as {example}"
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            raise InputError("must have a lower and an upper end", value=value, remedy=remedy)
+        low, high = parse(value[0], kind), parse(value[1], kind)
+        if low == high:
+            raise InputError("is a range of zero size", value=value, remedy=remedy)
+        if low > high:
+            raise InputError("is reversed", value=value, remedy=remedy)
+        return low, high
+
+    end = json_schema_of(kind)
+    return BeforeValidator(read), WithJsonSchema(
+        {"type": "array", "items": end, "minItems": 2, "maxItems": 2, "unit": kind.unit}
+    )
+
+
+_READ_SPEEDS, _SPEEDS_SCHEMA = _range_of(SPEED, '["300 rpm", "2400 rpm"]')
+_READ_ANGLES, _ANGLES_SCHEMA = _range_of(ANGLE, '["0 deg", "15 deg"]')
+SpeedRange = Annotated[tuple[float, float], _READ_SPEEDS, _SPEEDS_SCHEMA]
+AngleRange = Annotated[tuple[float, float], _READ_ANGLES, _ANGLES_SCHEMA]
+
+
+def _speed_unit(value: object) -> object:
+    if value not in SPEED_UNITS:
+        remedy = nearest(value, SPEED_UNITS) if isinstance(value, str) else 'write "rpm"'
+        raise InputError("is not a speed unit", value=value, remedy=remedy)
+    return value
+
+
+def _torques(value: object) -> dict[str, float]:
+    if not isinstance(value, dict):
+        remedy = 'write loads = { "Disk 2" = "250 N*m" }'
+        raise InputError("is not a table of torques", value=value, remedy=remedy)
+    torques = {}
+    for name, torque in value.items():
+        try:
+            torques[str(name)] = parse(torque, TORQUE)
+        except InputError as error:
+            raise InputError(error.problem, key=str(name), value=torque, remedy=error.remedy) from None
+    return torques
+
+
+class LoadCase(BaseModel):
+    """A named set of load torques.
+
+    Parameters
+    ----------
+    name : what it is called.
+    loads : load torque [N m] by the name of the Disk it acts on; positive resists rotation. Disks that are
+        not named keep their own.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: Name = Field(description="what the load case is called")
+    loads: Annotated[dict[str, Torque], BeforeValidator(_torques)] = Field(
+        description="load torque by the name of the Disk; positive resists rotation"
+    )
+
+    def __init__(self, **data: Any) -> None:
+        label = f"load case {data['name']}" if is_name(data.get("name")) else "load case"
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            example = 'name = "full load" and loads = { "Disk 2" = "250 N*m" }'
+            raise refuse(error, type(self), data, element=label, example=example) from None
+
+    def __hash__(self) -> int:
+        return hash((self.name, frozenset(self.loads.items())))
+
+
+class Operation(BaseModel):
+    """Where a driveline runs.
+
+    Parameters
+    ----------
+    speed : input speed [rad/s].
+    speed_range : lowest and highest input speed [rad/s].
+    angle_range : smallest and largest joint angle of interest [rad].
+    speed_unit : unit that speeds are printed in: "rpm", "Hz" or "rad/s".
+    load_cases : named sets of load torques.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    speed: Speed | None = Field(default=None, description="input speed")
+    speed_range: SpeedRange | None = Field(default=None, description="lowest and highest input speed")
+    angle_range: AngleRange | None = Field(
+        default=None, description="smallest and largest joint angle of interest"
+    )
+    speed_unit: Annotated[Literal["rpm", "Hz", "rad/s"], BeforeValidator(_speed_unit)] = Field(
+        default="rpm", description="unit that speeds are printed in"
+    )
+    load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element="operation") from None
+
+    @field_validator("speed")
+    @classmethod
+    def _forward(cls, speed: float | None) -> float | None:
+        if speed is not None and not speed > 0:
+            raise InputError("must be positive", remedy="a line at rest has no parametric excitation")
+        return speed
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.speed_range and self.speed_range[0] < 0:
+            raise InputError("must not go below zero", key="speed_range", remedy='start at "0 rpm" or above')
+        if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
+            raise InputError(
+                "must stay below 90 deg", key="angle_range", remedy='write ["0 deg", "15 deg"], say'
+            )
+        names = [case.name for case in self.load_cases]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(
+                    "names two load cases", key="load_case", value=name, remedy="rename one of them"
+                )
+        return self
+
+    def load_case(self, name: str) -> LoadCase:
+        """The load case called `name`; InputError with the nearest name where there is none."""
+        for case in self.load_cases:
+            if case.name == name:
+                return case
+        remedy = nearest(name, [case.name for case in self.load_cases])
+        raise InputError("is not a load case of this driveline", key="load_case", value=name, remedy=remedy)

@@ -1,0 +1,273 @@
+"""Quantities: an SI number, or a string with a unit ("12 deg", "1500 rpm", "11.1 kN*m/rad").
+
+The number is read by a strict pattern first, so that "1,5 mm" or "nan" never reaches the unit parser; the
+unit is read by pint with the small table in ``units.txt``, in which the angle is a base dimension. pint is
+imported when the first unit is met, not before.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache, partial
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+from pydantic_core import core_schema
+
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Number = TypeVar("Number", float, "NDArray[np.float64]")
+
+NUMBER_PATTERN = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER = re.compile(NUMBER_PATTERN)
+# Powers of one digit and no other numbers: pint would happily work out m^9^9^9^9.
+_UNIT = re.compile(r"(?:1(?=\s*/)|[A-Za-zµμ]++(?:(?:\^|\*\*)[+-]?[0-9])?|[*/()\s])+")
+_SPELLINGS = {"·": "*", "⋅": "*", "×": "*", ".": "*", "²": "^2", "³": "^3", "°": "deg", "%": "percent"}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A physical kind of quantity.
+
+    Attributes
+    ----------
+    name : what it is called in messages.
+    unit : its SI unit, in which every number without unit is taken.
+    example : a string a user could write.
+    shown : units it is printed in, as (unit, its size in SI, smallest SI magnitude it suits), largest first.
+    """
+
+    name: str
+    unit: str
+    example: str
+    shown: tuple[tuple[str, float, float], ...] = ()
+
+
+DEGREE = math.pi / 180
+RPM = 2 * math.pi / 60
+HERTZ = 2 * math.pi
+
+ANGLE = Kind("angle", "rad", "12 deg", (("deg", DEGREE, 0.0),))
+SPEED = Kind("speed", "rad/s", "1500 rpm", (("rpm", RPM, 0.0),))
+FREQUENCY = Kind("frequency", "rad/s", "50 Hz", (("Hz", HERTZ, 0.0),))
+STIFFNESS = Kind(
+    "stiffness",
+    "N*m/rad",
+    "12 kN*m/rad",
+    (("MN*m/rad", 1e6, 1e6), ("kN*m/rad", 1e3, 1e3), ("N*m/rad", 1.0, 0.0)),
+)
+DAMPING = Kind("damping", "N*m*s/rad", "3 N*m*s/rad")
+INERTIA = Kind("inertia", "kg*m^2", "0.4 kg*m^2")
+TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
+LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
+PRESSURE = Kind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0.0)))
+DENSITY = Kind("density", "kg/m^3", "7850 kg/m^3")
+RATIO = Kind("ratio", "1", "0.02")
+KINDS = (
+    ANGLE,
+    SPEED,
+    FREQUENCY,
+    STIFFNESS,
+    DAMPING,
+    INERTIA,
+    TORQUE,
+    LENGTH,
+    PRESSURE,
+    DENSITY,
+    RATIO,
+)
+
+
+def parse(value: object, kind: Kind) -> float:
+    """Return `value` as a finite float in the SI unit of `kind`.
+
+    Parameters
+    ----------
+    value : a number in SI units, or a string "number unit". Decimal shifts are exact: "76 mm" is 0.076.
+    kind : what it must be, for example ``ANGLE``.
+
+    Raises
+    ------
+    InputError : not a number, not finite, unknown unit, or another dimension than asked for.
+    """
+    if isinstance(value, str):
+        return _finite(_parse_text(value, kind), value, kind)
+    # bool is an int in Python, and numpy's numbers are Reals without being floats
+    if isinstance(value, bool) or not isinstance(value, Real):
+        given = "nothing (None)" if value is None else f"a {type(value).__name__}"
+        problem = f"must be a number or a string with a unit, not {given}"
+        raise InputError(problem, value=value, remedy=_advice(kind))
+    try:
+        number = float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        number = math.inf
+    return _finite(number, value, kind)
+
+
+def _parse_text(text: str, kind: Kind) -> float:
+    written = text.strip()
+    match = _NUMBER.match(written)
+    if match is None:
+        if re.match(r"[+-]?(nan|inf)", written, re.IGNORECASE):
+            raise InputError("must be finite", value=text, remedy=_advice(kind))
+        raise InputError("does not start with a number", value=text, remedy=_advice(kind))
+    number, unit = match.group(), written[match.end() :].strip()
+    if re.match(r",[0-9]", unit):
+        raise InputError("has a decimal comma", value=text, remedy="write a decimal point")
+    if not unit:
+        if kind is RATIO:
+            return float(number)
+        raise InputError(
+            "has no unit", value=text, remedy=f"{_advice(kind)}, or {number} without quotes for SI"
+        )
+    for spelling, plain in _SPELLINGS.items():
+        unit = unit.replace(spelling, plain)
+    unit = re.sub(r"(?<=[a-z])(?=-?[0-9])", "^", unit)  # kg m2, min-1
+    try:
+        return _scaled(number, _factor(unit, kind))
+    except InputError as error:
+        raise InputError(error.problem, value=text, remedy=error.remedy) from None
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(str(Path(__file__).with_name("units.txt")))
+
+
+@cache
+def _factor(unit: str, kind: Kind) -> float:
+    """Size of `unit` in the SI unit of `kind`; raises InputError (uncached) when there is none."""
+    registry = _registry()
+    needed = registry.parse_units("" if kind is RATIO else kind.unit)
+    try:
+        if len(unit) > 60 or not _UNIT.fullmatch(unit):
+            raise ValueError(unit)
+        given = registry.parse_units(unit)
+        dimensions = dict(given.dimensionality)
+    except Exception as error:  # pint raises many classes, some of them not its own
+        known = "known are rad deg rev rpm Hz N Nm Pa bar g kg t m in ft lb lbf psi s min h, with prefixes"
+        raise InputError(f"unknown unit {unit!r}", remedy=f"{_advice(kind)}; {known}") from error
+    wanted = dict(needed.dimensionality)
+    if dimensions == wanted:
+        return float(registry.convert(1.0, given, needed))
+    if kind is RATIO:
+        raise InputError("must have no unit", remedy=_advice(kind))
+    problem = f"{unit} is not the unit of {_article(kind.name)} ({kind.unit})"
+    remedy = _advice(kind)
+    # torque for stiffness, 1/s for a speed: the commonest slip, and only the angle tells
+    if dimensions.pop("[angle]", 0) != wanted.pop("[angle]", 0) and dimensions == wanted:
+        remedy = f'the angle makes the difference: write {kind.unit}, for example "{kind.example}"'
+    raise InputError(problem, remedy=remedy)
+
+
+def _scaled(number: str, factor: float) -> float:
+    """`number` times `factor`, in decimal arithmetic where the factor is a short decimal (mm, kN, inch).
+
+    4.35 * 100 is 434.99999999999994 in binary arithmetic; "4.35" times "100" is 435. Factors with π are long.
+    """
+    decimal = Decimal(f"{factor:.15g}").normalize()
+    if len(decimal.as_tuple().digits) <= 12:
+        return float(Decimal(number) * decimal)
+    return float(number) * factor
+
+
+def _finite(number: float, value: object, kind: Kind) -> float:
+    if not math.isfinite(number):
+        raise InputError("must be finite", value=value, remedy=_advice(kind))
+    return number
+
+
+def _advice(kind: Kind) -> str:
+    if kind is RATIO:
+        return f"write a plain number such as {kind.example}"
+    return f'write {_article(kind.name)} such as "{kind.example}"'
+
+
+def _article(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
+def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
+    """How a file states `value`: with an engineering unit where that reads back exactly, else the SI number.
+
+    `unit` prefers one of the units of `kind` over the usual choice.
+    """
+    symbol, size = _pick(value, kind, unit)
+    if size != 1.0:
+        for digits in (12, 15):
+            text = f"{value / size:.{digits}g}"
+            if _NUMBER.fullmatch(text) and _scaled(text, size) == value:
+                return f"{text} {symbol}"
+    return value
+
+
+def shown(value: float, kind: Kind, unit: str | None = None, digits: int = 6) -> str:
+    """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
+    symbol, size = _pick(value, kind, unit)
+    return f"{value / size:.{digits}g}" + ("" if kind is RATIO else f" {symbol}")
+
+
+def _pick(value: float, kind: Kind, unit: str | None) -> tuple[str, float]:
+    for symbol, size, smallest in (*kind.shown, *(SPEED.shown + FREQUENCY.shown if unit else ())):
+        if symbol == unit or (unit is None and abs(value) >= smallest):
+            return symbol, size
+    return kind.unit, 1.0
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a pydantic field as a quantity: validated by :func:`parse`, with its unit in the JSON Schema."""
+
+    kind: Kind
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(partial(parse, kind=self.kind))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        return json_schema_of(self.kind)
+
+
+def json_schema_of(kind: Kind) -> dict[str, Any]:
+    """A number in SI units or a string with a unit, as a JSON Schema that carries the SI unit."""
+    text = {"type": "string", "pattern": rf"^\s*{NUMBER_PATTERN}\s*\S", "examples": [kind.example]}
+    if kind is RATIO:
+        text = {"type": "string", "pattern": rf"^\s*{NUMBER_PATTERN}\s*%?\s*$", "examples": ["2 %"]}
+    return {"anyOf": [{"type": "number"}, text], "unit": kind.unit}
+
+
+Angle = Annotated[float, Quantity(ANGLE)]
+Speed = Annotated[float, Quantity(SPEED)]
+Frequency = Annotated[float, Quantity(FREQUENCY)]
+Stiffness = Annotated[float, Quantity(STIFFNESS)]
+Damping = Annotated[float, Quantity(DAMPING)]
+Inertia = Annotated[float, Quantity(INERTIA)]
+Torque = Annotated[float, Quantity(TORQUE)]
+Length = Annotated[float, Quantity(LENGTH)]
+Pressure = Annotated[float, Quantity(PRESSURE)]
+Density = Annotated[float, Quantity(DENSITY)]
+Dimensionless = Annotated[float, Quantity(RATIO)]
+
+
+def deg(angle: Number) -> Number:
+    """Degrees to radians; numbers or arrays."""
+    return angle * DEGREE
+
+
+def rpm(speed: Number) -> Number:
+    """Revolutions per minute to rad/s; numbers or arrays."""
+    return speed * RPM
+
+
+def hz(frequency: Number) -> Number:
+    """Revolutions or cycles per second to rad/s; numbers or arrays."""
+    return frequency * HERTZ

@@ -1,0 +1,106 @@
+"""JSON Schema of the file format with the SI unit of every quantity; editors complete and check by it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from trunnion.driveline.elements import KINDS
+from trunnion.driveline.files import FORMAT
+from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
+
+_TUBE = ["outer_diameter", "length", "shear_modulus"]
+_SOLID = ["outer_diameter", "thickness", "density"]
+_RULES: dict[str, dict[str, Any]] = {
+    "Shaft": {
+        "oneOf": [{"required": ["stiffness"]}, {"required": _TUBE}],
+        "dependentRequired": {
+            "loss_factor": ["loss_factor_frequency"],
+            "loss_factor_frequency": ["loss_factor"],
+            **dict.fromkeys((*_TUBE, "inner_diameter", "density", "young_modulus"), _TUBE),
+        },
+    },
+    "Disk": {
+        "oneOf": [{"required": ["inertia"]}, {"required": _SOLID}],
+        "dependentRequired": dict.fromkeys((*_SOLID, "inner_diameter"), _SOLID),
+    },
+    "Ratio": {
+        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth_in", "teeth_out"]}],
+        "dependentRequired": {"teeth_in": ["teeth_out"], "teeth_out": ["teeth_in"]},
+    },
+}
+"""Which keys go together; the classes check the same in words."""
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a driveline file read as TOML; quantities carry "unit", their SI unit."""
+    definitions = {name: _element(name) for name in KINDS}
+    operation = _model(Operation)
+    cases = operation["properties"].pop("load_cases")
+    operation["properties"]["load_case"] = {
+        "type": "array",
+        "items": {"$ref": "#/$defs/LoadCase"},
+        "description": cases["description"],
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Trunnion driveline",
+        "description": "One [[element]] table per element of the driveline, from the drive to the load.",
+        "type": "object",
+        "properties": {
+            "format": {"const": FORMAT, "description": "format of this file"},
+            "name": {"type": "string", "description": "for titles and reports"},
+            "description": {"type": "string", "description": "for titles and reports"},
+            "damping_ratio": {
+                **json_schema_of(RATIO),
+                "description": "one damping ratio for the whole line instead of damping in the shafts",
+            },
+            "damping_ratio_frequency": {
+                **json_schema_of(FREQUENCY),
+                "description": "frequency at which damping_ratio holds; default: the lowest elastic mode",
+            },
+            "operation": {"$ref": "#/$defs/Operation"},
+            "element": {
+                "type": "array",
+                "minItems": 1,
+                "items": {
+                    "type": "object",
+                    "oneOf": [{"$ref": f"#/$defs/{name}"} for name in definitions],
+                    "discriminator": {"propertyName": "type"},
+                    "required": ["type"],
+                },
+            },
+        },
+        "required": ["format", "element"],
+        "additionalProperties": False,
+        "$defs": {**definitions, "Operation": operation, "LoadCase": _model(LoadCase)},
+    }
+
+
+def _element(name: str) -> dict[str, Any]:
+    schema = _model(KINDS[name])
+    schema["properties"] = {"type": {"const": name}, **schema["properties"]}
+    schema["required"] = ["type", *schema.get("required", [])]
+    return schema | _RULES.get(name, {})
+
+
+def _model(model: type[BaseModel]) -> dict[str, Any]:
+    """pydantic's schema of one model without references, titles and null (TOML has no null)."""
+    schema = model.model_json_schema()
+    schema.pop("$defs", None)
+    schema["description"] = (model.__doc__ or "").strip().partition("\n")[0]
+    schema["properties"] = {key: _not_null(value) for key, value in schema["properties"].items()}
+    return schema
+
+
+def _not_null(field: dict[str, Any]) -> dict[str, Any]:
+    plain = {
+        key: value for key, value in field.items() if key != "title" and (key, value) != ("default", None)
+    }
+    options = [option for option in plain.get("anyOf", []) if option != {"type": "null"}]
+    if len(options) == 1:
+        plain.pop("anyOf")
+        plain = {**options[0], **plain}
+    return plain

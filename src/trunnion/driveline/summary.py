@@ -1,0 +1,57 @@
+"""How a driveline introduces itself: one short line per element, in engineering units."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion.driveline.elements import Disk, Element, Shaft
+from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
+
+if TYPE_CHECKING:
+    from trunnion.driveline.driveline import Driveline
+
+
+def summary(line: Driveline) -> str:
+    """Title line, then name and numbers of each element."""
+    width = max(len(name) for name in line.names)
+    title = f"Driveline{f' {line.name!r}' if line.name else ''} of {len(line.elements)} elements"
+    if line.damping_ratio is not None:
+        title += f", damping ratio {line.damping_ratio:g}"
+    rows = []
+    for i, (element, name) in enumerate(zip(line.elements, line.names, strict=True)):
+        parts = [] if name.startswith(element.kind) else [element.kind]
+        if line.parents[i] != (i - 1 if i else None):
+            parts.append(f"after {element.after}")
+        rows.append(f"  {name:<{width}}  {', '.join([*parts, *_numbers(element)])}".rstrip())
+    return "\n".join([title, *rows])
+
+
+def _numbers(element: Element) -> list[str]:
+    """The stated numbers, a geometry drawn together with what follows from it."""
+    parts: list[str] = []
+    drawn: tuple[str, ...] = ()
+    if isinstance(element, Shaft) and element.stiffness is None:
+        drawn = ("outer_diameter", "inner_diameter", "length", "shear_modulus", "density", "young_modulus")
+        parts += [_size("tube", element, "length"), shown(element.torsional_stiffness, STIFFNESS, digits=4)]
+        if element.density:
+            parts.append(shown(element.moment_of_inertia, INERTIA, digits=4))
+    if isinstance(element, Disk) and element.inertia is None:
+        drawn = ("outer_diameter", "inner_diameter", "thickness", "density")
+        parts += [_size("disk", element, "thickness"), shown(element.moment_of_inertia, INERTIA, digits=4)]
+    for key, value in element.stated.items():
+        kind = element.quantity_of(key)
+        if key in drawn or key in ("name", "after"):
+            continue
+        number = shown(value, kind) if kind else value
+        if key == "loss_factor_frequency":
+            parts[-1] += f" at {number}"
+        else:
+            parts.append(f"{key.replace('_', ' ')} {number}")
+    return parts
+
+
+def _size(what: str, element: Element, along: str) -> str:
+    keys = ("outer_diameter", "inner_diameter", along)
+    outer, inner, length = (shown(getattr(element, key), LENGTH) for key in keys)
+    bore = f" with bore {inner}" if element.stated["inner_diameter"] else ""
+    return f"{what} {outer}{bore}, {length} long"

@@ -1,0 +1,45 @@
+"""Double-Cardan joint: two crosses on a common centre yoke, its two inner forks in line.
+
+A centring device keeps the yoke in the plane of symmetry, so that both crosses bend by half the angle β and
+the joint passes rotation unchanged. Without one the yoke points from one cross centre to the other: with the
+centres at distances a and b from the point where the two axes meet, the sine rule in that triangle gives
+
+    sin β₁ / b = sin β₂ / a,    β₁ + β₂ = β,
+
+so β₁ = β₂ only for a = b. What remains is a pair of unequal Hooke's joints, ψ = atan(tan χ · cos β₂ / cos
+β₁). Angles in rad, measured from the joint plane (χ = 0: input fork in it); all functions broadcast.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def halves(angle: ArrayLike, distance_ratio: ArrayLike = 1.0) -> tuple[Array, Array]:
+    """β₁, β₂ [rad] for a bend β and ``distance_ratio`` a/b: first centre's distance over the second's [1].
+
+    From the sine rule tan β₁ = sin β/(a/b + cos β); a/b = 1 gives the centred joint's halves.
+    """
+    angle, distance_ratio = np.asarray(angle, dtype=float), np.asarray(distance_ratio, dtype=float)
+    first = np.arctan2(np.sin(angle), distance_ratio + np.cos(angle))
+    return first, angle - first
+
+
+def output_angle(chi: ArrayLike, first: ArrayLike, second: ArrayLike) -> Array:
+    """ψ(χ) [rad] of two crosses bent by ``first`` and ``second`` in one plane, continuous, with ψ(0) = 0.
+
+    The second cross sees the yoke a quarter turn later, so it takes back what the first has added:
+    tan ψ = tan χ · cos β₂/cos β₁.
+    """
+    chi = np.asarray(chi, dtype=float)
+    q = np.cos(second) / np.cos(first)
+    return chi + np.arctan2((q - 1) * np.sin(2 * chi), (q + 1) - (q - 1) * np.cos(2 * chi))
+
+
+def ratio(chi: ArrayLike, first: ArrayLike, second: ArrayLike) -> Array:
+    """η = dψ/dχ [1] = q/(cos²χ + q² sin²χ), q = cos β₂/cos β₁."""
+    q = np.cos(second) / np.cos(first)
+    return q / (np.cos(chi) ** 2 + (q * np.sin(chi)) ** 2)

@@ -1,0 +1,247 @@
+"""A turn of a transmission as pictures: curves over the input angle, polar curves, S2's four panels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from trunnion.analyses.kinetostatics.result import Kinetostatics
+
+Array = NDArray[np.float64]
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
+"""Okabe and Ito's palette, told apart by every kind of colour vision; line styles tell them apart in grey."""
+DASHES: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (3, 1)),
+    "-",
+    (0, (8, 2)),
+)
+SAME = 1e-9
+"""Curves closer than this share of their size count as one."""
+LEGEND_ROW = 0.24
+"""Height of a row of a legend [inches]."""
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """What is drawn, under what name, in which colour and dash."""
+
+    name: str
+    values: Array
+    style: int
+
+
+def draw(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
+    """Speeds, accelerations, torques and secondary couples over the input angle."""
+    figure = _figure(8.6, 7.2)
+    axes = figure.subplots(2, 2, sharex=True)
+    mean = (result.input_speed * result.shaft_ratio)[:, None]
+    percent = 100 * (result.speed / mean - 1)
+    # referred to the drive, so that shafts behind a ratio share the scale of those in front of it
+    referred = result.transmitted * result.shaft_ratio[:, None]
+    factor, torque_unit = _scale(referred, "N·m")
+    groups = _alike(result.shafts, np.stack([percent, result.acceleration, referred], axis=1))
+    accelerations = "angular acceleration [rad/s²]"
+    _panel(axes[0, 0], result, _curves(groups, percent), "speed about its mean [%]")
+    _panel(axes[0, 1], result, _curves(groups, result.acceleration), accelerations)
+    geared = bool(np.any(np.abs(result.shaft_ratio) != 1))
+    referring = "torque referred to the drive" if geared else "torque passed on"
+    _panel(axes[1, 0], result, _curves(groups, referred / factor), f"{referring} [{torque_unit}]")
+    size = _sizes(result.secondary_couple)
+    factor, couple_unit = _scale(size, "N·m")
+    forks = _alike(result.forks, size[:, None])
+    couples = _curves(forks, size / factor)
+    _panel(axes[1, 1], result, couples, f"secondary couple on fork [{couple_unit}]")
+    axes[1, 1].set_ylim(bottom=0)
+    for ax in axes[1]:
+        ax.set_xlabel("input angle [°]", fontsize=TEXT, color=INK)
+    _legend(figure, axes[0, 0], "outside lower left", "shafts")
+    if couples:
+        _legend(figure, axes[1, 1], "outside lower right", "forks", columns=2)
+    figure.suptitle(_title(result, unit), fontsize=TITLE, color=INK, x=0.01, ha="left")
+    return figure
+
+
+def draw_polar(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
+    """Speeds, secondary couples and, where there are any, support forces around the turn."""
+    panels: list[tuple[str, list[_Curve]]] = []
+    ratio = result.speed / (result.input_speed * result.shaft_ratio)[:, None]
+    panels.append(("speed over its mean", _curves(_alike(result.shafts, ratio[:, None]), ratio)))
+    couple = _sizes(result.secondary_couple)
+    if np.any(couple):
+        factor, couple_unit = _scale(couple, "N·m")
+        forks = _curves(_alike(result.forks, couple[:, None]), couple / factor)
+        panels.append((f"secondary couple on fork [{couple_unit}]", forks))
+    if result.supports is not None:
+        force = _sizes(result.supports.force)
+        factor, force_unit = _scale(force, "N")
+        loads = _curves(_alike(result.supports.names, force[:, None]), force / factor)
+        panels.append((f"force on bearing [{force_unit}]", loads))
+    rows = max(len(curves) for _, curves in panels)
+    height = 4.0 + LEGEND_ROW * rows
+    figure = _figure(3.9 * len(panels), height)
+    grid = figure.add_gridspec(2, len(panels), height_ratios=[4.0, LEGEND_ROW * rows])
+    for k, (label, curves) in enumerate(panels):
+        axes = figure.add_subplot(grid[0, k], projection="polar")
+        _polar(axes, result, label, curves)
+        below = figure.add_subplot(grid[1, k])
+        below.set_axis_off()
+        below.legend(*axes.get_legend_handles_labels(), loc="upper center", borderaxespad=0, **_LEGEND)
+    figure.suptitle(_title(result, unit), fontsize=TITLE, color=INK, x=0.01, ha="left")
+    return figure
+
+
+def draw_paper(result: Kinetostatics) -> Figure:
+    """S2's Figures 3 and 4: angular differences, speeds, accelerations and torques of two joints."""
+    figure = _figure(8.6, 7.0)
+    axes = figure.subplots(2, 2, sharex=True)
+    total = np.degrees(result.output_angle - result.mean_ratio * result.input_angle)
+    _panel(axes[0, 0], result, [_Curve("output", total, 3)], "output − input angle [°]")
+    axes[0, 0].yaxis.label.set_color(COLOURS[3])
+    _twist_scale(axes[0, 0], result, 1e6 * result.twist[1])
+    groups = _alike(result.shafts, np.stack([result.speed, result.acceleration, result.torque], axis=1))
+    _panel(axes[0, 1], result, _curves(groups, result.speed), "angular speed [rad/s]")
+    _panel(axes[1, 0], result, _curves(groups, result.acceleration), "angular acceleration [rad/s²]")
+    _panel(axes[1, 1], result, _curves(groups, result.transmitted), "torque passed on [N·m]")
+    for letter, ax in zip("abcd", axes.ravel(), strict=True):
+        ax.set_title(letter, fontsize=TITLE, color=INK, loc="left", fontweight="bold")
+    for ax in axes[1]:
+        ax.set_xlabel("input angle [°]", fontsize=TEXT, color=INK)
+    _legend(figure, axes[0, 1], "outside lower center", "b, c, d", columns=4)
+    kind = "rigid" if result.rigid else "elastic"
+    name = result.line.name or "transmission"
+    figure.suptitle(f"{name}, taken as {kind}", fontsize=TITLE, color=INK, x=0.01, ha="left")
+    return figure
+
+
+_LEGEND: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handlelength": 2.8, "labelcolor": INK}
+
+
+def _figure(width: float, height: float) -> Figure:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _title(result: Kinetostatics, unit: str) -> str:
+    name = f"{result.line.name}: " if result.line.name else ""
+    kind = "rigid shafts" if result.rigid else "elastic shafts"
+    inertia = ", with inertia torques" if result.inertia else ""
+    return f"{name}{kind}{inertia}, input {show_speed(result.input_speed, unit)}"
+
+
+def _sizes(vectors: Array) -> Array:
+    return np.asarray(np.hypot(vectors[:, 0], vectors[:, 1]))
+
+
+def _alike(names: Sequence[str], values: Array) -> list[tuple[str, int]]:
+    """Names and rows of the curves (name, quantity, point) that differ; alike in every quantity is one."""
+    size = np.max(np.abs(values), axis=(0, 2), initial=0.0)[:, None]
+    found: list[tuple[list[str], int]] = []
+    for row, name in enumerate(names):
+        for together, first in found:
+            if np.all(np.abs(values[row] - values[first]) <= SAME * size):
+                together.append(name)
+                break
+        else:
+            found.append(([name], row))
+    return [(_joined(together), row) for together, row in found]
+
+
+def _joined(names: list[str]) -> str:
+    return ", ".join(names) if len(names) < 4 else f"{names[0]}, {names[1]} and {len(names) - 2} more"
+
+
+def _curves(groups: Sequence[tuple[str, int]], values: Array) -> list[_Curve]:
+    return [_Curve(name, values[row], k) for k, (name, row) in enumerate(groups)]
+
+
+def _closed(result: Kinetostatics, y: Array) -> tuple[Array, Array]:
+    """Degrees and values with the end of the last turn put back, where the curve closes."""
+    degrees = np.degrees(result.input_angle)
+    return np.append(degrees, 360.0 * result.turns), np.append(y, y[0])
+
+
+def _line(axes: Axes, x: Array, y: Array, curve: _Curve) -> None:
+    k = curve.style % len(COLOURS)
+    axes.plot(x, y, color=COLOURS[k], linestyle=DASHES[k], linewidth=1.6, label=curve.name)
+
+
+def _panel(axes: Axes, result: Kinetostatics, curves: Sequence[_Curve], label: str) -> None:
+    plain(axes)
+    for curve in curves:
+        _line(axes, *_closed(result, curve.values), curve)
+    axes.set_ylabel(label, fontsize=TEXT, color=INK)
+    axes.set_xlim(0, 360 * result.turns)
+    axes.set_xticks(np.arange(0, 360 * result.turns + 1, 90 * result.turns))
+    axes.grid(True, color="#dddddd", linewidth=0.6)
+    axes.ticklabel_format(axis="y", useOffset=False)
+    values = np.array([c.values for c in curves]) if curves else np.zeros(1)
+    size, swing = float(np.max(np.abs(values))), float(np.ptp(values))
+    if swing < 1e-9 * max(size, 1e-3):  # rounding of a level curve must not fill the panel
+        middle = float(np.mean(values))
+        margin = 0.05 * abs(middle) or 1.0
+        axes.set_ylim(middle - margin, middle + margin)
+
+
+def _legend(figure: Any, axes: Axes, where: str, title: str, columns: int = 1) -> None:
+    legend = figure.legend(
+        *axes.get_legend_handles_labels(), loc=where, title=title, ncols=columns, alignment="left", **_LEGEND
+    )
+    legend.get_title().set_fontsize(SMALL)
+    legend.get_title().set_color(FAINT)
+
+
+def _twist_scale(axes: Axes, result: Kinetostatics, twist: Array) -> None:
+    """The twist of the shaft between the joints, thousands of times smaller, on a scale of its own."""
+    right = axes.twinx()
+    right.tick_params(labelsize=TEXT, colors=INK, direction="out")
+    _line(right, *_closed(result, twist), _Curve("twist", twist, 1))
+    right.set_ylabel("twist [µrad]", fontsize=TEXT, color=COLOURS[1])
+    if not np.any(twist):
+        right.set_ylim(-1, 1)
+
+
+def _polar(axes: Any, result: Kinetostatics, label: str, curves: Sequence[_Curve]) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    axes.tick_params(labelsize=SMALL, colors=INK)
+    for curve in curves:
+        x, y = _closed(result, curve.values)
+        _line(axes, np.radians(x), y, curve)
+    values = np.array([c.values for c in curves])
+    low, high = float(values.min()), float(values.max())
+    swing = max(high - low, 1e-3 * abs(high), 1e-12)
+    # a small swing about a large mean is shown about an inner circle that is not zero
+    axes.set_rlim(low - swing if low > 2 * swing else 0.0, high + 0.05 * swing)
+    axes.set_rlabel_position(22.5)
+    axes.set_axisbelow(False)  # the numbers stay readable where curves cross them
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.grid(True, color="#cccccc", linewidth=0.6)
+    for text in axes.get_yticklabels():
+        text.set_color(FAINT)
+        text.set_bbox({"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.7, "pad": 0.6})
+    axes.set_title(label, fontsize=TEXT, color=INK, pad=12)
+
+
+def _scale(values: Array, unit: str) -> tuple[float, str]:
+    """Factor and unit in which the largest value reads well."""
+    return (1e3, f"k{unit}") if np.size(values) and np.max(np.abs(values)) >= 1e4 else (1.0, unit)

@@ -1,0 +1,248 @@
+"""A line in space: shafts, forks and joint planes as one would sketch them, to scale."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
+from trunnion.analyses.kinetostatics.frames import member_frames, turned_about_axis
+from trunnion.analyses.kinetostatics.motion import drive_jet, walk
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.layout import Layout
+from trunnion.driveline.quantities import DEGREE
+from trunnion.errors import InputError
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+SHAFT_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
+PLANE_COLOUR = "#888888"
+UNKNOWN_LENGTH = 1.0
+"""Length [m] drawn for a shaft of unknown length where no other is known."""
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """A joint's centre, the shafts it joins, its plane's normal, the arms of its forks (unit vectors)."""
+
+    name: str
+    centre: Array
+    before: Array
+    behind: Array
+    normal: Array
+    arms: tuple[Array, Array] | None
+    angle: float
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """Joints in order, ends and names of the shafts between and around them, sense of rotation."""
+
+    joints: list[_Joint]
+    ends: list[tuple[Array, Array]]
+    names: list[str]
+    guessed: bool
+    sense: float = 1.0
+
+
+def sketch(
+    subject: Driveline | Layout, *, input_angle: float = 0.0, lengths: Mapping[str, float] | None = None
+) -> Figure:
+    """Sketch a line up to its first ratio, or a layout with homokinetic fork offsets.
+
+    Parameters
+    ----------
+    subject : a driveline (its first shaft along x, its first joint bending it downwards), or a layout where
+        it is.
+    input_angle : at which the forks are drawn [rad].
+    lengths : joint-to-joint lengths [m] by shaft of a driveline, where they are not those of tubes.
+    """
+    scene = _of_layout(subject, input_angle) if isinstance(subject, Layout) else _of_line(
+        subject, input_angle, dict(lengths or {})
+    )  # fmt: skip
+    figure = _figure()
+    axes: Any = figure.add_subplot(projection="3d")
+    axes.set_proj_type("ortho")
+    size = 0.16 * float(np.mean([np.linalg.norm(b - a) for a, b in scene.ends]))
+    for k, ((start, end), name) in enumerate(zip(scene.ends, scene.names, strict=True)):
+        colour = SHAFT_COLOURS[k % len(SHAFT_COLOURS)]
+        front = start + (size * _unit(end - start) if k else 0.0)
+        back = end - (size * _unit(end - start) if k < len(scene.ends) - 1 else 0.0)
+        axes.plot(*np.stack([front, back], axis=1), color=colour, linewidth=4, solid_capstyle="butt")
+        _label(axes, (start + end) / 2, name, colour, down=2.2 * size)
+    for k, joint in enumerate(scene.joints):
+        _plane(axes, joint, size)
+        if joint.arms:
+            for side, (arm, axis) in enumerate(zip(joint.arms, (-joint.before, joint.behind), strict=True)):
+                _fork(axes, joint.centre, arm, axis, size, SHAFT_COLOURS[(k + side) % len(SHAFT_COLOURS)])
+        else:
+            axes.plot(*joint.centre[:, None], marker="o", color=INK, markersize=7)
+        _label(axes, joint.centre, f"{joint.name}\n{joint.angle / DEGREE:.4g}°", INK, down=-2.6 * size)
+    _arrow(axes, scene.ends[0], size, scene.sense)
+    _frame(axes, scene)
+    title = subject.name if isinstance(subject, Driveline) and subject.name else "layout"
+    note = "; lengths between joints not all known" if scene.guessed else ""
+    figure.suptitle(
+        f"{title}, forks at input angle {input_angle / DEGREE:.4g}°{note}", fontsize=TITLE, color=INK
+    )
+    return figure
+
+
+def _figure() -> Figure:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.6, 5.2))
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=0.93)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> _Scene:
+    train = chain(line, lengths)
+    frames = member_frames(train)
+    members = [m for m, member in enumerate(train.members) if member.train == 0]
+    joints = [train.members[m].joint for m in members if train.members[m].joint >= 0]
+    if not joints:
+        raise InputError("has no joint to draw", element="driveline", remedy="add a HookeJoint")
+    known = [m.length for m in train.members if np.isfinite(m.length)]
+    usual = float(np.mean(known)) if known else UNKNOWN_LENGTH
+    fronts = [train.steps[train.steps[j].parent].member for j in joints]
+    if len(set(fronts)) < len(fronts):
+        raise InputError(
+            "branches to two joints",
+            element="driveline",
+            remedy="draw a line without branches in front of a ratio",
+        )
+    inner = [train.members[m].length for m in members[1:-1]]
+    lengths_drawn = [0.5 * usual, *(x if np.isfinite(x) else usual for x in inner), 0.5 * usual]
+    points = [np.zeros(3)]
+    for m, length in zip(members, lengths_drawn, strict=True):
+        points.append(points[-1] + length * frames[m][0])
+    drawn = _joints(train, joints, points[1:-1], frames, input_angle)
+    names = [", ".join(train.members[m].shafts[:2]) for m in members]
+    guessed = not all(np.isfinite(x) for x in inner)
+    return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed)
+
+
+def _joints(
+    train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float
+) -> list[_Joint]:
+    motion = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 0))
+    drawn = []
+    for j, centre in zip(joints, centres, strict=True):
+        step = train.steps[j]
+        e, u, v = turned_about_axis(frames[train.steps[step.parent].member], step.plane)
+        e2, u2, v2 = frames[step.member]
+        arms = None
+        if step.link is Link.HOOKE:
+            chi, behind = motion.chi[j][0, 0], motion.angle[j][0, 0] - step.fork_offset
+            arms = (np.cos(chi) * u + np.sin(chi) * v, np.cos(behind) * u2 + np.sin(behind) * v2)
+        drawn.append(_Joint(step.name, centre, e, e2, v, arms, step.angle))
+    return drawn
+
+
+def _of_layout(layout: Layout, input_angle: float) -> _Scene:
+    scene = _of_line(layout.driveline(), input_angle, layout.shaft_lengths(layout.driveline()))
+    bent = np.flatnonzero(~layout.straight)
+    # the line's own frame starts with x, −z, y: turn it onto the layout's first axis and first joint plane
+    e = layout.axes[0]
+    v = (
+        np.cross(layout.axes[bent[0]], layout.axes[bent[0] + 1])
+        if len(bent)
+        else np.cross(e, [0.0, 0.0, 1.0])
+    )
+    v = _unit(v - (v @ e) * e)
+    sense = 1.0 if layout.right_handed else -1.0  # angles that count about −e mirror the line
+    turn = np.stack([e, sense * v, np.cross(e, v)], axis=1)
+
+    def moved(point: Array) -> Array:
+        return layout.centres[0] + turn @ (point - scene.joints[0].centre)
+
+    joints = [
+        _Joint(
+            joint.name, moved(joint.centre), turn @ joint.before, turn @ joint.behind, turn @ joint.normal,
+            None if joint.arms is None else (turn @ joint.arms[0], turn @ joint.arms[1]), joint.angle,
+        )
+        for joint in scene.joints
+    ]  # fmt: skip
+    return _Scene(joints, [(moved(a), moved(b)) for a, b in scene.ends], scene.names, False, sense)
+
+
+def _fork(axes: Any, centre: Array, arm: Array, away: Array, size: float, colour: str) -> None:
+    """A fork: from the shaft's end out to both pins; ``away`` points from the joint into its shaft."""
+    root = centre + size * away
+    for side in (-1.0, 1.0):
+        pin = centre + side * 0.62 * size * arm
+        path = np.stack([root, root + side * 0.62 * size * arm, pin], axis=1)
+        axes.plot(*path, color=colour, linewidth=2.4, solid_capstyle="round", solid_joinstyle="round")
+    pins = np.stack([centre - 0.62 * size * arm, centre + 0.62 * size * arm], axis=1)
+    axes.plot(*pins, color=INK, linewidth=1.4, marker="o", markersize=3.5)
+
+
+def _plane(axes: Any, joint: _Joint, size: float) -> None:
+    """The joint plane: the sector between the front shaft carried straight on and the shaft behind."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    reach = 3.0 * size
+    bend = np.cross(joint.normal, joint.before)
+    turn = np.linspace(0, joint.angle, 16)[:, None]
+    arc = joint.centre + reach * (np.cos(turn) * joint.before + np.sin(turn) * bend)
+    sector = np.vstack([joint.centre, arc])
+    axes.add_collection3d(Poly3DCollection([sector], facecolor=PLANE_COLOUR, alpha=0.35, edgecolor="none"))
+    straight = np.stack([joint.centre, joint.centre + 1.15 * reach * joint.before], axis=1)
+    axes.plot(*straight, color=FAINT, linewidth=0.9, linestyle=(0, (5, 3)))
+
+
+def _arrow(axes: Any, first: tuple[Array, Array], size: float, sense: float) -> None:
+    """Sense of rotation about the first shaft."""
+    e = _unit(first[1] - first[0])
+    side = np.cross(e, [0.0, 0.0, 1.0])
+    side = _unit(side if np.linalg.norm(side) > 1e-6 else np.cross(e, [0.0, 1.0, 0.0]))
+    up = sense * np.cross(e, side)
+    centre = first[0] + 0.25 * (first[1] - first[0])
+    turn = np.radians(np.linspace(-150, 90, 50))[:, None]
+    circle = centre + 0.8 * size * (np.cos(turn) * side + np.sin(turn) * up)
+    axes.plot(*circle.T, color=INK, linewidth=1.2)
+    tip, tangent = circle[-1], _unit(circle[-1] - circle[-3])
+    outward = _unit(tip - centre)
+    for lean in (-1.0, 1.0):
+        barb = tip - 0.3 * size * tangent + lean * 0.16 * size * outward
+        axes.plot(*np.stack([tip, barb], axis=1), color=INK, linewidth=1.2)
+
+
+def _label(axes: Any, where: Array, text: str, colour: str, *, down: float) -> None:
+    background = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.75, "pad": 1.0}
+    place = where - np.array([0, 0, down])
+    axes.text(
+        *place, text, color=colour, fontsize=SMALL, ha="center", va="center", zorder=10, bbox=background
+    )
+
+
+def _frame(axes: Any, scene: _Scene) -> None:
+    """Equal scales with room for the labels, and axes in metres."""
+    points = np.vstack([p for pair in scene.ends for p in pair])
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = np.maximum(0.22 * float(np.max(high - low)) - (high - low) / 2, 0.04 * float(np.max(high - low)))
+    low, high = low - margin, high + margin
+    for name, a, b in zip("xyz", low, high, strict=True):
+        getattr(axes, f"set_{name}lim")(a, b)
+        getattr(axes, f"set_{name}label")(f"{name} [m]", fontsize=TEXT, color=INK)
+    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.view_init(elev=22, azim=-68)
+    axes.tick_params(labelsize=SMALL, colors=FAINT)
+    axes.locator_params(nbins=4)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.pane.set_facecolor("#ffffff")
+        axis.pane.set_edgecolor("#dddddd")
+
+
+def _unit(vector: Array) -> Array:
+    return np.asarray(vector / np.linalg.norm(vector))

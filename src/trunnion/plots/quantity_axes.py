@@ -1,0 +1,64 @@
+"""How a chart's axes read: quantity, unit for the eye, and the factor from SI to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.results.speeds import speed_factor
+
+
+@dataclass(frozen=True)
+class QuantityAxis:
+    """What is varied, the unit it is read in ("" for none), and the factor from SI to that unit."""
+
+    quantity: str
+    unit: str
+    factor: float
+
+    @property
+    def label(self) -> str:
+        """``input speed [rpm]``."""
+        return f"{self.quantity} [{self.unit}]" if self.unit else self.quantity
+
+    def value(self, number: float) -> str:
+        """``input speed 1500 rpm``, from SI."""
+        return f"{self.quantity} {self._shown(number)}"
+
+    def said(self, values: NDArray[np.float64]) -> str:
+        """``input speed from 300 rpm to 2400 rpm``, from SI."""
+        return f"{self.quantity} from {self._shown(float(values[0]))} to {self._shown(float(values[-1]))}"
+
+    def _shown(self, number: float) -> str:
+        gap = "" if self.unit in ("", "°") else " "
+        return f"{number * self.factor:.6g}{gap}{self.unit}"
+
+
+def quantity_axis(label: str, unit: str, speed_unit: str) -> QuantityAxis:
+    """Axis of a chart parameter: degrees for angles, ``speed_unit`` for the speed, SI signs otherwise."""
+    if label == "speed":
+        return QuantityAxis("input speed", speed_unit, speed_factor(speed_unit))
+    shown, factor = unit.replace("*", "·").replace("^2", "²").replace("^3", "³"), 1.0
+    if unit == "rad":
+        shown, factor = "°", 180 / pi
+    elif unit == "rad/s":
+        shown, factor = "Hz", 1 / (2 * pi)
+    return QuantityAxis(_words(label), "" if unit == "1" else shown, factor)
+
+
+def _words(label: str) -> str:
+    """``HookeJoint *.angle`` → ``angle of all Hooke's joints``; labels that are no paths stay as they are."""
+    factor = label.startswith("factor of ")
+    owner, dot, key = label.removeprefix("factor of ").rpartition(".")
+    if not dot:
+        return label.replace("_", " ")
+    key = key.replace("_", " ")
+    if owner.endswith(" *"):
+        owner = f"all {_PLURAL.get(owner[:-2], owner[:-2])}"
+    return f"{'factor of the ' if factor else ''}{key} of {owner}"
+
+
+_PLURAL = {"HookeJoint": "Hooke's joints", "Shaft": "shafts", "Disk": "disks", "IdealJoint": "ideal joints"}

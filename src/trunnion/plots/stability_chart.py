@@ -1,0 +1,291 @@
+"""A stability chart as a picture: white is stable, dark unstable, darker where disturbances grow faster."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.overview import hooke_joints, speed_unit
+from trunnion.analyses.resonance_speeds import Resonance, resonance_speeds
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operation import Operation
+from trunnion.driveline.parameters import SPEED
+from trunnion.plots.quantity_axes import QuantityAxis, quantity_axis
+from trunnion.plots.resonance_marks import mark_resonances
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.results.chart import StabilityChart
+from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+SHADES = ("#bf4a33", "#8c2f39", "#4a1526", "#16060d")
+"""Unstable, from slow to fast growth: falling lightness, all darker than what is not unstable."""
+OTHERS = {
+    Verdict.MARGINAL: ("#e9e9e9", "....", "marginal (no damping)"),
+    Verdict.UNDECIDED: ("#c4c4c4", "////", "undecided (boundary)"),
+    Verdict.FAILED: ("#ffffff", "xxxx", "not computed"),
+}
+"""Face, hatch and words of what is neither stable nor unstable."""
+
+
+def draw(
+    chart: StabilityChart,
+    axes: Axes | None = None,
+    *,
+    unit: str | None = None,
+    resonances: Iterable[Resonance] | None = None,
+    operating: Operation | None = None,
+) -> Axes:
+    """Draw ``chart`` and return the axes (``axes.figure.savefig(…)``, or ``style.save``).
+
+    Parameters
+    ----------
+    chart : what to draw.
+    axes : to draw into; default a figure of its own.
+    unit : of speeds, "rpm", "Hz" or "rad/s"; default the one of the description.
+    resonances : named along the speed axis; default those of the chart's line up to order 2, () for none.
+    operating : range and point to mark; default the operation of the chart's line.
+    """
+    line = chart.line  # None for matrices of one's own
+    unit = unit or (speed_unit(line) if line else "rad/s")
+    operating = operating or (line.operation if line else None)
+    axes = axes or new_axes()
+    across = quantity_axis(chart.x_label, chart.x_unit, unit)
+    up = quantity_axis(chart.y_label, chart.y_unit, unit)
+    x, y = chart.x * across.factor, chart.y * up.factor
+    _frame(axes, chart, x, y, across, up)
+    _unstable(axes, chart, x, y)
+    handles = [*_key(chart), *_others(axes, chart, x, y), *_operating(axes, chart, operating, across, up)]
+    _say_if_empty(axes, chart)
+    settle = axes.figure.figure.draw_without_rendering
+    settle()  # the width decides what fits side by side
+    width = 72 * axes.get_window_extent().width / axes.figure.dpi
+    _legend(axes, handles, width)
+    title, look = _title(chart, unit, int(width / (0.5 * TITLE))), {"fontsize": TITLE, "color": INK}
+    axes.set_title(title, look, loc="left", linespacing=1.35, pad=10)
+    if resonances is None and line is not None:
+        resonances = resonance_speeds(line)
+    if resonances and SPEED in (chart.x_label, chart.y_label):
+        along = "x" if chart.x_label == SPEED else "y"
+        settle()  # now under title and legend: the length decides how many names fit
+        room = mark_resonances(axes, resonances, speed_factor(unit), along=along)
+        if along == "x":
+            axes.set_title(title, look, loc="left", linespacing=1.35, pad=room + 10)
+    return axes
+
+
+def _frame(
+    axes: Axes, chart: StabilityChart, x: Array, y: Array, across: QuantityAxis, up: QuantityAxis
+) -> None:
+    for values, axis, set_scale, set_limits in (
+        (x, axes.xaxis, axes.set_xscale, axes.set_xlim),
+        (y, axes.yaxis, axes.set_yscale, axes.set_ylim),
+    ):
+        if _is_log(values):
+            set_scale("log")
+            axis.set_major_formatter("{x:g}")
+        set_limits(*((values[0], values[-1]) if len(values) > 1 else edges(values)))
+    axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
+    axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
+    plain(axes)
+    axes.set_axisbelow(False)  # ticks over the mesh
+
+
+def _is_log(values: Array) -> bool:
+    """Whether the points are equally spaced in their logarithm rather than in themselves."""
+    if len(values) < 3 or values[0] <= 0:
+        return False
+    even = np.allclose(np.diff(values, 2), 0)
+    return bool(not even and np.allclose(np.diff(np.log(values), 2), 0, atol=1e-9))
+
+
+def edges(values: Array) -> Array:
+    """Edges of the cells around the points of an axis; a single point gets a cell of 2 % of its value."""
+    if len(values) == 1:
+        half = 0.01 * abs(float(values[0])) or 0.5
+        return np.array([values[0] - half, values[0] + half])
+    middle = (values[1:] + values[:-1]) / 2
+    return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
+
+
+def _unstable(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    bad = chart.verdict == Verdict.UNSTABLE
+    if not bad.any():
+        return
+    growth = 100 * (np.where(bad, chart.spectral_radius, np.nan) ** (2 * np.pi / chart.period) - 1)
+    mesh = axes.pcolormesh(
+        edges(x),
+        edges(y),
+        np.ma.masked_invalid(growth),
+        cmap=LinearSegmentedColormap.from_list("unstable", SHADES),
+        vmin=0.0,
+        vmax=float(np.nanmax(growth)),
+        rasterized=True,
+    )
+    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.045, aspect=28)
+    bar.set_label("growth per turn of the input [%]", fontsize=TEXT, color=INK)
+    bar.ax.tick_params(labelsize=SMALL, colors=INK)
+
+
+def _others(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> list[Any]:
+    """Hatched patches for the rest; a point of its own still shows by its grey."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    handles = []
+    for verdict, (face, hatch, words) in OTHERS.items():
+        there = chart.verdict == verdict
+        if not there.any():
+            continue
+        mesh = np.ma.masked_where(~there, there.astype(float))
+        axes.pcolormesh(edges(x), edges(y), mesh, cmap=ListedColormap([face]), rasterized=True)
+        if min(there.shape) > 1:
+            drawn = axes.contourf(
+                x, y, there.astype(float), levels=[0.5, 1.5], colors="none", hatches=[hatch]
+            )
+            drawn.set_edgecolor("#555555")
+            drawn.set_linewidth(0.0)
+        handles.append(Patch(facecolor=face, edgecolor="#555555", hatch=hatch, label=words))
+    return handles
+
+
+def _key(chart: StabilityChart) -> list[Any]:
+    from matplotlib.patches import Patch
+
+    handles = []
+    if chart.count(Verdict.STABLE):
+        handles.append(Patch(facecolor="white", edgecolor=INK, label="stable"))
+    if chart.count(Verdict.UNSTABLE):
+        handles.append(Patch(facecolor=SHADES[1], edgecolor=INK, label="unstable (darker: faster)"))
+    return handles
+
+
+def _operating(
+    axes: Axes, chart: StabilityChart, operating: Operation | None, across: QuantityAxis, up: QuantityAxis
+) -> list[Any]:
+    """The range as a bar along each axis' edge, the speed as a dashed line, the point as a diamond."""
+    from matplotlib.lines import Line2D
+
+    handles: list[Any] = []
+    here: list[float | None] = []
+    for label, axis, along in ((chart.x_label, across, "x"), (chart.y_label, up, "y")):
+        limits = _range_of(label, operating)
+        if limits is not None:
+            ends = [
+                max(limits[0] * axis.factor, _low(axes, along)),
+                min(limits[1] * axis.factor, _high(axes, along)),
+            ]
+            if ends[0] < ends[1]:
+                edge = ([*ends], [0, 0]) if along == "x" else ([0, 0], [*ends])
+                mixed = axes.get_xaxis_transform() if along == "x" else axes.get_yaxis_transform()
+                (bar,) = axes.plot(
+                    *edge, transform=mixed, color=ACCENT, lw=3, solid_capstyle="butt", clip_on=False
+                )
+                bar.set_zorder(6)
+                if not handles:
+                    handles.append(Line2D([], [], color=ACCENT, lw=3, label="operating range"))
+        value = _value_of(label, chart.line, operating)
+        value = None if value is None else value * axis.factor
+        here.append(value if value is not None and _low(axes, along) <= value <= _high(axes, along) else None)
+    if here[0] is not None and here[1] is not None:
+        look: dict[str, Any] = {"ms": 8, "mfc": "white", "mec": ACCENT, "mew": 2, "ls": "none", "zorder": 7}
+        (point,) = axes.plot(here[0], here[1], "D", label="operating point", **look)
+        return [*handles, point]
+    for value, label, line in (
+        (here[0], chart.x_label, axes.axvline),
+        (here[1], chart.y_label, axes.axhline),
+    ):
+        if value is not None and label == SPEED:
+            dashed: dict[str, Any] = {"color": ACCENT, "ls": (0, (5, 3)), "lw": 1.6, "zorder": 4}
+            handles.append(line(value, label="operating speed", **dashed))
+    return handles
+
+
+def _range_of(label: str, operating: Operation | None) -> tuple[float, float] | None:
+    if operating is None:
+        return None
+    if label == SPEED:
+        return operating.speed_range
+    return operating.angle_range if label.startswith("HookeJoint") and label.endswith(".angle") else None
+
+
+def _value_of(label: str, line: Driveline | None, operating: Operation | None) -> float | None:
+    """Where the line stands on an axis; None where that is not one number."""
+    if label == SPEED:
+        return operating.speed if operating else None
+    owner, _, key = label.rpartition(".")
+    if key != "angle" or line is None:
+        return None
+    angles = {abs(angle) for name, angle in hooke_joints(line) if owner in (name, "HookeJoint *")}
+    return angles.pop() if len(angles) == 1 else None
+
+
+def _low(axes: Axes, along: str) -> float:
+    return min(axes.get_xlim() if along == "x" else axes.get_ylim())
+
+
+def _high(axes: Axes, along: str) -> float:
+    return max(axes.get_xlim() if along == "x" else axes.get_ylim())
+
+
+def _say_if_empty(axes: Axes, chart: StabilityChart) -> None:
+    if chart.count(Verdict.STABLE) == chart.verdict.size:
+        text = f"stable at every point\nlargest spectral radius {np.nanmax(chart.spectral_radius):.4g}"
+        clear = {"facecolor": "white", "edgecolor": "none", "pad": 6}
+        at: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center", "zorder": 8}
+        axes.text(0.5, 0.5, text, fontsize=TEXT, color=INK, bbox=clear, **at)
+
+
+def _legend(axes: Axes, handles: list[Any], width: float) -> None:
+    """Below the axis label, outside the data; as many columns as fit into ``width`` [pt]."""
+    from matplotlib.transforms import ScaledTranslation
+
+    below = axes.transAxes + ScaledTranslation(0, -44 / 72, axes.figure.dpi_scale_trans)
+    axes.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.0, 0.0),
+        bbox_transform=below,
+        ncols=_columns([SMALL * (0.5 * len(h.get_label()) + 4) for h in handles], width),
+        fontsize=SMALL,
+        frameon=False,
+        borderaxespad=0.0,
+        borderpad=0.0,
+        handlelength=1.8,
+        columnspacing=1.5,
+    )
+
+
+def _columns(widths: list[float], room: float) -> int:
+    """The most columns, filled one after another, whose widest entries fit side by side."""
+    for columns in range(len(widths), 1, -1):
+        rows = -(-len(widths) // columns)
+        if sum(max(widths[i : i + rows]) for i in range(0, len(widths), rows)) <= room:
+            return columns
+    return 1
+
+
+def _title(chart: StabilityChart, unit: str, characters: int) -> str:
+    """The line's name, and what is held fixed, in lines of so many characters."""
+    from textwrap import fill
+
+    line = chart.line
+    if line is None:
+        return "Stability chart"
+    name = line.name or f"driveline of {len(line.elements)} elements"
+    fixed = [] if chart.speed is None else [f"at {show_speed(chart.speed, unit)}"]
+    varied = (chart.x_label, chart.y_label)
+    if not any(label.startswith(("HookeJoint *", "factor of HookeJoint *")) for label in varied):
+        angles = [f"{n} {np.rad2deg(a):.3g}°" for n, a in hooke_joints(line) if f"{n}.angle" not in varied]
+        fixed += angles if len(angles) <= 3 else [f"{len(angles)} joint angles as described"]
+    whole = [f"Stability of {name}", *([", ".join(fixed)] if fixed else [])]
+    return "\n".join(fill(part, max(characters, 20)) for part in whole)

@@ -1,0 +1,76 @@
+"""What only shows in a process of its own: light imports, streams, exit codes, Ctrl-C."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+HEAVY = ("numba", "scipy", "xarray", "matplotlib", "h5py", "pint", "pandas")
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        "import trunnion",
+        "from trunnion.cli import main; sys.argv = ['trunnion', '--help']; run(main)",
+        "from trunnion.cli import main; sys.argv = ['trunnion', 'analyze', '--help']; run(main)",
+        "from trunnion.cli import main; sys.argv = ['trunnion', 'new']; run(main)",
+    ],
+    ids=["import", "help", "help of a command", "list of starters"],
+)
+def test_light_imports(start, action):
+    script = (
+        "import sys\n"
+        "def run(main):\n"
+        "    try:\n        main()\n"
+        "    except SystemExit as leave:\n        assert not leave.code\n"
+        f"{action}\n"
+        f"print('HEAVY', [name for name in {HEAVY!r} if name in sys.modules])\n"
+    )
+    code, out, err = finished(start(program=("-c", script)))
+    assert code == 0, err
+    assert out.splitlines()[-1] == "HEAVY []"
+
+
+def finished(process):
+    out, err = process.communicate(timeout=300)
+    return process.returncode, out, err
+
+
+def test_json_is_alone_on_stdout(start):
+    code, out, err = finished(start("analyze", "line.toml", "--points", "12x6", "--json"))
+    assert code == 0, err
+    assert json.loads(out)["driveline"] == "test line"
+
+
+def test_bad_input(start):
+    code, out, err = finished(start("stability", "line.toml", "--speed", "0"))
+    assert code == 2
+    assert out == ""
+    assert err.splitlines() == ["error: --speed = '0': must be positive; write \"1500 rpm\", say"]
+
+
+def test_a_narrow_encoding_does_not_break_the_output(start):
+    code, out, err = finished(start("resonance-speeds", "line.toml", encoding="ascii"))
+    assert code == 0, err
+    assert "?2/2" in out or "??/2" in out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
+def test_ctrl_c_leaves_nothing(start, here):
+    before = sorted(os.listdir(here))
+    process = start("analyze", "line.toml", "--points", "3000x3000")
+    time.sleep(4)  # well inside the chart
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert err.splitlines()[-1] == "error: interrupted; nothing was written"
+    assert "Traceback" not in err
+    assert sorted(os.listdir(here)) == before

@@ -1,0 +1,520 @@
+"""Every refusal of the description, triggered: one line that names element, key, value and remedy."""
+
+import os
+import re
+
+import pytest
+
+from trunnion.driveline import (
+    ConstantSpeed,
+    Disk,
+    Driveline,
+    HookeJoint,
+    IdealJoint,
+    LoadCase,
+    Operation,
+    Ratio,
+    Shaft,
+    dump,
+    load,
+    loads,
+    starter,
+)
+from trunnion.errors import InputError
+
+TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def line(*elements, **rest):
+    return Driveline(elements or [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1)], **rest)
+
+
+# (what is done, how the message starts, what it must also say)
+PYTHON = [
+    # quantities
+    (
+        lambda: HookeJoint(angle="12 kg"),
+        "HookeJoint.angle = '12 kg': kg is not the unit of an angle",
+        '"12 deg"',
+    ),
+    (lambda: Shaft(stiffness="2e4 N*m"), "Shaft.stiffness = '2e4 N*m': N*m is not", "write N*m/rad"),
+    (lambda: Shaft(stiffness="2e4 Nm"), "Shaft.stiffness = '2e4 Nm': Nm is not", "write N*m/rad"),
+    (lambda: Shaft(stiffness=1, damping="3 N*m*s"), "Shaft.damping = '3 N*m*s': ", "write N*m*s/rad"),
+    (lambda: Operation(speed="1500 1/min"), "operation.speed = '1500 1/min': ", '"1500 rpm"'),
+    (lambda: Shaft(stiffness="5 foo"), "Shaft.stiffness = '5 foo': unknown unit 'foo'", "known are rad deg"),
+    (lambda: Shaft(stiffness="5 N*m/("), "Shaft.stiffness = '5 N*m/(': unknown unit", "12 kN*m/rad"),
+    (lambda: Shaft(stiffness="5 __import__('os')"), "Shaft.stiffness = ", "unknown unit"),
+    (
+        lambda: Shaft(stiffness="stiff"),
+        "Shaft.stiffness = 'stiff': does not start with a number",
+        "12 kN*m/rad",
+    ),
+    (lambda: Shaft(stiffness=""), "Shaft.stiffness = '': does not start with a number", "12 kN*m/rad"),
+    (lambda: HookeJoint(angle="12"), "HookeJoint.angle = '12': has no unit", "without quotes for SI"),
+    (
+        lambda: HookeJoint(angle="1,5 deg"),
+        "HookeJoint.angle = '1,5 deg': has a decimal comma",
+        "decimal point",
+    ),
+    (lambda: Ratio(ratio="4 deg"), "Ratio.ratio = '4 deg': must have no unit", "plain number"),
+    (lambda: Disk(inertia=True), "Disk.inertia = True: must be a number", "not a bool"),
+    (lambda: HookeJoint(angle=None), "HookeJoint.angle: must be a number", "not nothing (None)"),
+    (lambda: Disk(inertia=[1.0]), "Disk.inertia = [1.0]: must be a number", "not a list"),
+    (lambda: Disk(inertia=1 + 2j), "Disk.inertia = (1+2j): must be a number", "not a complex"),
+    (lambda: Disk(inertia=float("nan")), "Disk.inertia = nan: must be finite", "0.4 kg*m^2"),
+    (lambda: Disk(inertia="nan kg*m^2"), "Disk.inertia = 'nan kg*m^2': must be finite", "0.4 kg*m^2"),
+    (lambda: Shaft(stiffness=float("inf")), "Shaft.stiffness = inf: must be finite", "12 kN*m/rad"),
+    (lambda: Shaft(stiffness="1e999 N*m/rad"), "Shaft.stiffness = '1e999 N*m/rad': must be finite", "kN"),
+    (lambda: Shaft(stiffness=10**400), "Shaft.stiffness = 1000", "must be finite"),
+    # keys
+    (lambda: Shaft(stifness=1e4), "Shaft.stifness = 10000: unknown key", 'did you mean "stiffness"?'),
+    (lambda: HookeJoint(angel="12 deg"), "HookeJoint.angel = '12 deg': unknown key", 'did you mean "angle"?'),
+    (lambda: ConstantSpeed(rpm=3), "ConstantSpeed.rpm = 3: unknown key", "known: name, after"),
+    (lambda: HookeJoint(), "HookeJoint.angle: is missing", 'write angle = "12 deg"'),
+    (lambda: HookeJoint(name="front"), "front.angle: is missing", 'write angle = "12 deg"'),
+    (lambda: Shaft(name="a*"), "Shaft.name = 'a*': is not a name", "without *"),
+    (lambda: Shaft(name="two\nlines", stiffness=1), "Shaft.name = 'two\\nlines': is not a name", "one line"),
+    (lambda: Shaft(name=3, stiffness=1), "Shaft.name = 3: is not a name", "one line of text"),
+    (lambda: Shaft(after="", stiffness=1), "Shaft.after = '': is not a name", "one line of text"),
+    # shafts
+    (lambda: Shaft(), "Shaft.stiffness: is missing", "or outer_diameter, length, shear_modulus"),
+    (lambda: Shaft(stiffness=0), "Shaft.stiffness = 0: must be positive", '"12 kN*m/rad"'),
+    (
+        lambda: Shaft(stiffness="-3 kN*m/rad"),
+        "Shaft.stiffness = '-3 kN*m/rad': must be positive",
+        "12 kN*m/rad",
+    ),
+    (lambda: Shaft(stiffness=1, length=1), "Shaft.length = 1: stands beside stiffness", "leave out either"),
+    (lambda: Shaft(stiffness=1, density=0), "Shaft.density = 0: stands beside stiffness", "leave out either"),
+    (lambda: Shaft(outer_diameter=1), "Shaft.length: is missing beside outer_diameter", "needed are outer_d"),
+    (lambda: Shaft(density=7850), "Shaft.outer_diameter: is missing beside density", "needed are outer_d"),
+    (lambda: Shaft(**TUBE | {"length": 0}), "Shaft.length = 0: must be positive", '"76 mm"'),
+    (lambda: Shaft(**TUBE | {"shear_modulus": -1}), "Shaft.shear_modulus = -1: must be positive", "79.3 GPa"),
+    (
+        lambda: Shaft(**TUBE, inner_diameter="80 mm"),
+        "Shaft.inner_diameter = '80 mm': must be smaller",
+        "0.076 m",
+    ),
+    (
+        lambda: Shaft(**TUBE, inner_diameter=-0.01),
+        "Shaft.inner_diameter = -0.01: must not be negative",
+        "76 mm",
+    ),
+    (lambda: Shaft(**TUBE, density=-1), "Shaft.density = -1: must not be negative", "7850 kg/m^3"),
+    (lambda: Shaft(**TUBE, young_modulus=0), "Shaft.young_modulus = 0: must be positive", "GPa"),
+    (
+        lambda: Shaft(stiffness=1, loss_factor=0.02),
+        "Shaft.loss_factor_frequency: is missing beside loss_factor",
+        '"50 Hz"',
+    ),
+    (
+        lambda: Shaft(stiffness=1, loss_factor_frequency=3),
+        "Shaft.loss_factor: is missing beside loss_factor_frequency",
+        "0.02",
+    ),
+    (
+        lambda: Shaft(stiffness=1, loss_factor=0.02, loss_factor_frequency=0),
+        "Shaft.loss_factor_frequency = 0: must be positive",
+        '"50 Hz"',
+    ),
+    (
+        lambda: Shaft(stiffness=1, loss_factor=-0.02, loss_factor_frequency=3),
+        "Shaft.loss_factor = -0.02: must not be negative",
+        "0.02",
+    ),
+    (
+        lambda: Shaft(stiffness=1, damping=3, loss_factor=0.02, loss_factor_frequency=3),
+        "Shaft.damping = 3: stands beside loss_factor",
+        "leave one of the two out",
+    ),
+    # disks, joints, ratios
+    (lambda: Disk(), "Disk.inertia: is missing", "or outer_diameter, thickness, density"),
+    (lambda: Disk(inertia=0), "Disk.inertia = 0: must be positive", "0.4 kg*m^2"),
+    (lambda: Disk(inertia="-1 kg*m^2"), "Disk.inertia = '-1 kg*m^2': must be positive", "0.4 kg*m^2"),
+    (lambda: Disk(inertia=1, thickness=1), "Disk.thickness = 1: stands beside inertia", "leave out either"),
+    (lambda: Disk(thickness=1), "Disk.outer_diameter: is missing beside thickness", "needed are"),
+    (
+        lambda: Disk(outer_diameter=1, inner_diameter=1, thickness=1, density=1),
+        "Disk.inner_diameter = 1: must be smaller than outer_diameter = 1 m",
+        "check the units",
+    ),
+    (lambda: HookeJoint(angle="90 deg"), "HookeJoint.angle = '90 deg': must be less than 90 deg", "radians"),
+    (
+        lambda: HookeJoint(angle="-95 deg"),
+        "HookeJoint.angle = '-95 deg': must be less than 90 deg",
+        "radians",
+    ),
+    (lambda: HookeJoint(angle=12), "HookeJoint.angle = 12: must be less than 90 deg", "tn.deg(12)"),
+    (lambda: IdealJoint(angle=12), "IdealJoint.angle = 12: must be less than 90 deg", "tn.deg(12)"),
+    (lambda: Ratio(), "Ratio.ratio: is missing", "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"),
+    (lambda: Ratio(ratio=0), "Ratio.ratio = 0: must not be zero", "input speed over output speed"),
+    (lambda: Ratio(ratio=4.1, teeth_in=10), "Ratio.teeth_in = 10: stands beside ratio", "leave out either"),
+    (
+        lambda: Ratio(teeth_in=10),
+        "Ratio.teeth_out: is missing beside teeth_in",
+        "needed are teeth_in, teeth_out",
+    ),
+    (
+        lambda: Ratio(teeth_in=0, teeth_out=4),
+        "Ratio.teeth_in = 0: must be a whole number of teeth",
+        "positive",
+    ),
+    (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
+    (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    # the line
+    (lambda: Driveline([]), "driveline: has no elements", "tn.Driveline(["),
+    (lambda: Driveline(3), "elements: must be a list, not a int", "tn.Driveline(["),
+    (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not a Disk", "tn.Driveline(["),
+    (
+        lambda: Driveline([Disk(inertia=1), "Shaft"]),
+        "element 2 = 'Shaft': is not an element",
+        "tn.Driveline([",
+    ),
+    (
+        lambda: line(Disk(inertia=1, name="a"), Shaft(stiffness=1), Disk(inertia=1, name="a")),
+        "a.name: names elements 1 and 3",
+        "rename one",
+    ),
+    (
+        lambda: line(Disk(inertia=1, name="Disk 2"), Shaft(stiffness=1), Disk(inertia=1)),
+        "Disk 2.name: names elements 1 and 3",
+        "rename one",
+    ),
+    (
+        lambda: line(Disk(inertia=1, name="gear"), Shaft(stiffness=1, after="gaer")),
+        "Shaft 1.after = 'gaer': is not an earlier element",
+        'did you mean "gear"?',
+    ),
+    (
+        lambda: line(Shaft(stiffness=1, after="Disk 1"), Disk(inertia=1)),
+        "Shaft 1.after = 'Disk 1': does not come earlier",
+        "move Shaft 1 behind Disk 1",
+    ),
+    (
+        lambda: line(
+            Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1), Shaft(stiffness=1, after="Shaft 1")
+        ),
+        "Shaft 2.after = 'Shaft 1': is a Shaft",
+        "branches leave from a Disk",
+    ),
+    (
+        lambda: line(Disk(inertia=1), ConstantSpeed(), Shaft(stiffness=1)),
+        "ConstantSpeed 1: stands in the middle of the line",
+        "hang Shaft 1 elsewhere",
+    ),
+    (
+        lambda: line(Shaft(stiffness=1, damping=3), damping_ratio=0.02),
+        "Shaft 1.damping = 3: stands beside the line's damping_ratio",
+        "leave out one",
+    ),
+    (
+        lambda: line(Shaft(stiffness=1, loss_factor=0.1, loss_factor_frequency=3), damping_ratio="2 %"),
+        "Shaft 1.loss_factor = 0.1: stands beside the line's damping_ratio",
+        "leave out one",
+    ),
+    (lambda: line(damping_ratio="x"), "driveline.damping_ratio = 'x': does not start with a number", "0.02"),
+    (
+        lambda: line(damping_ratio_frequency="50 Hz"),
+        "driveline.damping_ratio_frequency = '50 Hz': stands without damping_ratio",
+        "leave it out",
+    ),
+    (
+        lambda: line(damping_ratio=0.02, damping_ratio_frequency=0),
+        "driveline.damping_ratio_frequency = 0: must be positive",
+        '"50 Hz"',
+    ),
+    (lambda: line(name=""), "driveline.name = '': is not a name", "one line of text"),
+    (lambda: line(description=3), "driveline.description = 3: input should be a valid string", ""),
+    (lambda: line(operation="fast"), "driveline.operation = 'fast': is not an Operation", "tn.Operation("),
+    (lambda: line().index("Dsk 1"), "Dsk 1: is not an element of this driveline", 'did you mean "Disk 1"?'),
+    (lambda: line().replace("Disk 1", inertia=-1), "Disk 1.inertia = -1: must be positive", "0.4 kg*m^2"),
+    (lambda: line().replace("Disk 1", inerta=1), "Disk 1.inerta = 1: unknown key", '"inertia"'),
+    (lambda: line().replace("Shaft 9", stiffness=1), "Shaft 9: is not an element", "Shaft 1"),
+    (lambda: line().with_load("climb"), "load_case = 'climb': is not a load case", "there are none"),
+    (
+        lambda: line(Disk(inertia=1, after="a")),
+        "Disk 1.after = 'a': is not an earlier element",
+        "there are none",
+    ),
+    # operation
+    (lambda: Operation(speed=0), "operation.speed = 0: must be positive", "at rest"),
+    (lambda: Operation(sped=1), "operation.sped = 1: unknown key", 'did you mean "speed"?'),
+    (lambda: Operation(speed_unit="RPM"), "operation.speed_unit = 'RPM': is not a speed unit", '"rpm"'),
+    (
+        lambda: Operation(speed_range=["300 rpm", "300 rpm"]),
+        "operation.speed_range = ['300 rpm', '300 rpm']: is a range of zero size",
+        "the lower first",
+    ),
+    (
+        lambda: Operation(speed_range=["600 rpm", "300 rpm"]),
+        "operation.speed_range = ['600 rpm', '300 rpm']: is reversed",
+        "the lower first",
+    ),
+    (
+        lambda: Operation(angle_range=["15 deg", "0 deg"]),
+        "operation.angle_range = ['15 deg', '0 deg']: is reversed",
+        "the lower first",
+    ),
+    (
+        lambda: Operation(speed_range=3),
+        "operation.speed_range = 3: must have a lower and an upper end",
+        "rpm",
+    ),
+    (
+        lambda: Operation(speed_range=["1 kg", 3]),
+        "operation.speed_range = ['1 kg', 3]: kg is not the unit",
+        "rpm",
+    ),
+    (
+        lambda: Operation(speed_range=[-1, 3]),
+        "operation.speed_range = [-1, 3]: must not go below zero",
+        "0 rpm",
+    ),
+    (
+        lambda: Operation(angle_range=[0, 2]),
+        "operation.angle_range = [0, 2]: must stay below 90 deg",
+        "15 deg",
+    ),
+    (lambda: LoadCase(loads={}), "load case.name: is missing", "full load"),
+    (lambda: LoadCase(name="x"), "load case x.loads: is missing", "250 N*m"),
+    (
+        lambda: LoadCase(name="x", loads={"Disk 1": "3 kg"}),
+        "load case x.Disk 1 = '3 kg': kg is not",
+        "250 N*m",
+    ),
+    (
+        lambda: Operation(load_cases=[LoadCase(name="a", loads={}), LoadCase(name="a", loads={})]),
+        "operation.load_case = 'a': names two load cases",
+        "rename one",
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", loads={"Dsk 1": 1})])),
+        "load case a.Dsk 1 = 1: is not a Disk of this driveline",
+        'did you mean "Disk 1"?',
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", loads={"Shaft 1": 1})])),
+        "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
+        "Disk 1",
+    ),
+    (lambda: starter("tow-shaft"), "new = 'tow-shaft': is not a starter", 'did you mean "two-shaft"?'),
+]
+
+
+@pytest.mark.parametrize(("action", "start", "also"), PYTHON, ids=[row[1] for row in PYTHON])
+def test_python(action, start, also):
+    check(action, start, also)
+
+
+HEAD = "format = 1\n"
+JOINT = '[[element]]\ntype = "HookeJoint"\nangle = "12 deg"\n'
+SHAFT = '[[element]]\ntype = "Shaft"\nstiffness = 1e4\n'
+DISK = '[[element]]\ntype = "Disk"\ninertia = 1\n'
+
+# (content of bad.toml, how the message starts, what it must also say)
+FILES = [
+    (b"", "bad.toml: is empty", "trunnion new two-shaft"),
+    (b" \n\n", "bad.toml: is empty", "trunnion new two-shaft"),
+    (b"\x89PNG\r\n\x1a\n\x00", "bad.toml: is not a text file in UTF-8", "save it as UTF-8"),
+    (b"format = 1\x00", "bad.toml: is not a text file in UTF-8", "save it as UTF-8"),
+    ('name = "Müller"'.encode("latin-1"), "bad.toml: is not a text file in UTF-8", "save it as UTF-8"),
+    ((HEAD + DISK).encode("utf-16"), "bad.toml: is not a text file in UTF-8", "save it as UTF-8"),
+    ("format 1", "bad.toml: is not valid TOML: Expected", "line 1, column 8"),
+    (HEAD + JOINT + "plane = 12 deg\n", "bad.toml: is not valid TOML", "line 5, column 12"),
+    ("format = 1\nformat = 1\n", "bad.toml: is not valid TOML", "line 2, column"),
+    ("a = " + "[" * 5000, "bad.toml: is not valid TOML", ""),
+    (DISK, "bad.toml: format: is missing", "write format = 1 in the first line"),
+    ("format = 2\n" + DISK, "bad.toml: format = 2: is a later format", "install a newer Trunnion"),
+    ("format = 0\n" + DISK, "bad.toml: format = 0: is not a known format", "write format = 1"),
+    ('format = "1"\n' + DISK, "bad.toml: format = '1': is not a known format", "write format = 1"),
+    ("format = true\n" + DISK, "bad.toml: format = True: is not a known format", "write format = 1"),
+    ("formt = 1\n" + DISK, "bad.toml: formt = 1: unknown key", 'did you mean "format"?'),
+    (HEAD + "[[elements]]\n", "bad.toml: elements = [{}]: unknown key", 'did you mean "element"?'),
+    (HEAD, "bad.toml: element: has no elements", "[[element]]"),
+    (HEAD + "element = []", "bad.toml: element: has no elements", "[[element]]"),
+    (
+        HEAD + DISK.replace("[[", "[").replace("]]", "]"),
+        "bad.toml: element: is a single table",
+        "double brackets",
+    ),
+    (HEAD + "element = [1]", "bad.toml: element 1 = 1: is not a table", "[[element]]"),
+    (HEAD + SHAFT + "[[element]]\n", "bad.toml: element 2.type: is missing", 'type = "Shaft"'),
+    (
+        HEAD + '[[element]]\nkind = "Disk"\n',
+        "bad.toml: element 1.type: is missing",
+        "write type instead of kind",
+    ),
+    (
+        HEAD + '[[element]]\ntype = "Shfat"\n',
+        "bad.toml: element 1.type = 'Shfat': unknown element type",
+        '"Shaft"',
+    ),
+    (HEAD + '[[element]]\ntype = "shaft"\n', "bad.toml: element 1.type = 'shaft': unknown", '"Shaft"'),
+    (HEAD + "[[element]]\ntype = 3\n", "bad.toml: element 1.type = 3: unknown element type", "HookeJoint"),
+    (
+        HEAD + '[[element]]\ntype = "Xyz"\nname = "rear"\n',
+        "bad.toml: rear (element 1).type = 'Xyz': unknown element type",
+        "known: ConstantSpeed, Shaft",
+    ),
+    (
+        HEAD + SHAFT + DISK + SHAFT.replace("1e4", '"3 N*m"'),
+        "bad.toml: Shaft 2 (element 3).stiffness = '3 N*m': N*m is not",
+        "write N*m/rad",
+    ),
+    (
+        HEAD + SHAFT + 'name = "rear tube"\ndampng = 3\n',
+        "bad.toml: rear tube (element 1).dampng = 3: unknown key",
+        'did you mean "damping"?',
+    ),
+    (
+        HEAD + JOINT.replace("12", "95"),
+        "bad.toml: HookeJoint 1 (element 1).angle = '95 deg': must be less",
+        "deg",
+    ),
+    (
+        HEAD + JOINT + "plane = nan\n",
+        "bad.toml: HookeJoint 1 (element 1).plane = nan: must be finite",
+        "12 deg",
+    ),
+    (
+        HEAD + JOINT + "plane = -inf\n",
+        "bad.toml: HookeJoint 1 (element 1).plane = -inf: must be finite",
+        "12 deg",
+    ),
+    (HEAD + JOINT + "plane = 1979-05-27\n", "bad.toml: HookeJoint 1 (element 1).plane = ", "not a date"),
+    (HEAD + JOINT + "name = 3\n", "bad.toml: HookeJoint 1 (element 1).name = 3: is not a name", "one line"),
+    (
+        HEAD + DISK + 'name = "a"\n' + SHAFT + 'name = "a"\n',
+        "bad.toml: a.name: names elements 1 and 2",
+        "rename",
+    ),
+    (
+        HEAD + DISK + SHAFT + 'after = "Dsk 1"\n',
+        "bad.toml: Shaft 1.after = 'Dsk 1': is not an earlier",
+        '"Disk 1"',
+    ),
+    (HEAD + "operation = 3\n" + DISK, "bad.toml: operation = 3: is not a table", "[operation]"),
+    (HEAD + "[operation]\nsped = 3\n" + DISK, "bad.toml: operation.sped = 3: unknown key", '"speed"'),
+    (
+        HEAD + '[operation]\nspeed_range = ["600 rpm", "300 rpm"]\n' + DISK,
+        "bad.toml: operation.speed_range = ['600 rpm', '300 rpm']: is reversed",
+        "the lower first",
+    ),
+    (
+        HEAD + "[[operation]]\nspeed = 3\n" + DISK,
+        "bad.toml: operation = [{'speed': 3}]: is not a table",
+        "[operation]",
+    ),
+    (
+        HEAD + "[operation.load_case]\n" + DISK,
+        "bad.toml: operation.load_case: is a single table",
+        "double brackets",
+    ),
+    (
+        HEAD + "[[operation.load_cases]]\n" + DISK,
+        "bad.toml: operation.load_cases: unknown key",
+        '"load_case"',
+    ),
+    (
+        HEAD + "[operation]\nload_case = [1]\n" + DISK,
+        "bad.toml: load case 1 = 1: is not a table",
+        "load_case]]",
+    ),
+    (
+        HEAD + '[[operation.load_case]]\nname = "a"\n' + DISK,
+        "bad.toml: load case a.loads: is missing",
+        "250 N*m",
+    ),
+    (
+        HEAD + "[[operation.load_case]]\nloads = {}\n" + DISK,
+        "bad.toml: load case 1.name: is missing",
+        "full load",
+    ),
+    (
+        HEAD + '[[operation.load_case]]\nname = "a"\nloads = 3\n' + DISK,
+        "bad.toml: load case a.loads = 3: is not a table of torques",
+        "250 N*m",
+    ),
+    (
+        HEAD + '[[operation.load_case]]\nname = "a"\nload = {}\n' + DISK,
+        "bad.toml: load case a.load = {}: unknown key",
+        'did you mean "loads"?',
+    ),
+    (
+        HEAD + '[[operation.load_case]]\nname = "a"\nloads = { "Disk 2" = 1 }\n' + DISK,
+        "bad.toml: load case a.Disk 2 = 1: is not a Disk of this driveline",
+        'did you mean "Disk 1"?',
+    ),
+    (
+        HEAD + "damping_ratio = 0.02\n" + SHAFT + "damping = 3\n",
+        "bad.toml: Shaft 1.damping = 3: stands beside",
+        "out",
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("content", "start", "also"), FILES, ids=[f"{i}: {row[1]}" for i, row in enumerate(FILES)]
+)
+def test_file(content, start, also, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "bad.toml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    before = path.read_bytes()
+    check(lambda: load("bad.toml"), start, also)
+    assert path.read_bytes() == before
+    assert os.listdir(tmp_path) == ["bad.toml"]
+
+
+def test_text_without_a_file_has_no_prefix():
+    check(lambda: loads(HEAD), "element: has no elements", "[[element]]")
+
+
+def test_file_not_found(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    check(lambda: load("truck.toml"), "truck.toml: file not found", "trunnion new two-shaft")
+    (tmp_path / "truck.toml").write_text(starter("truck"))
+    check(lambda: load("trukc.toml"), "trukc.toml: file not found", 'did you mean "truck.toml"?')
+    check(lambda: load("no/such/folder.toml"), "no/such/folder.toml: file not found", "check the path")
+
+
+def test_a_folder_is_not_a_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drives").mkdir()
+    check(lambda: load("drives"), "drives: is a folder", "name the driveline file in it")
+    check(lambda: dump(line(), "drives"), "drives: is a folder", "name a file in it")
+    assert os.listdir("drives") == []
+
+
+def test_output_not_writable(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    check(
+        lambda: dump(line(), "no/such/a.toml"), "no/such/a.toml: cannot be written", "check that the folder"
+    )
+    (tmp_path / "file").write_text("x")
+    check(lambda: dump(line(), "file/a.toml"), "file/a.toml: cannot be written", "check that the folder")
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_missing_permissions(tmp_path, monkeypatch):
+    def deny(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("pathlib.Path.read_bytes", deny)  # real modes would not bind an administrator
+    monkeypatch.setattr("pathlib.Path.write_text", deny)
+    check(lambda: load("secret.toml"), "secret.toml: cannot be read (Permission denied)", "check")
+    check(lambda: dump(line(), "new.toml"), "new.toml: cannot be written (Permission denied)", "may write")
+
+
+def check(action, start, also):
+    with pytest.raises(InputError) as caught:
+        action()
+    message = str(caught.value)
+    assert message.startswith(start)
+    assert also in message
+    assert "\n" not in message
+    assert len(message) < 320
+    assert not re.search(r"pydantic|Traceback|validation error", message)
+    assert caught.value.exit_code == 2
+    assert caught.value.__suppress_context__ or caught.value.__context__ is None

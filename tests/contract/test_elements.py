@@ -1,0 +1,220 @@
+"""Elements and the driveline they form: what follows from what is stated."""
+
+import math
+import pickle
+import warnings
+from fractions import Fraction
+
+import pytest
+
+from trunnion.driveline import (
+    ConstantSpeed,
+    Disk,
+    Driveline,
+    HookeJoint,
+    IdealJoint,
+    LoadCase,
+    Operation,
+    Ratio,
+    Shaft,
+    deg,
+    rpm,
+)
+from trunnion.driveline.elements import KINDS
+from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.errors import InputRemark
+
+TUBE = {"outer_diameter": "110 mm", "inner_diameter": "100 mm", "length": 1.3, "shear_modulus": "79.3 GPa"}
+
+ONE_OF_EACH = [
+    ConstantSpeed(name="drive"),
+    Shaft(stiffness="12 kN*m/rad", damping=3, fork_offset="90 deg"),
+    Shaft(**TUBE, density=7850, young_modulus="206 GPa", loss_factor=0.02, loss_factor_frequency="50 Hz"),
+    Disk(inertia=0.4, load_torque="250 N*m"),
+    Disk(outer_diameter=0.3, thickness=0.02, density=7850, after="drive"),
+    HookeJoint(angle="12 deg", plane="15 deg"),
+    IdealJoint(),
+    Ratio(ratio=-4.1),
+    Ratio(teeth_in=10, teeth_out=41),
+]
+
+
+def small_line(**rest):
+    return Driveline(
+        [
+            ConstantSpeed(),
+            Shaft(stiffness=1.2e4),
+            Disk(inertia=0.4),
+            HookeJoint(angle=deg(12)),
+            Shaft(stiffness=1.0e4, name="rear"),
+            Disk(inertia=0.9, load_torque=20.0),
+        ],
+        **rest,
+    )
+
+
+@pytest.mark.parametrize("element", ONE_OF_EACH, ids=lambda e: e.kind)
+def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
+    assert KINDS[element.kind] is type(element)
+    assert type(element)(**element.stated) == element
+    assert hash(type(element)(**element.stated)) == hash(element)
+    assert pickle.loads(pickle.dumps(element)) == element
+    with pytest.raises(ValueError, match="frozen"):
+        element.name = "other"
+
+
+def test_units_and_numbers_give_the_same_element():
+    assert Shaft(stiffness="12 kN*m/rad", fork_offset="90 deg") == Shaft(
+        stiffness=12000, fork_offset=math.pi / 2
+    )
+    assert HookeJoint(angle="12 deg").angle == math.radians(12)
+
+
+def test_tube_shaft():
+    shaft = Shaft(**TUBE, density="7850 kg/m^3")
+    area = math.pi / 32 * (0.11**4 - 0.1**4)
+    assert shaft.stiffness is None
+    assert shaft.torsional_stiffness == pytest.approx(79.3e9 * area / 1.3, rel=1e-15)
+    assert shaft.moment_of_inertia == pytest.approx(7850 * area * 1.3, rel=1e-15)
+    assert Shaft(**TUBE).moment_of_inertia == 0.0
+    solid = Shaft(outer_diameter=0.1, length=1, shear_modulus=8e10)
+    assert solid.inner_diameter == 0.0
+    assert solid.torsional_stiffness == pytest.approx(8e10 * math.pi * 1e-4 / 32)
+
+
+def test_keys_that_do_not_apply_stay_unset():
+    """They would otherwise show up as parameters that change nothing."""
+    shaft = Shaft(stiffness=1.0)
+    assert shaft.inner_diameter is None and shaft.density is None
+    assert Disk(inertia=1.0).inner_diameter is None
+
+
+def test_loss_factor_is_a_damping_coefficient_at_its_frequency():
+    shaft = Shaft(stiffness=1e4, loss_factor=0.02, loss_factor_frequency="50 Hz")
+    assert shaft.damping_coefficient == pytest.approx(0.02 * 1e4 / (100 * math.pi))
+    assert Shaft(stiffness=1e4, damping=3).damping_coefficient == 3.0
+
+
+def test_disk_from_geometry():
+    disk = Disk(outer_diameter=1.0, inner_diameter=0.5, thickness=0.1, density=7850)
+    mass = 7850 * math.pi / 4 * (1 - 0.25) * 0.1
+    assert disk.moment_of_inertia == pytest.approx(mass * (0.5**2 + 0.25**2) / 2)
+    assert Disk(inertia=0.4).moment_of_inertia == 0.4
+
+
+def test_geometry_takes_arrays():
+    numpy = pytest.importorskip("numpy")
+    outer = numpy.array([0.05, 0.1])
+    stiffness = tube_stiffness(outer, 0.0, 1.0, 8e10)
+    assert stiffness[1] == pytest.approx(16 * stiffness[0])
+    assert tube_inertia(outer, 0.0, 2.0, 7850.0) == pytest.approx(disk_inertia(outer, 0.0, 2.0, 7850.0))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "fraction"),
+    [
+        (Ratio(teeth_in=10, teeth_out=41), Fraction(41, 10)),
+        (Ratio(teeth_in=11, teeth_out=37), Fraction(37, 11)),
+        (Ratio(ratio=4.1), Fraction(41, 10)),
+        (Ratio(ratio=-3.9), Fraction(-39, 10)),
+        (Ratio(ratio=1e-5), Fraction(1, 100000)),
+        (Ratio(ratio=2), Fraction(2)),
+    ],
+)
+def test_ratio_is_exact(ratio, fraction):
+    assert ratio.fraction == fraction
+    assert ratio.speed_ratio == float(fraction)
+
+
+def test_negative_damping_is_a_remark():
+    with pytest.warns(InputRemark, match=r"^Shaft\.damping = -3: is negative"):
+        assert Shaft(stiffness=1e4, damping=-3).damping == -3.0
+    with pytest.warns(InputRemark, match=r"^driveline\.damping_ratio = -0\.01: is negative"):
+        small_line(damping_ratio=-0.01)
+
+
+def test_large_angles_are_no_remark_in_python():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        HookeJoint(angle="60 deg")
+
+
+def test_names_are_given_or_ordinal_per_kind():
+    line = small_line()
+    assert line.names == ("ConstantSpeed 1", "Shaft 1", "Disk 1", "HookeJoint 1", "rear", "Disk 2")
+    assert line.index("rear") == 4
+    third = Driveline([Shaft(stiffness=1, name="a"), Shaft(stiffness=1), Disk(inertia=1)])
+    assert third.names[1] == "Shaft 2"  # the ordinal counts named ones too
+
+
+def test_parents_form_a_tree():
+    line = Driveline(
+        [
+            ConstantSpeed(),
+            Shaft(stiffness=1e4),
+            Disk(inertia=1, name="gear"),
+            Shaft(stiffness=1e4),
+            Disk(inertia=1),
+            Shaft(stiffness=1e4, after="gear"),
+            Disk(inertia=1),
+            Shaft(stiffness=1e3, after="Disk 2"),
+            ConstantSpeed(),
+        ]
+    )
+    assert line.parents == (None, 0, 1, 2, 3, 2, 5, 4, 7)
+    assert small_line().parents == (None, 0, 1, 2, 3, 4)
+
+
+def test_elements_are_kept_as_given():
+    elements = [ConstantSpeed(), Shaft(stiffness=1.0), Disk(inertia=1.0)]
+    line = Driveline(elements)
+    assert line.elements == tuple(elements)
+    assert line == Driveline(iter(elements))
+    assert hash(line) == hash(Driveline(elements))
+    assert pickle.loads(pickle.dumps(line)) == line
+
+
+def test_replace_leaves_the_original_alone():
+    line = small_line(name="x", damping_ratio=0.02)
+    other = line.replace("HookeJoint 1", angle="15 deg")
+    assert other.elements[3].angle == math.radians(15)
+    assert line.elements[3].angle == deg(12)
+    assert (other.name, other.damping_ratio) == ("x", 0.02)
+    tube = line.replace("rear", stiffness=None, **TUBE)
+    assert tube.elements[4].torsional_stiffness == Shaft(**TUBE).torsional_stiffness
+
+
+def test_load_case_replaces_the_torques_it_names():
+    cases = (LoadCase(name="climb", loads={"Disk 2": "250 N*m"}),)
+    line = small_line(operation=Operation(speed=rpm(1500), load_cases=cases))
+    loaded = line.with_load("climb")
+    assert loaded.elements[5].load_torque == 250.0
+    assert line.elements[5].load_torque == 20.0
+    assert loaded.elements[2] == line.elements[2]
+    assert loaded.operation == line.operation
+
+
+def test_operation_reads_units():
+    operation = Operation(
+        speed="1200 rpm", speed_range=["5 Hz", "40 Hz"], angle_range=("0 deg", "15 deg"), speed_unit="Hz"
+    )
+    assert operation.speed == rpm(1200)
+    assert operation.speed_range == (10 * math.pi, 80 * math.pi)
+    assert operation.angle_range == (0.0, math.radians(15))
+
+
+def test_a_line_introduces_itself():
+    line = Driveline(ONE_OF_EACH, name="everything")
+    assert str(line).splitlines() == [
+        "Driveline 'everything' of 9 elements",
+        "  drive         ConstantSpeed",
+        "  Shaft 1       stiffness 12 kN*m/rad, damping 3 N*m*s/rad, fork offset 90 deg",
+        "  Shaft 2       tube 110 mm with bore 100 mm, 1.3 m long, 277.9 kN*m/rad, 0.0465 kg*m^2, "
+        "loss factor 0.02 at 50 Hz",
+        "  Disk 1        inertia 0.4 kg*m^2, load torque 250 N*m",
+        "  Disk 2        after drive, disk 300 mm, 20 mm long, 0.1248 kg*m^2",
+        "  HookeJoint 1  angle 12 deg, plane 15 deg",
+        "  IdealJoint 1",
+        "  Ratio 1       ratio -4.1",
+        "  Ratio 2       teeth in 10, teeth out 41",
+    ]

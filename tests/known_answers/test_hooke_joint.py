@@ -1,0 +1,142 @@
+"""Hooke's joint against its textbook numbers (Seherr-Thoss, Schmelz, Aucktor, Universal Joints and
+Driveshafts, 2nd ed., section 1.2) and against the geometry of a cross in space."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.joints import hooke
+
+Array = NDArray[np.float64]
+TURN = np.linspace(0.0, 2 * np.pi, 20_001)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "lead_degrees", "acceleration"),
+    [(10, 0.4386, 0.030626), (20, 1.7817, 0.124966), (30, 4.1172, 0.294571), (45, 9.8793, 0.787200)],
+)
+def test_lead_and_acceleration(degrees: float, lead_degrees: float, acceleration: float) -> None:
+    beta = np.deg2rad(degrees)
+    swept = np.rad2deg(np.abs(hooke.output_angle(TURN, beta) - TURN).max())
+    assert swept == pytest.approx(lead_degrees, abs=6e-5)
+    assert np.rad2deg(hooke.largest_lead(beta)) == pytest.approx(lead_degrees, abs=5.1e-5)
+    assert np.abs(hooke.ratio_slope(TURN, beta)).max() == pytest.approx(acceleration, abs=6e-7)
+
+
+@pytest.mark.parametrize("degrees", [1, 10, 30, 60, 85])
+def test_irregularity_and_mean_square(degrees: float) -> None:
+    beta = np.deg2rad(degrees)
+    eta = hooke.ratio(TURN, beta)
+    assert hooke.irregularity(beta) == pytest.approx(np.ptp(eta), rel=1e-7)
+    assert eta.max() == pytest.approx(1 / np.cos(beta), rel=1e-12) and eta[0] == eta.max()
+    assert eta.min() == pytest.approx(np.cos(beta), rel=1e-6)
+    assert hooke.mean_square_ratio(beta) == pytest.approx(np.mean(eta[:-1] ** 2), rel=1e-12)
+    assert np.mean(eta[:-1]) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_industry_guideline() -> None:
+    """U ≤ 0.0027, quoted as an equivalent angle of 3°, is 2.98°; 3° gives 0.00274."""
+    assert hooke.irregularity(np.deg2rad(3)) == pytest.approx(0.00274, abs=5e-6)
+    assert hooke.irregularity(np.deg2rad(2.98)) == pytest.approx(0.0027, abs=1e-5)
+
+
+@pytest.mark.parametrize("beta", [0.05, 0.3, 0.8, 1.3])
+def test_derivatives_match_differences(beta: float) -> None:
+    chi, h = np.linspace(-4, 4, 401), 1e-5
+    pairs = [
+        (hooke.output_angle, hooke.ratio),
+        (hooke.ratio, hooke.ratio_slope),
+        (hooke.ratio_slope, hooke.ratio_curvature),
+    ]
+    for value, slope in pairs:
+        differenced = (value(chi + h, beta) - value(chi - h, beta)) / (2 * h)
+        exact = slope(chi, beta)
+        assert np.abs(differenced - exact).max() < 1e-7 * max(1.0, np.abs(exact).max())
+
+
+@pytest.mark.parametrize("beta", [0.2, 1.0])
+def test_law_is_tangent_and_half_turn_periodic(beta: float) -> None:
+    chi = np.linspace(-3, 3, 501)
+    psi = hooke.output_angle(chi, beta)
+    assert np.abs(np.sin(psi) * np.cos(chi) * np.cos(beta) - np.cos(psi) * np.sin(chi)).max() < 1e-15
+    assert np.abs(psi - chi).max() < np.pi / 2
+    assert np.abs(hooke.output_angle(chi + np.pi, beta) - psi - np.pi).max() < 5e-15
+
+
+def test_straight_joint_passes_rotation() -> None:
+    assert np.array_equal(hooke.output_angle(TURN, 0.0), TURN)
+    assert np.all(hooke.ratio(TURN, 0.0) == 1.0)
+    # ψ − χ = tan²(β/2) sin 2χ to leading order.
+    small = 1e-4
+    assert np.abs(hooke.output_angle(TURN, small) - TURN - small**2 / 4 * np.sin(2 * TURN)).max() < 1e-15
+
+
+def test_papers_start_a_quarter_turn_later() -> None:
+    """S1 writes η = cos β/(1 − sin²β sin²φ)."""
+    beta = 0.7
+    printed = np.cos(beta) / (1 - np.sin(beta) ** 2 * np.sin(TURN) ** 2)
+    assert np.abs(hooke.ratio(TURN + np.pi / 2, beta) - printed).max() < 1e-14
+
+
+def _rotated(vector: Array, axis: Array, angle: float) -> Array:
+    along = axis * (axis @ vector)
+    return np.cos(angle) * (vector - along) + np.sin(angle) * np.cross(axis, vector) + along
+
+
+def _angle_about(axis: Array, zero: Array, arm: Array) -> float:
+    return float(np.arctan2(np.cross(zero, arm) @ axis, zero @ arm))
+
+
+@pytest.mark.parametrize(
+    ("betas", "fork_offset", "plane", "start"),
+    [((0.4, 0.7), 0.5, -1.1, 0.2), ((0.9, 0.3), -2.0, 0.8, 1.0), ((0.5, 0.5), 0.0, 0.0, 0.3)],
+)
+def test_two_joints_in_space(
+    betas: tuple[float, float], fork_offset: float, plane: float, start: float
+) -> None:
+    """Fork offsets and planes as described, against two crosses in space: arms square to each other, each
+    square to its shaft; the second joint plane turned by ``plane`` about the intermediate shaft."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=1.0, fork_offset=start),
+            tn.Disk(inertia=1.0),
+            tn.HookeJoint(angle=betas[0]),
+            tn.Shaft(stiffness=1.0, fork_offset=fork_offset),
+            tn.Disk(inertia=1.0),
+            tn.HookeJoint(angle=betas[1], plane=plane),
+            tn.Shaft(stiffness=1.0),
+            tn.Disk(inertia=1.0),
+        ]
+    )
+    assembly = assemble(line)
+    tau = np.linspace(0, 2 * np.pi, 37)
+    motion = base_motion(
+        assembly.topology, assembly.coefficients(assembly.table(1, 1.0)), tau, ratio_values(assembly.topology)
+    )
+    first, second = assembly.topology.joints
+
+    axis_a = np.array([0.0, 0.0, 1.0])
+    axis_b = np.array([np.sin(betas[0]), 0.0, np.cos(betas[0])])
+    normal_1 = np.cross(axis_a, axis_b) / np.sin(betas[0])
+    normal_2 = _rotated(normal_1, axis_b, plane)
+    axis_c = _rotated(axis_b, normal_2, betas[1])
+    for i, t in enumerate(tau):
+        fork_a = _rotated(np.cross(normal_1, axis_a), axis_a, t + start)
+        fork_b = np.cross(axis_b, fork_a)
+        in_plane_1 = np.cross(normal_1, axis_b)
+        assert _apart(_angle_about(axis_b, in_plane_1, fork_b), motion.angle[0, i, first]) < 1e-13
+        fork_b2 = _rotated(fork_b, axis_b, fork_offset)
+        fork_c = np.cross(axis_c, fork_b2)
+        in_plane_2 = np.cross(normal_2, axis_c)
+        assert _apart(_angle_about(axis_c, in_plane_2, fork_c), motion.angle[0, i, second]) < 1e-13
+
+
+def _apart(a: float, b: float) -> float:
+    """Distance of two directions of an arm, which has no head: modulo half a turn."""
+    return abs((a - b + np.pi / 2) % np.pi - np.pi / 2)

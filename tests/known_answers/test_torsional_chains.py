@@ -1,0 +1,56 @@
+"""Natural frequencies of free torsional lines (Friswell and co-authors, Dynamics of Rotating Machines)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+
+
+def test_five_disks() -> None:
+    inertias, stiffnesses = [3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05], [12e3, 12e3, 14e3, 10e3]
+    elements: list[object] = [tn.Disk(inertia=inertias[0])]
+    for k, j in zip(stiffnesses, inertias[1:], strict=True):
+        elements += [tn.Shaft(stiffness=k), tn.Disk(inertia=j)]
+    modes = tn.natural_frequencies(tn.Driveline(elements))  # type: ignore[arg-type]
+    assert modes.rigid_body and modes.frequency[0] == 0.0
+    assert modes.hertz[1:] == pytest.approx([81.21, 141.21, 378.95, 536.36], abs=0.0051)
+    assert np.ptp(modes.shape[:, 0]) < 1e-6
+    assert np.abs(modes.damping_ratio).max() < 1e-15
+
+
+def test_geared_system_with_a_branch() -> None:
+    """A 1:1 gear pair whose second gear drives two shafts, one of them a branch."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=400e-6),
+            tn.Shaft(stiffness=10e3),
+            tn.Disk(inertia=25e-6),
+            tn.Ratio(teeth_in=20, teeth_out=20, name="mesh"),
+            tn.Disk(inertia=25e-6, name="second gear"),
+            tn.Shaft(stiffness=5e3),
+            tn.Disk(inertia=700e-6),
+            tn.Shaft(stiffness=5e3, after="second gear"),
+            tn.Disk(inertia=700e-6),
+        ]
+    )
+    modes = tn.natural_frequencies(line)
+    assert modes.rigid_body
+    assert modes.hertz[1:] == pytest.approx([425.4, 634.1, 3247.2], abs=0.051)
+
+
+def test_modes_of_a_geared_pair_by_hand() -> None:
+    """k between J₁ and J₂ behind a ratio of 3: J₂ weighs J₂/9 and k weighs itself in front of it."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=2.0),
+            tn.Shaft(stiffness=50.0, damping=0.1),
+            tn.Disk(inertia=1e-9),
+            tn.Ratio(ratio=3.0),
+            tn.Disk(inertia=9.0),
+        ]
+    )
+    modes = tn.natural_frequencies(line)
+    assert modes.frequency[1] == pytest.approx(np.sqrt(50.0 * (1 / 2.0 + 1 / 1.0)), rel=1e-8)
+    assert modes.damping_ratio[1] == pytest.approx(0.1 / 50.0 * modes.frequency[1] / 2, rel=1e-8)

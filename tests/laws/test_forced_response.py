@@ -1,0 +1,106 @@
+"""The linear forced response against the nonlinear equations, by an independent integration."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.chains import Chain
+from oracles.nonlinear import NonlinearChain
+from scipy.integrate import solve_ivp
+
+import trunnion as tn
+from trunnion.analyses.forced_response import LinearResponse, periodic_states
+from trunnion.numerics.dense_monodromy import propagate
+from trunnion.systems.periodic_linear import from_matrices
+
+
+def two_shafts(beta: float, load: float = 0.0) -> Chain:
+    """A well damped two-shaft line between resonances."""
+    return Chain(
+        speed=0.8,
+        stiffness=[1.0, 0.7],
+        damping=[0.15, 0.2],
+        inertia=[1.0, 0.6],
+        angle=[beta],
+        fork_offset=[0.4, 0.0],
+        plane=[0.0],
+        load=[0.0, load],
+    )
+
+
+def steady_state(case: Chain, tau: np.ndarray) -> np.ndarray:
+    """Deviations (time, 2) over one period of the nonlinear motion, after 150 periods from rest."""
+    model = NonlinearChain(case)
+    run = solve_ivp(
+        model.slopes, (0, 150 * case.period), np.zeros(4), method="DOP853", rtol=1e-10, atol=1e-13
+    )
+    # Whole periods have passed: the equations are the same from τ = 0.
+    end = (0, tau[-1])
+    last = solve_ivp(model.slopes, end, run.y[:, -1], method="DOP853", rtol=1e-12, atol=1e-15, t_eval=tau)
+    assert np.abs(last.y[:, -1] - last.y[:, 0]).max() < 1e-10
+    return np.asarray(last.y[:2].T)
+
+
+def both(beta: float, load: float = 0.0) -> tuple[LinearResponse, np.ndarray]:
+    """The package's linear response, and the nonlinear deviations at its times."""
+    case = two_shafts(beta, load)
+    response = tn.stability(case.line(), case.speed, tolerance=1e-12).response
+    assert response is not None
+    return response, steady_state(case, response.tau)
+
+
+def departure(beta: float) -> float:
+    """Largest difference of linear and nonlinear deviations over the largest deviation."""
+    response, exact = both(beta)
+    return float(np.abs(response.rotation - exact).max() / np.abs(exact).max())
+
+
+def test_linear_response_is_the_limit_of_small_angles() -> None:
+    """Relative difference falls with β⁴: second-order terms of the twist, itself of order β²."""
+    far = [departure(beta) for beta in (0.3, 0.15, 0.075)]
+    assert far[0] < 1e-3
+    assert far[0] / far[1] == pytest.approx(16, rel=0.2)
+    assert far[1] / far[2] == pytest.approx(16, rel=0.2)
+
+
+def test_zero_load_amplitudes_follow_the_nonlinear_motion() -> None:
+    response, exact = both(0.2)
+    assert response.linear
+    assert np.ptp(response.rotation, axis=0) == pytest.approx(np.ptp(exact, axis=0), rel=5e-4)
+
+
+def test_loaded_mean_twist() -> None:
+    """Under load the nonlinear mean twist of shaft 1 is −M/k₁ times the mean of the ratio, 1 for small β."""
+    response, exact = both(0.1, load=0.05)
+    assert response.twist[:-1, 0].mean() == pytest.approx(exact[:-1, 0].mean(), rel=1e-3)
+    assert np.ptp(response.twist[:, 0]) == pytest.approx(np.ptp(exact[:, 0]), rel=0.02)
+
+
+def test_mean_torque_without_load_is_of_second_order() -> None:
+    """Mean power covers the dampers' losses, which are quadratic in the response."""
+    case = two_shafts(0.02)
+    response = tn.stability(case.line(), case.speed, tolerance=1e-12).response
+    assert response is not None
+    assert response.torque_mean == pytest.approx([0.0, 0.0], abs=1e-3 * response.torque_amplitude.max())
+
+
+def test_forced_oscillator_of_your_own() -> None:
+    """x″ + 2ζx′ + x = cos ντ has the amplitude every textbook prints."""
+    nu, zeta = 1.4, 0.05
+    system = from_matrices(
+        np.eye(1),
+        np.array([[2 * zeta]]),
+        np.eye(1),
+        period=2 * np.pi / nu,
+        forcing=lambda tau: np.cos(nu * tau)[:, None],
+    )
+
+    def arrays(tau: np.ndarray) -> tuple[np.ndarray, ...]:
+        m = system.coefficients(tau)
+        return m.mass, m.damping, m.stiffness, m.forcing
+
+    states = periodic_states(propagate(arrays, system.period, 1, 1e-12, 64))  # type: ignore[arg-type]
+    amplitude = 1 / np.hypot(1 - nu**2, 2 * zeta * nu)
+    assert np.ptp(states[:, 0]) / 2 == pytest.approx(amplitude, rel=1e-3)
+    assert states[0, 0] == pytest.approx(amplitude**2 * (1 - nu**2), rel=1e-9)
+    assert states[0, 1] == pytest.approx(amplitude**2 * 2 * zeta * nu**2, rel=1e-9)

@@ -1,0 +1,199 @@
+"""The linear equations are the derivatives of the nonlinear ones, and those are the laws of mechanics."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.comparisons import set_distance
+from oracles.package_kernels import chain_kernel
+from oracles.trees import Tree
+
+import trunnion as tn
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.linear import line_matrices
+from trunnion.equations.nonlinear import nonlinear_line
+
+SPEED = 37.0
+TIMES = (0.0, 0.013, 0.071, 0.2)
+
+
+def random_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
+    """Shafts, tubes with density, several joints and ratios in one group, disks behind joints, a branch."""
+    rng = np.random.default_rng(seed)
+    elements: list[Any] = [tn.ConstantSpeed(name="drive")]
+    disks: list[str] = []
+
+    def disk() -> tn.Disk:
+        disks.append(f"disk {len(disks) + 1}")
+        load = float(rng.uniform(-20, 60)) if rng.random() < 0.6 else 0.0
+        return tn.Disk(inertia=float(rng.uniform(0.1, 2.0)), load_torque=load, name=disks[-1])
+
+    def shaft(after: str | None = None) -> list[Any]:
+        turned = {"fork_offset": float(rng.uniform(-3, 3)), "after": after}
+        stiffness = float(rng.uniform(500, 3000))
+        kind = rng.integers(4)
+        if kind == 0:
+            tube = {"outer_diameter": 0.03, "inner_diameter": 0.02, "length": 0.7, "shear_modulus": 79.3e9}
+            return [
+                tn.Shaft(**tube, density=7850 * 40.0, loss_factor=0.03, loss_factor_frequency=200.0, **turned)
+            ]
+        if kind == 1:
+            first = tn.Shaft(stiffness=stiffness, **turned)
+            return [first, tn.Shaft(stiffness=2 * stiffness, fork_offset=float(rng.uniform(-1, 1)))]
+        return [tn.Shaft(stiffness=stiffness, damping=float(rng.uniform(0, 5)), **turned)]
+
+    def hooke() -> tn.HookeJoint:
+        return tn.HookeJoint(angle=float(rng.uniform(0.1, steepest)), plane=float(rng.uniform(-3, 3)))
+
+    def group() -> list[Any]:
+        found: list[Any] = [disk()]
+        choice = int(rng.integers(9))
+        if choice in (0, 1):
+            found += [hooke()]
+        elif choice == 2:
+            found += [hooke(), hooke()]
+        elif choice == 3:
+            found += [tn.Ratio(teeth_in=10, teeth_out=31), hooke()]
+        elif choice == 4:
+            found += [hooke(), tn.Ratio(ratio=-1.5), disk()]
+        elif choice == 5:
+            found += [hooke(), disk(), hooke()]
+        elif choice == 6:
+            found += [tn.Ratio(ratio=-0.5), disk()]
+        elif choice == 7:
+            found += [tn.IdealJoint(), hooke(), tn.Ratio(teeth_in=3, teeth_out=2), hooke(), disk()]
+        return found
+
+    if rng.random() < 0.2:
+        elements.append(hooke())
+    for _ in range(int(rng.integers(2, 5))):
+        elements += shaft() + group()
+    if rng.random() < 0.6:
+        elements += [*shaft(after=disks[int(rng.integers(len(disks)))]), *group()]
+        elements += [*shaft(), *group()]
+    return tn.Driveline(elements)
+
+
+def base(assembly: Assembly, time: float, *, twisted: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles, rates and accelerations of the unknowns in the base motion."""
+    topo = assembly.topology
+    coefficients = assembly.coefficients(assembly.table(1, SPEED), statically_twisted=twisted)
+    motion = base_motion(topo, coefficients, np.array([SPEED * time]), ratio_values(topo))
+    stations = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
+    return (
+        motion.angle[0, 0, stations],
+        motion.speed[0, 0, stations] * SPEED,
+        motion.acceleration[0, 0, stations] * SPEED**2,
+    )
+
+
+@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("twisted", [False, True])
+def test_matrices_are_exact_derivatives(seed: int, twisted: bool) -> None:
+    """M, C, K and the forcing against the complex-step derivatives of the virtual work."""
+    line = random_line(seed)
+    assembly, tree = assemble(line), Tree(line, SPEED)
+    coefficients = assembly.coefficients(assembly.table(1, SPEED), statically_twisted=twisted)
+    assert assembly.topology.size == tree.size
+    for time in TIMES:
+        state = base(assembly, time, twisted=twisted)
+        found = line_matrices(assembly.topology, coefficients, np.array([SPEED * time]))
+        mass, damping, stiffness = tree.derivatives(time, *state)
+        if not twisted:
+            # At zero twist the package leaves the loads' mean torque out of the shafts; so does the tree.
+            assert np.all(coefficients.torque == 0)
+        forcing = tree.residual(time, *state)
+        for ours, theirs in (
+            (found.mass[0, 0], mass),
+            (found.damping[0, 0], damping),
+            (found.stiffness[0, 0], stiffness),
+            (found.forcing[0, 0], forcing),
+        ):
+            assert np.abs(ours - theirs).max() < 1e-11 * max(1.0, np.abs(theirs).max())
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_nonlinear_equations_do_no_virtual_work(seed: int) -> None:
+    """``acceleration`` at random states, far from the base, leaves no residual."""
+    line, rng = random_line(seed), np.random.default_rng(seed + 1000)
+    assembly, tree = assemble(line), Tree(line, SPEED)
+    equations = nonlinear_line(assembly, assembly.table(1, SPEED))
+    for time in TIMES:
+        angle, rate, _ = base(assembly, time, twisted=False)
+        assert np.abs(equations.base_angles(SPEED * time) - angle).max() < 1e-13 * max(1, np.abs(angle).max())
+        angle, rate = angle + rng.normal(0, 0.5, tree.size), rate + rng.normal(0, 20.0, tree.size)
+        acceleration = equations.acceleration(time, angle, rate)
+        left = tree.residual(time, angle, rate, acceleration)
+        size = np.abs(tree.mass(time, angle) * acceleration).max()
+        assert np.abs(left).max() < 1e-11 * max(1.0, size)
+
+
+@pytest.mark.parametrize("seed", range(0, 40, 4))
+def test_matrices_are_finite_differences_of_acceleration(seed: int) -> None:
+    """J(a)(ä − base) of the package's nonlinear equations: −C by the rates, −K by the angles."""
+    line = random_line(seed)
+    assembly, tree = assemble(line), Tree(line, SPEED)
+    equations = nonlinear_line(assembly, assembly.table(1, SPEED))
+    coefficients = assembly.coefficients(assembly.table(1, SPEED))
+    time, h = 0.043, 1e-6
+    angle, rate, acceleration = base(assembly, time, twisted=True)
+    found = line_matrices(assembly.topology, coefficients, np.array([SPEED * time]))
+
+    def force(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        return tree.mass(time, angle) * (equations.acceleration(time, angle, rate) - acceleration)
+
+    assert force(angle, rate) == pytest.approx(found.forcing[0, 0], rel=1e-9, abs=1e-8)
+    for j in range(tree.size):
+        step = h * np.eye(tree.size)[j]
+        by_angle = (force(angle + step, rate) - force(angle - step, rate)) / (2 * h)
+        by_rate = (force(angle, rate + 1e3 * step) - force(angle, rate - 1e3 * step)) / (2e3 * h)
+        assert np.abs(by_angle + found.stiffness[0, 0, :, j]).max() < 1e-6 * np.abs(found.stiffness).max()
+        assert np.abs(by_rate + found.damping[0, 0, :, j]).max() < 1e-6 * max(
+            1.0, np.abs(found.damping).max()
+        )
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_static_torque_balances_mean_power(seed: int) -> None:
+    """Mean power into the line is the loads' mean power, whatever ratios lie between."""
+    line = random_line(seed)
+    assembly = assemble(line)
+    topo = assembly.topology
+    coefficients = assembly.coefficients(assembly.table(1, SPEED))
+    ratio = np.array([float(r) for r in topo.speed_ratio])
+    drawn = float(np.abs(ratio) @ coefficients.load[0])
+    entering = [
+        -coefficients.torque[0, e] * ratio[topo.reference[c.far_group]]
+        for e, c in enumerate(topo.compliances)
+        if topo.coordinate[topo.group_of(c.near)] < 0
+    ]
+    assert sum(entering) == pytest.approx(drawn, rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_chain_kernel_integrates_the_same_matrices(seed: int) -> None:
+    """The compiled kernel and the dense integrator on the same trees, loads and angle-dependent inertia."""
+    line = random_line(seed, steepest=0.5)
+    if assemble(line).topology.period_turns() > 8:
+        line = _without_odd_teeth(line)
+    matrix, _, trace = chain_kernel(line, SPEED)
+    dense = tn.stability(line, SPEED)
+    assert np.linalg.slogdet(matrix[0])[1] == pytest.approx(-trace[0], abs=1e-9)
+    found = np.linalg.eigvals(matrix[0])
+    assert np.abs(found).max() == pytest.approx(dense.spectral_radius, abs=1e-9)
+    assert set_distance(found, dense.multipliers) < 1e-9
+
+
+def _without_odd_teeth(line: tn.Driveline) -> tn.Driveline:
+    """31 teeth exchanged for 20, to keep the period short."""
+    for element, name in zip(line.elements, line.names, strict=True):
+        if isinstance(element, tn.Ratio) and element.teeth_out == 31:
+            line = line.replace(name, teeth_out=20)
+        elif isinstance(element, tn.Ratio) and element.teeth_out == 2:
+            line = line.replace(name, teeth_in=1)
+        elif isinstance(element, tn.Ratio) and element.ratio == -1.5:
+            line = line.replace(name, ratio=-2.0)
+    return line

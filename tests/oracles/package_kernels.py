@@ -1,0 +1,36 @@
+"""The package's compiled chain kernel on one line, for tests that compare it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.lanes import chain_lanes, chain_program
+from trunnion.equations.topology import require_period
+from trunnion.numerics.chain_monodromy import Window, chain_monodromy, symmetry_phase
+from trunnion.numerics.spectrum import multipliers, spectral_radius
+
+Array = NDArray[np.float64]
+
+
+def chain_kernel(
+    line: tn.Driveline, speed: float | Array, tolerance: float = 1e-10, *, halved: bool = True
+) -> tuple[Array, Array, Array]:
+    """Scaled Z (speeds, 2n, 2n), its error and ∫ tr(M⁻¹C) dτ; by half periods where the joints allow."""
+    assembly = assemble(line)
+    table = assembly.table(np.size(speed))
+    table[:, 0] = speed
+    topo = assembly.topology
+    program, lanes = chain_program(topo), chain_lanes(topo, assembly.coefficients(table))
+    period = 2 * np.pi * float(require_period(line, topo))
+    begin = symmetry_phase(program, lanes, period) if halved else None
+    window = Window(0.0 if begin is None else begin, period, begin is not None)
+    return chain_monodromy(program, lanes, window, tolerance)
+
+
+def chain_radius(line: tn.Driveline, speed: float | Array, tolerance: float = 1e-10) -> tuple[Array, Array]:
+    """Spectral radius and its reported error at each speed."""
+    matrix, error, _ = chain_kernel(line, speed, tolerance)
+    return spectral_radius(*multipliers(matrix, error))
