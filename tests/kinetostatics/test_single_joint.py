@@ -44,7 +44,7 @@ def test_lag_does_not_depend_on_where_the_turn_starts():
 
 
 def test_secondary_couples_are_tan_theta_of_the_torque():
-    """S2's (4): M₁ tan θ₁ and M₂ tan θ₂ with tan θ₁ = tan β sin χ, tan θ₂ = sin β cos χ/√(1 − sin²β cos²χ)."""
+    """S2's (4): M tan θ with tan θ₁ = tan β sin χ and tan θ₂ = sin β cos χ/√(1 − sin²β cos²χ)."""
     beta = np.radians(25)
     result = tn.kinetostatics(lines.row([25], load=80.0))
     chi = result.joint_angle[0]

@@ -24,7 +24,7 @@ def test_equal_angles_a_quarter_turn_off_are_the_worst():
 
 
 def test_spatial_pair_of_a_drawing():
-    """(+15°, +7°) and (−11.5°, +12°) in side and plan view, the second seen from the same intermediate shaft."""
+    """(+15°, +7°) and (−11.5°, +12°) in side and plan view, both seen from the shaft between."""
     first, plane_1 = tn.combined_angle("15 deg", "7 deg")
     second, plane_2 = tn.combined_angle("-11.5 deg", "12 deg")
     assert np.degrees([first, second]) == pytest.approx([16.42, 16.40], abs=0.005)
@@ -33,9 +33,7 @@ def test_spatial_pair_of_a_drawing():
     def slope(degrees):
         return np.tan(np.radians(degrees))
 
-    drawn = tn.layout(
-        [(0, 0, 0), (1, 0, 0)], (1, slope(15), slope(7)), (1, slope(-11.5), slope(12))
-    )
+    drawn = tn.layout([(0, 0, 0), (1, 0, 0)], (1, slope(15), slope(7)), (1, slope(-11.5), slope(12)))
     assert np.allclose(drawn.angles, [first, second], atol=1e-14)
     assert (drawn.planes[1] - (plane_2 - plane_1)) % np.pi == pytest.approx(0, abs=1e-12)
     result = tn.kinetostatics(drawn.driveline())
@@ -54,7 +52,9 @@ def test_layout_does_not_care_where_the_line_lies():
         plain = tn.layout(points, *ends)
         turn = Rotation.random(random_state=1)
         moved = tn.layout(turn.apply(points) + 3, turn.apply(ends[0]), turn.apply(ends[1]))
-        mirrored = tn.layout(points * [1, -1, 1], ends[0] * [1, -1, 1], ends[1] * [1, -1, 1], right_handed=False)
+        mirrored = tn.layout(
+            points * [1, -1, 1], ends[0] * [1, -1, 1], ends[1] * [1, -1, 1], right_handed=False
+        )
         for other in (moved, mirrored):
             assert np.allclose(other.angles, plain.angles, atol=1e-12)
             assert np.allclose(np.exp(1j * other.planes), np.exp(1j * plain.planes), atol=1e-12)

@@ -1,4 +1,4 @@
-"""The package against rigid bodies in space: motion to rounding, forces and couples to 1e-10 of their size."""
+"""The package against rigid bodies in space: motion to rounding, forces and couples to 1e-10 of the load."""
 
 import lines
 import numpy as np

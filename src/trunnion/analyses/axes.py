@@ -34,6 +34,12 @@ class Axis:
     columns: Columns
     scale: str
     parameter: str | Parameter
+    is_joint_angle: bool = False
+
+    @property
+    def is_speed(self) -> bool:
+        """Whether this axis is the input speed, by whatever name."""
+        return bool(np.any(self.columns.index == 0))
 
     @property
     def label(self) -> str:
@@ -59,7 +65,14 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
     low, high, said = _clip(assembly, columns, low, high)
     values = _points(columns.label, low, high, points, scale)
     _check_columns(assembly, columns, values)
-    return Axis(values, columns, scale, parameter), said
+    return Axis(values, columns, scale, parameter, _is_joint_angle(assembly, columns)), said
+
+
+def _is_joint_angle(assembly: Assembly, columns: Columns) -> bool:
+    """Whether the values are themselves the bend angles of one or more joints."""
+    joints = {f"{n}.angle" for n, e in zip(assembly.line.names, assembly.line.elements, strict=True) if e.kind == "HookeJoint"}
+    plain = bool(np.all(columns.slope == 1) and np.all(columns.offset == 0))
+    return plain and all(assembly.packed.labels[c] in joints for c in columns.index)
 
 
 def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Axis:
@@ -130,18 +143,38 @@ def lowest_speed(assembly: Assembly) -> float:
 
 
 def _clip(assembly: Assembly, columns: Columns, low: float, high: float) -> tuple[float, float, str | None]:
-    if columns.label == SPEED:
-        if high <= 0:
-            raise InputError("must reach above zero", element=SPEED, key="range", value=high)
-        least = lowest_speed(assembly)
-        if low < least and high > least:
-            why = f"a turn there spans more than {MOST_CYCLES} cycles of the highest mode"
-            return least, high, f"the speed axis starts at {least:.4g} rad/s instead of {low:g}: {why}"
+    if 0 in columns.index:
+        return _clip_speed(assembly, columns, low, high)
     if columns.unit == "rad" and columns.label.endswith(".angle") and high > STEEPEST_ANGLE:
         if low >= STEEPEST_ANGLE:
             raise InputError("must start below 89°", element=columns.label, key="range", value=low)
         said = f"the axis {columns.label} ends at 89° instead of {np.rad2deg(high):g}°: at 90° the joint locks"
         return low, STEEPEST_ANGLE, said
+    return low, high, None
+
+
+def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -> tuple[float, float, str | None]:
+    """Start the axis where the highest mode makes no more than ``MOST_CYCLES`` cycles a turn."""
+    place = int(np.flatnonzero(columns.index == 0)[0])
+    slope, offset = float(columns.slope[place]), float(columns.offset[place])
+    if slope <= 0 or offset != 0:
+        raise InputError("must be proportional to the speed to be an axis", key=columns.label)
+    if high <= 0:
+        raise InputError("must reach above zero", element=columns.label, key="range", value=high)
+    least = lowest_speed(assembly) / slope
+    why = f"a turn there spans more than {MOST_CYCLES} cycles of the highest mode"
+    turning = least * slope * 60 / (2 * np.pi)
+    if high <= least:
+        raise InputError(
+            f"lies wholly below {least:.4g} {columns.unit} ({turning:.4g} rpm): {why}, the line follows statically",
+            element=columns.label,
+            key="range",
+            value=high,
+            remedy="stability() at single speeds still answers there",
+        )
+    if low < least:
+        said = f"the axis {columns.label} starts at {least:.4g} {columns.unit} ({turning:.4g} rpm) instead of {low:g}"
+        return least, high, f"{said}: {why}"
     return low, high, None
 
 

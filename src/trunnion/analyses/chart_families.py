@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.axes import Axis
-from trunnion.driveline.parameters import SPEED
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain_monodromy import Window, chain_monodromy, chain_propagator, complete, symmetry_phase
@@ -25,7 +25,7 @@ from trunnion.numerics.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.characteristic import LARGEST, coefficients_from_matrices
 from trunnion.numerics.dense_monodromy import propagate
 from trunnion.numerics.patches import NODES, Box, Evaluate, Grid
-from trunnion.numerics.slabs import Slabs, build_slabs, on_grids, slab_count
+from trunnion.numerics.slabs import build_slabs, on_grids, slab_edges
 from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
@@ -93,11 +93,13 @@ class LineFamily:
 
     def lanes(self, x: Array, y: Array) -> ChainLanes:
         """The kernel's numbers at points (x, y)."""
+        return chain_lanes(self.assembly.topology, self._coefficients(x, y))
+
+    def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
         table = self.assembly.table(len(x), self.speed)
         self.x.columns.put(table, x)
         self.y.columns.put(table, y)
-        coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
-        return chain_lanes(self.assembly.topology, coefficients)
+        return self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
@@ -115,35 +117,63 @@ class LineFamily:
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
-        return quantities(*self.matrices(x, y, tolerance, threads))
+        return quantities(*self.matrices(x, y, tolerance / AMPLIFICATION.get(self.size, 4), threads))
 
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
-        corners = self._patch_lanes(np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2))
+        ends = np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2)
+        corners = self._patch_lanes(*ends)
         program = chain_program(self.assembly.topology)
         window = _window(program, corners, self.period)
         length = window.period / 2 if window.half else window.period
         # ν is the root mean square of the modes; the highest is at most √n times that.
-        count = slab_count(float(corners.frequency.max()) * np.sqrt(self.size), length)
+        highest = float(corners.frequency.max()) * np.sqrt(self.size)
+        edges = slab_edges(highest, *self._swiftness(ends, window.begin, length))
+        count = len(edges) - 1
         if count < FEWEST_SLABS or pixels < FEWEST_PIXELS:
-            return grid_by_grid(self, tolerance, threads)
+            return grid_by_grid(self, box, tolerance, threads)
+        # Slabs are so cheap that a sharper tolerance costs little, and every bound below grows with it.
+        sharper = tolerance / (10 if self.size <= 2 else 100)
 
         def propagate(u: Array, v: Array, begin: float, stretch: float) -> tuple[Array, Array, Array]:
-            asked = tolerance / (4 * count)
+            asked = max(sharper / (4 * count), 1e-14)
             return chain_propagator(program, self._patch_lanes(u, v), begin, stretch, asked, threads)
 
-        @cache
-        def slabs() -> Slabs:
-            return build_slabs(propagate, box, window.begin, length, 2 * self.size, count, tolerance / 4)
+        slabs = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
+        if slabs is None:
+            return grid_by_grid(self, box, tolerance, threads)
 
         def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
             return [
                 quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
-                for grid, parts in zip(grids, on_grids(slabs(), grids, threads), strict=True)
+                for grid, parts in zip(grids, on_grids(slabs, grids, threads), strict=True)
             ]
 
         # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
-        return Sampler(evaluate, direct_below=-1)
+        return Sampler(evaluate, -1, self._first_boxes(box, float(corners.frequency.max())))
+
+    def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
+        """Input angles over a stretch, and the speed of the swiftest station over the input's at each."""
+        topo = self.assembly.topology
+        coefficients = self._coefficients(self.from_patch(points[0], True), self.from_patch(points[1], False))
+        tau = np.linspace(begin, begin + length, 801)
+        speeds = np.abs(base_motion(topo, coefficients, tau, ratio_values(topo)).speed)
+        return tau, np.maximum(speeds.max(axis=(0, 2)), 1.0)
+
+    def _first_boxes(self, box: Box, frequency: float) -> list[Box]:
+        """Strips of 1/Ω across which the quantities oscillate as often as one patch resolves.
+
+        The fastest is the product of n multipliers: a phase of at most n ν T at the lowest speed.
+        """
+        if not (self.x.is_speed or self.y.is_speed):
+            return [box]
+        low, high = (box.u0, box.u1) if self.x.is_speed else (box.v0, box.v1)
+        phase = self.size * frequency * self.period * (1 - low / high) / 2
+        edges = np.linspace(low, high, max(1, int(np.ceil(phase / (NODES - 20)))) + 1)
+        pairs = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
+        if self.x.is_speed:
+            return [Box(a, b, box.v0, box.v1) for a, b in pairs]
+        return [Box(box.u0, box.u1, a, b) for a, b in pairs]
 
     def _patch_lanes(self, u: Array, v: Array) -> ChainLanes:
         return self.lanes(self.from_patch(u, True), self.from_patch(v, False))
@@ -153,18 +183,30 @@ class LineFamily:
         return self._patch_lanes(np.tile(u, len(v)), np.repeat(v, len(u)))
 
     def to_patch(self, value: Array, of_x: bool) -> Array:
-        """1/Ω for a speed axis, the value itself otherwise."""
-        return self._swap(value, of_x)
+        """1/Ω for a speed axis, the rapidity asinh(tan β) for a joint angle, the value itself otherwise.
+
+        In β the singularities of η close in on 90° like cos β; in the rapidity cos β = 1/cosh v and they stay
+        π/2 away from the real axis, so one patch reaches from 0° to the steepest angles.
+        """
+        axis = self.x if of_x else self.y
+        if axis.is_speed:
+            return np.asarray(1 / np.asarray(value))
+        if axis.is_joint_angle:
+            return np.asarray(np.arcsinh(np.tan(value)))
+        return np.asarray(value, dtype=float)
 
     def from_patch(self, value: Array, of_x: bool) -> Array:
         """The inverse of ``to_patch``."""
-        return self._swap(value, of_x)
-
-    def _swap(self, value: Array, of_x: bool) -> Array:
         axis = self.x if of_x else self.y
-        return 1 / np.asarray(value) if axis.label == SPEED else np.asarray(value, dtype=float)
+        if axis.is_speed:
+            return np.asarray(1 / np.asarray(value))
+        if axis.is_joint_angle:
+            return np.asarray(np.arctan(np.sinh(value)))
+        return np.asarray(value, dtype=float)
 
 
+AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
+"""How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
 FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 
@@ -175,13 +217,14 @@ FEWEST_PIXELS = 20_000
 
 @dataclass(frozen=True)
 class Sampler:
-    """``evaluate`` for ``patches.build``, and the number of pixels up to which a box is not worth a patch."""
+    """``evaluate`` for ``patches.build``, the pixels up to which a box is not worth a patch, first boxes."""
 
     evaluate: Evaluate
     direct_below: float
+    boxes: list[Box]
 
 
-def grid_by_grid(family: ChartFamily, tolerance: float, threads: int) -> Sampler:
+def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
     """Sample grids by plain evaluation of all their points in one call."""
 
     def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
@@ -191,7 +234,7 @@ def grid_by_grid(family: ChartFamily, tolerance: float, threads: int) -> Sampler
         cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
         return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 
-    return Sampler(evaluate, 0.8 * NODES**2)
+    return Sampler(evaluate, 0.8 * NODES**2, [box])
 
 
 def _window(program: ChainProgram, lanes: ChainLanes, period: float) -> Window:
@@ -255,7 +298,7 @@ class OwnFamily:
 
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
         """See ``ChartFamily``."""
-        return grid_by_grid(self, tolerance, threads)
+        return grid_by_grid(self, box, tolerance, threads)
 
     def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
         values = {self.x_name: np.array([x]), self.y_name: np.array([y])}

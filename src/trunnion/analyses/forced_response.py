@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import line_matrices
+from trunnion.equations.topology import Topology
 from trunnion.numerics.dense_monodromy import Propagation
 
 if TYPE_CHECKING:
@@ -119,39 +120,54 @@ def linear_response(assembly: Assembly, coefficients: LineCoefficients, run: Pro
     states = periodic_states(run)
     n, speed = topo.size, float(coefficients.speed[0])
     x, rate = states[:, :n], states[:, n:] * speed
-    matrices = line_matrices(topo, coefficients, run.tau)
-    twist = np.empty((len(run.tau), len(topo.compliances)))
-    torque = np.empty_like(twist)
-    for e, compliance in enumerate(topo.compliances):
-        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
-        q, q_dot = np.zeros(len(run.tau)), np.zeros(len(run.tau))
-        if far >= 0:
-            q, q_dot = q + x[:, far], q_dot + rate[:, far]
-        if near >= 0:
-            r, slope = matrices.ratio[0, :, e], matrices.ratio_slope[0, :, e] * speed
-            q, q_dot = q - r * x[:, near], q_dot - r * rate[:, near] - slope * x[:, near]
-        k, c = coefficients.stiffness[0, e], coefficients.damping[0, e]
-        twist[:, e] = coefficients.twist[0, e] + q
-        torque[:, e] = coefficients.torque[0, e] + k * q + c * q_dot
-    names = assembly.line.names
+    twist, torque = shaft_motion(topo, coefficients, run.tau, x[None], rate[None])
     return LinearResponse(
         run.tau,
-        twist,
-        torque,
+        twist[0],
+        torque[0],
         x,
-        _joint_rotation(assembly, coefficients, run.tau, x),
-        tuple(" + ".join(names[i] for i in c.shafts) for c in topo.compliances),
-        tuple(names[topo.stations[j].element] for j in topo.joints),
+        joint_rotation(topo, coefficients, run.tau, x[None])[0],
+        shaft_names(assembly),
+        tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
         topo.names,
     )
 
 
-def _joint_rotation(assembly: Assembly, coefficients: LineCoefficients, tau: Array, x: Array) -> Array:
-    topo = assembly.topology
+def shaft_names(assembly: Assembly) -> tuple[str, ...]:
+    """Names of the compliances; massless shafts in series count as one."""
+    names = assembly.line.names
+    return tuple(" + ".join(names[i] for i in c.shafts) for c in assembly.topology.compliances)
+
+
+def shaft_motion(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array, rate: Array
+) -> tuple[Array, Array]:
+    """Twist [rad] and torque [N m], (case, time, shaft), of deviations x and their rates [1/s] (case, time, n)."""
+    matrices = line_matrices(topo, coefficients, tau)
+    speed = coefficients.speed[:, None]
+    twist = np.empty((*x.shape[:2], len(topo.compliances)))
+    torque = np.empty_like(twist)
+    for e, compliance in enumerate(topo.compliances):
+        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+        q, q_dot = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
+        if far >= 0:
+            q, q_dot = q + x[..., far], q_dot + rate[..., far]
+        if near >= 0:
+            r, slope = matrices.ratio[..., e], matrices.ratio_slope[..., e] * speed
+            q, q_dot = q - r * x[..., near], q_dot - r * rate[..., near] - slope * x[..., near]
+        k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
+        twist[..., e] = coefficients.twist[:, e, None] + q
+        torque[..., e] = coefficients.torque[:, e, None] + k * q + c * q_dot
+    return twist, torque
+
+
+def joint_rotation(topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array) -> Array:
+    """Largest deviation at each joint's input [rad], (case, joint), of deviations x (case, time, n)."""
     motion = base_motion(topo, coefficients, tau, ratio_values(topo))
-    largest = []
-    for j in topo.joints:
+    largest = np.zeros((len(x), len(topo.joints)))
+    for k, j in enumerate(topo.joints):
         before = topo.stations[j].before
         i = topo.coordinate[topo.group_of(before)]
-        largest.append(np.abs(x[:, i] * motion.relative[0, :, before]).max() if i >= 0 else 0.0)
-    return np.array(largest)
+        if i >= 0:
+            largest[:, k] = np.abs(x[..., i] * motion.relative[..., before]).max(axis=1)
+    return largest

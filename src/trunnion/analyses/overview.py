@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.analyses.natural_frequencies import NaturalFrequencies, natural_frequencies
 from trunnion.analyses.overview_findings import (
     chart_findings,
@@ -24,6 +25,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import HookeJoint
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, by_gravity
 
@@ -40,9 +42,10 @@ class Overview:
 
     unit: speed unit to print in; operation: the description's, at the speed asked for; speed_range [rad/s]
     and angle_range [rad]: of the description, or guessed from the line where it states none;
-    resonance_speeds: those in the range; stability: at the operating speed, None without one; sweep: a chart
-    of one row over the range at the joints' own angles; chart: over the range and one angle common to all
-    joints. Both are None for a line without Hooke's joints.
+    resonance_speeds: those in the range; turn: the joints over a turn at the operating speed (1 rad/s without
+    one), None where the output is prescribed; stability: at the operating speed, None without one; sweep: a
+    chart of one row over the range at the joints' own angles; chart: over the range and one angle common to
+    all joints. Both are None for a line without Hooke's joints.
     """
 
     line: Driveline
@@ -52,6 +55,7 @@ class Overview:
     angle_range: tuple[float, float]
     natural_frequencies: NaturalFrequencies
     resonance_speeds: ResonanceSpeeds
+    turn: Kinetostatics | None
     stability: Stability | None
     sweep: StabilityChart | None
     chart: StabilityChart | None
@@ -117,11 +121,19 @@ def overview(
         angle_range=angle_range(line),
         natural_frequencies=modes,
         resonance_speeds=here,
+        turn=_turn(line, speed),
         stability=at_speed,
         sweep=sweep,
         chart=chart,
         findings=by_gravity(findings),
     )
+
+
+def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:
+    try:
+        return kinetostatics(line, speed or 1.0)
+    except InputError:  # a line clamped at both ends
+        return None
 
 
 def speed_unit(line: Driveline) -> str:

@@ -21,7 +21,6 @@ from trunnion.analyses.chart_families import ChartFamily, LineFamily, OwnFamily
 from trunnion.analyses.chart_pixels import Pixels, judge, multipliers_of
 from trunnion.analyses.stability import operating_speed
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.parameters import SPEED
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import require_steady_base
 from trunnion.equations.topology import require_period
@@ -82,6 +81,7 @@ def stability_chart(
     x_axis, y_axis = task.x, task.y
     function = _patched(task.family, x_axis.values, y_axis.values, tolerance, workers, tell)
     pixels = _fill(task.family, function, x_axis.values, y_axis.values, tolerance, workers)
+    tell(1.0)
     remarks = list(task.remarks)
     if function.stubborn:
         remarks.append(
@@ -129,9 +129,15 @@ def _line_task(
     require_period(assembly.line, assembly.topology)
     across, said_x = axis(assembly, x, "x")
     up, said_y = axis(assembly, y, "y")
-    if across.label == up.label:
-        raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
-    swept = SPEED in (across.label, up.label)
+    both = set(across.columns.index.tolist()) & set(up.columns.index.tolist())
+    if both:
+        name = assembly.packed.labels[min(both)]
+        raise InputError(
+            f"is moved by both axes ({across.label} and {up.label}), so one would overwrite the other",
+            key=name,
+            remedy="give y a parameter that leaves it alone",
+        )
+    swept = across.is_speed or up.is_speed
     if swept and speed is not None:
         raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
     base = float("nan") if swept else operating_speed(assembly.line, speed)
@@ -158,7 +164,7 @@ def _patched(
         return PatchedFunction((), (box,))
 
     sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads)
-    return build(sampler.evaluate, box, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
+    return build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
 
 
 def _fill(
@@ -183,7 +189,8 @@ def _fill(
         width = (columns.stop - columns.start) * len(patch.error)
         for part in _strips(rows, width):
             values = patch.grid(u[columns], v[part])
-            put((part, columns), values.reshape(len(values), -1), patch.error[:, None])
+            bounds = patch.error_grid(u[columns], v[part])
+            put((part, columns), values.reshape(len(values), -1), bounds.reshape(len(values), -1))
 
     tasks = []
     for index, patch in enumerate(function.patches):
@@ -220,7 +227,7 @@ def _pointwise(
         u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
         patch = function.find(u, v)
         if patch is not None:
-            values, bounds = patch.grid(np.array([u]), np.array([v])).reshape(-1, 1), patch.error[:, None]
+            values, bounds = (part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid))
         else:
             values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.rigid_body)

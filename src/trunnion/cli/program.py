@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, study
+from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.errors import InputRemark, TrunnionError
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
@@ -109,6 +110,7 @@ app.command("stability")(study.stability)
 app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)
 app.command("resonance-speeds")(study.resonance_speeds)
+app.command("kinetostatics")(kinetostatics)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)
 app.command("schema")(describe.schema)

@@ -45,6 +45,9 @@ def print_overview(out: Console, seen: Overview) -> None:
         output.table(out, [{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
     if len(able) > MOST_ROWS:
         out.print(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds")
+    if seen.turn is not None and seen.turn.joints:
+        output.heading(out, "One turn of the joints")
+        out.print(seen.turn.describe(unit), soft_wrap=True)
     if seen.stability is not None:
         output.heading(out, f"Stability at {show_speed(seen.stability.speed, unit)}")
         out.print(seen.stability.describe(unit))
@@ -91,6 +94,8 @@ def frequency_unit(line: Driveline) -> str:
 
 def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
     """An overview as plain values; angles in rad, speeds in ``speed_unit``, frequencies in Hz."""
+    from trunnion.cli.kinetostatics import kinetostatics_json
+
     factor = speed_factor(seen.unit)
     return {
         "driveline": seen.line.name,
@@ -100,6 +105,7 @@ def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
         "angle_range": list(seen.angle_range),
         "natural_frequencies": modes_json(seen.natural_frequencies, "Hz"),
         "resonance_speeds": resonances_json(seen.resonance_speeds, seen.unit),
+        "kinetostatics": None if seen.turn is None else kinetostatics_json(seen.turn),
         "stability": None if seen.stability is None else stability_json(seen.stability, seen.unit),
         "stability_chart": None if seen.chart is None else chart_json(seen.chart, seen.unit, written),
         "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in seen.findings],

@@ -31,7 +31,7 @@ from trunnion.numerics.runge_kutta import E3, E5, STAGES, A, B
 
 
 def step_source(parent: tuple[int, ...], extra: bool) -> str:
-    """Function ``step_with_error`` for a tree of ``len(parent)`` unknowns; errors squared per lane."""
+    """Function ``step_with_error`` for a tree of ``len(parent)`` unknowns; squares per lane of two errors and Φ."""
     n = len(parent)
     wide = 2 * n
     out = [
@@ -47,8 +47,8 @@ def step_source(parent: tuple[int, ...], extra: bool) -> str:
     body += [f"u{i} = u[o + {i} * LANES + l]" for i in range(wide)]
     for m in range(STAGES):
         body += _stage(m, parent, extra)
-    body += [f"un[o + {i} * LANES + l] = u{i}{_sum(B, i)}" for i in range(wide)]
     for i in range(wide):
+        body += [f"z = u{i}{_sum(B, i)}", f"un[o + {i} * LANES + l] = z", "squares[2 * LANES + l] += z * z"]
         # A sum of squares vectorises; a running maximum takes the compiler minutes.
         body += [f"z = {_sum(E5, i)[3:]}", "squares[l] += z * z", f"z = {_sum(E3, i)[3:]}", "squares[LANES + l] += z * z"]
     return "\n".join(out + ["            " + line for line in body])

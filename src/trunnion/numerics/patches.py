@@ -22,10 +22,16 @@ Evaluate = Callable[[list[Grid]], list[tuple[Array, Array]]]
 
 NODES = 48
 """Nodes per variable: enough for two dozen oscillations, and a multiple of the kernel's lanes."""
+BLOCKS = 8
+"""Blocks per variable in which the errors of samples are kept; divides every number of nodes used."""
 TAIL = 4
 """Trailing coefficients that must be small."""
 DEEPEST = 14
 """Halvings after which a patch counts as not converging."""
+
+
+MOST_EVALUATIONS = 1_500_000
+"""Samples after which what has not converged is left to direct evaluation."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,11 @@ class Box:
 
 @dataclass(frozen=True)
 class Patch:
-    """coefficients (quantity, NODES, NODES) of T_i(v) T_j(u); error (quantity,) of values anywhere inside."""
+    """coefficients (quantity, i, j) of T_i(v) T_j(u); error (quantity, BLOCKS, BLOCKS) in blocks of nodes.
+
+    Samples are known better in some parts of a patch than in others, so their errors are kept by block; the
+    interpolation error is in all of them.
+    """
 
     box: Box
     coefficients: Array
@@ -60,10 +70,16 @@ class Patch:
 
     def grid(self, u: Array, v: Array) -> Array:
         """Values on the grid of ``u`` and ``v`` inside the box; shape (quantity, v, u)."""
-        across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1))
-        up = _chebyshev(_to_unit(v, self.box.v0, self.box.v1))
+        across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1), self.coefficients.shape[2])
+        up = _chebyshev(_to_unit(v, self.box.v0, self.box.v1), self.coefficients.shape[1])
         # (q, i, j) · (j, u), then (v, i) · (q, i, u)
         return np.asarray(up.T @ (self.coefficients @ across))
+
+
+    def error_grid(self, u: Array, v: Array) -> Array:
+        """Error bounds on the same grid; shape (quantity, v, u)."""
+        rows, columns = _block(_to_unit(v, self.box.v0, self.box.v1)), _block(_to_unit(u, self.box.u0, self.box.u1))
+        return self.error[:, rows[:, None], columns]
 
 
 @dataclass(frozen=True)
@@ -82,44 +98,46 @@ class PatchedFunction:
 
 def build(
     evaluate: Evaluate,
-    box: Box,
+    boxes: list[Box],
     u_pixels: Array,
     v_pixels: Array,
     tolerance: float,
     *,
+    nodes: int = NODES,
     direct_below: float = 0.8 * NODES**2,
     tick: Callable[[float], None] = lambda share: None,
 ) -> PatchedFunction:
-    """Patch ``box`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
+    """Patch ``boxes`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
 
-    Rectangles with at most ``direct_below`` of the pixels ``u_pixels`` × ``v_pixels`` are left to direct
+    Each rectangle is sampled at ``nodes`` × ``nodes`` points. Rectangles with at most ``direct_below`` of the pixels ``u_pixels`` × ``v_pixels`` are left to direct
     evaluation; ``tick`` is called with the share of the box that is settled.
     """
     patches: list[Patch] = []
     direct: list[Box] = []
-    todo = [(box, 0)]
+    todo = [(box, 0) for box in boxes]
     evaluations = stubborn = 0
-    whole = (box.u1 - box.u0) * (box.v1 - box.v0)
+    whole = sum((box.u1 - box.u0) * (box.v1 - box.v0) for box in boxes)
     settled = 0.0
     while todo:
         sampled: list[tuple[Box, int]] = []
         for part, depth in todo:
             pixels = _inside(u_pixels, part.u0, part.u1) * _inside(v_pixels, part.v0, part.v1)
-            if pixels <= direct_below or depth > DEEPEST:
+            spent = depth > DEEPEST or evaluations > MOST_EVALUATIONS
+            if pixels <= direct_below or spent:
                 direct.append(part)
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
-                stubborn += depth > DEEPEST
+                stubborn += spent
             else:
                 sampled.append((part, depth))
         todo = []
-        for part, depth, values, errors in _sample(evaluate, sampled):
-            evaluations += NODES**2
-            coefficients, tail_u, tail_v, error = _transform(values, errors)
-            along_u, along_v = bool(tail_u > tolerance), bool(tail_v > tolerance)
+        for part, depth, values, errors in _sample(evaluate, sampled, nodes):
+            evaluations += nodes**2
+            coefficients, tail_u, tail_v, error = _transform(values, errors, nodes, tolerance)
+            along_u, along_v = bool(tail_u > 1), bool(tail_v > 1)
             if along_u or along_v:
                 todo += [(half, depth + 1) for half in part.halves(along_u, along_v)]
             else:
-                patches.append(Patch(part, coefficients, error))
+                patches.append(_trimmed(part, coefficients, error, 1e-3 * tolerance))
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
             tick(min(settled / whole, 1.0))
     return PatchedFunction(tuple(patches), tuple(direct), evaluations, stubborn)
@@ -130,9 +148,9 @@ BATCH = 24
 
 
 def _sample(
-    evaluate: Evaluate, boxes: list[tuple[Box, int]]
+    evaluate: Evaluate, boxes: list[tuple[Box, int]], nodes: int
 ) -> Iterator[tuple[Box, int, Array, Array]]:
-    unit = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+    unit = np.cos(np.pi * (np.arange(nodes) + 0.5) / nodes)
     for start in range(0, len(boxes), BATCH):
         batch = boxes[start : start + BATCH]
         grids = [(_from_unit(unit, b.u0, b.u1), _from_unit(unit, b.v0, b.v1)) for b, _ in batch]
@@ -140,22 +158,42 @@ def _sample(
             yield box, depth, values, errors
 
 
-def _transform(values: Array, errors: Array) -> tuple[Array, float, float, Array]:
-    """Chebyshev coefficients, the relative tails along u and v, and the error of each quantity."""
+def _transform(values: Array, errors: Array, nodes: int, tolerance: float) -> tuple[Array, float, float, Array]:
+    """Chebyshev coefficients, the tails along u and v over what they may be, and the error of each quantity.
+
+    A tail may be ``tolerance`` times the quantity's size, or the error of its samples where that is larger:
+    no more can be known from them.
+    """
     quantities = values.shape[1]
-    samples = values.T.reshape(quantities, NODES, NODES)
-    coefficients = dct(dct(samples, type=2, axis=1), type=2, axis=2) / NODES**2
+    samples = values.T.reshape(quantities, nodes, nodes)
+    coefficients = dct(dct(samples, type=2, axis=1), type=2, axis=2) / nodes**2
     coefficients[:, 0, :] /= 2
     coefficients[:, :, 0] /= 2
     size = np.abs(coefficients)
     tail_u, tail_v = size[:, :, -TAIL:].max(axis=2).sum(axis=1), size[:, -TAIL:, :].max(axis=1).sum(axis=1)
-    scale = np.maximum(np.abs(samples).max(axis=(1, 2)), 1.0)
-    worst_u, worst_v = (tail_u / scale).max(), (tail_v / scale).max()
+    allowed = tolerance * np.maximum(np.abs(samples).max(axis=(1, 2)), 1.0)
+    # The median: a corner that is badly known is no reason to resolve the rest badly.
+    allowed = np.maximum(allowed, np.median(errors, axis=0))
+    worst_u, worst_v = (tail_u / allowed).max(), (tail_v / allowed).max()
     if not np.isfinite(worst_u + worst_v):
-        return coefficients, np.inf, np.inf, np.full(quantities, np.inf)
-    # Interpolation at these nodes enlarges node errors by less than log(NODES) in each variable; in practice
+        return coefficients, np.inf, np.inf, np.full((quantities, BLOCKS, BLOCKS), np.inf)
+    # Interpolation at these nodes enlarges node errors by less than log(nodes) in each variable; in practice
     # errors of neighbouring nodes are alike and are not enlarged at all.
-    return coefficients, float(worst_u), float(worst_v), tail_u + tail_v + errors.max(axis=0)
+    side = nodes // BLOCKS
+    blocks = errors.T.reshape(quantities, BLOCKS, side, BLOCKS, side).max(axis=(2, 4))
+    return coefficients, float(worst_u), float(worst_v), blocks + (tail_u + tail_v)[:, None, None]
+
+
+def _trimmed(box: Box, coefficients: Array, error: Array, tolerance: float) -> Patch:
+    """A patch without the trailing coefficients that together stay below ``tolerance``; the error keeps them."""
+    size = np.abs(coefficients)
+    scale = np.maximum(size.max(axis=(1, 2)), 1.0)[:, None]
+    rows = np.cumsum(size.sum(axis=2)[:, ::-1], axis=1)[:, ::-1]
+    columns = np.cumsum(size.sum(axis=1)[:, ::-1], axis=1)[:, ::-1]
+    i = max(1, int(np.count_nonzero((rows > tolerance * scale).any(axis=0))))
+    j = max(1, int(np.count_nonzero((columns > tolerance * scale).any(axis=0))))
+    dropped = 2 * tolerance * scale[:, 0]
+    return Patch(box, np.ascontiguousarray(coefficients[:, :i, :j]), error + dropped[:, None, None])
 
 
 def _inside(pixels: Array, low: float, high: float) -> int:
@@ -170,6 +208,11 @@ def _from_unit(t: Array, low: float, high: float) -> Array:
     return (low + high) / 2 + (high - low) / 2 * t
 
 
-def _chebyshev(t: Array) -> Array:
-    """T_i(t), shape (NODES, points)."""
-    return np.cos(np.arange(NODES)[:, None] * np.arccos(t)[None, :])
+def _block(t: Array) -> NDArray[np.intp]:
+    """The block of nodes that a coordinate in [−1, 1] falls into; nodes run from +1 to −1."""
+    return np.minimum((np.arccos(t) / np.pi * BLOCKS).astype(np.intp), BLOCKS - 1)
+
+
+def _chebyshev(t: Array, count: int) -> Array:
+    """T_i(t), shape (count, points)."""
+    return np.cos(np.arange(count)[:, None] * np.arccos(t)[None, :])

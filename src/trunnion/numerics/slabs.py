@@ -25,6 +25,10 @@ RADIANS = 14.0
 """Phase of the fastest mode across a slab: then a few dozen nodes resolve it over any range of speed."""
 
 
+SLAB_NODES = 32
+"""Nodes per variable: half of RADIANS and what a smooth function needs besides."""
+
+
 @dataclass(frozen=True)
 class Slabs:
     """Patched slabs in order; their quantities are the m² entries and ∫tr(M⁻¹C)dτ."""
@@ -43,31 +47,40 @@ class Slabs:
         return phi, error * largest**2, trace
 
 
-def slab_count(frequency: float, length: float) -> int:
-    """How many slabs a stretch asks for, from the highest mode frequency (cycles · 2π per unit τ)."""
-    return max(1, int(np.ceil(frequency * length / RADIANS)))
+def slab_edges(frequency: float, tau: Array, weight: Array) -> Array:
+    """Edges of slabs of about ``RADIANS`` each of the highest mode, ``frequency`` (per unit τ) times ``weight``.
+
+    ``weight`` (time,) over ``tau`` (time,) tells how much faster than the input the fastest part turns: near the
+    peak of a steep joint a shaft passes through many radians in little input angle.
+    """
+    steps = np.diff(tau) * (weight[1:] + weight[:-1]) / 2
+    passed = np.concatenate([[0.0], np.cumsum(steps)]) * frequency
+    count = max(1, int(np.ceil(passed[-1] / RADIANS)))
+    return np.interp(np.linspace(0.0, passed[-1], count + 1), passed, tau)
 
 
 def build_slabs(
-    propagate: Propagate, box: Box, begin: float, length: float, size: int, count: int, tolerance: float
-) -> Slabs:
-    """Patch ``count`` equal slabs of a stretch over ``box``, each to ``tolerance`` / count."""
+    propagate: Propagate, box: Box, edges: Array, size: int, tolerance: float
+) -> Slabs | None:
+    """Patch the slabs between ``edges`` over ``box``, together to ``tolerance``; None if one resists."""
     nowhere = np.zeros(0)
     functions = []
-    for slab in range(count):
-        at = begin + length * slab / count
+    count = len(edges) - 1
+    for at, end in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
 
-        def evaluate(grids: list[Grid], at: float = at) -> list[tuple[Array, Array]]:
+        def evaluate(grids: list[Grid], at: float = at, end: float = end) -> list[tuple[Array, Array]]:
             shapes = [(len(gu), len(gv)) for gu, gv in grids]
             us = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
             vs = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
-            phi, error, trace = propagate(us, vs, at, length / count)
+            phi, error, trace = propagate(us, vs, at, end - at)
             values = np.concatenate([phi.reshape(len(phi), -1), trace[:, None]], axis=1)
             bounds = np.repeat(error[:, None] / size, values.shape[1], axis=1)
             cuts = np.cumsum([a * b for a, b in shapes])[:-1]
             return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 
-        functions.append(build(evaluate, box, nowhere, nowhere, tolerance / count, direct_below=-1))
+        functions.append(build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
+        if functions[-1].stubborn:
+            return None
     return Slabs(tuple(functions), size)
 
 
@@ -89,7 +102,8 @@ def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Ar
         columns = np.flatnonzero((u >= patch.box.u0) & (u <= patch.box.u1))
         if len(rows) and len(columns):
             values[:, rows[:, None], columns] = patch.grid(u[columns], v[rows])
-            bounds[np.ix_(rows, columns)] = np.sqrt(np.sum(patch.error[:-1] ** 2))
+            entries = patch.error_grid(u[columns], v[rows])[:-1]
+            bounds[np.ix_(rows, columns)] = np.sqrt(np.sum(entries**2, axis=0))
     return values.reshape(quantities, -1), bounds.ravel()
 
 

@@ -46,7 +46,7 @@ def wide_slope(parent, table, unknown, m, lane, h, x, at, k):
 
 
 def wide_step_source() -> str:
-    """Function ``wide_step``: one step of one lane, any number of unknowns; also its local error squared."""
+    """Function ``wide_step``: one step of one lane, any number of unknowns; also the squares of two errors and of Φ."""
     out = [
         _HEAD,
         "",
@@ -66,13 +66,16 @@ def wide_step_source() -> str:
     out += [
         "    s5 = 0.0",
         "    s3 = 0.0",
+        "    s0 = 0.0",
         "    for q in range(size):",
-        f"        flat_n[q] = flat_u[q]{_sum(B)}",
+        f"        z = flat_u[q]{_sum(B)}",
+        "        flat_n[q] = z",
+        "        s0 += z * z",
         f"        five = {_sum(E5)[3:]}",
         f"        three = {_sum(E3)[3:]}",
         "        s5 += five * five",
         "        s3 += three * three",
-        "    return s5, s3",
+        "    return s5, s3, s0",
     ]
     return "\n".join(out)
 

@@ -50,18 +50,15 @@ def draw(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
     """Speeds, accelerations, torques and secondary couples over the input angle."""
     figure = _figure(8.6, 7.2)
     axes = figure.subplots(2, 2, sharex=True)
-    mean = (result.input_speed * result.shaft_ratio)[:, None]
-    percent = 100 * (result.speed / mean - 1)
-    # referred to the drive, so that shafts behind a ratio share the scale of those in front of it
-    referred = result.transmitted * result.shaft_ratio[:, None]
-    factor, torque_unit = _scale(referred, "N·m")
-    groups = _alike(result.shafts, np.stack([percent, result.acceleration, referred], axis=1))
-    accelerations = "angular acceleration [rad/s²]"
+    names, ratio, acceleration, torque = _shafts(result)
+    percent = 100 * (ratio - 1)
+    factor, torque_unit = _scale(torque, "N·m")
+    groups = _alike(names, np.stack([percent, acceleration, torque], axis=1))
     _panel(axes[0, 0], result, _curves(groups, percent), "speed about its mean [%]")
-    _panel(axes[0, 1], result, _curves(groups, result.acceleration), accelerations)
+    _panel(axes[0, 1], result, _curves(groups, acceleration), "angular acceleration [rad/s²]")
     geared = bool(np.any(np.abs(result.shaft_ratio) != 1))
     referring = "torque referred to the drive" if geared else "torque passed on"
-    _panel(axes[1, 0], result, _curves(groups, referred / factor), f"{referring} [{torque_unit}]")
+    _panel(axes[1, 0], result, _curves(groups, torque / factor), f"{referring} [{torque_unit}]")
     size = _sizes(result.secondary_couple)
     factor, couple_unit = _scale(size, "N·m")
     forks = _alike(result.forks, size[:, None])
@@ -73,15 +70,15 @@ def draw(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
     _legend(figure, axes[0, 0], "outside lower left", "shafts")
     if couples:
         _legend(figure, axes[1, 1], "outside lower right", "forks", columns=2)
-    figure.suptitle(_title(result, unit), fontsize=TITLE, color=INK, x=0.01, ha="left")
+    head(figure, _title(result, unit))
     return figure
 
 
 def draw_polar(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
     """Speeds, secondary couples and, where there are any, support forces around the turn."""
     panels: list[tuple[str, list[_Curve]]] = []
-    ratio = result.speed / (result.input_speed * result.shaft_ratio)[:, None]
-    panels.append(("speed over its mean", _curves(_alike(result.shafts, ratio[:, None]), ratio)))
+    names, ratio, _, _ = _shafts(result)
+    panels.append(("speed over its mean", _curves(_alike(names, ratio[:, None]), ratio)))
     couple = _sizes(result.secondary_couple)
     if np.any(couple):
         factor, couple_unit = _scale(couple, "N·m")
@@ -102,7 +99,7 @@ def draw_polar(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
         below = figure.add_subplot(grid[1, k])
         below.set_axis_off()
         below.legend(*axes.get_legend_handles_labels(), loc="upper center", borderaxespad=0, **_LEGEND)
-    figure.suptitle(_title(result, unit), fontsize=TITLE, color=INK, x=0.01, ha="left")
+    head(figure, _title(result, unit))
     return figure
 
 
@@ -125,7 +122,7 @@ def draw_paper(result: Kinetostatics) -> Figure:
     _legend(figure, axes[0, 1], "outside lower center", "b, c, d", columns=4)
     kind = "rigid" if result.rigid else "elastic"
     name = result.line.name or "transmission"
-    figure.suptitle(f"{name}, taken as {kind}", fontsize=TITLE, color=INK, x=0.01, ha="left")
+    head(figure, f"{name}, taken as {kind}")
     return figure
 
 
@@ -146,6 +143,27 @@ def _title(result: Kinetostatics, unit: str) -> str:
     kind = "rigid shafts" if result.rigid else "elastic shafts"
     inertia = ", with inertia torques" if result.inertia else ""
     return f"{name}{kind}{inertia}, input {show_speed(result.input_speed, unit)}"
+
+
+def head(figure: Figure, title: str) -> None:
+    """A title at the left, in as many lines as the figure's width asks for."""
+    import textwrap
+
+    letters = int(72 * figure.get_figwidth() / (0.56 * TITLE))
+    figure.suptitle(textwrap.fill(title, letters), fontsize=TITLE, color=INK, x=0.01, ha="left")
+
+
+def _shafts(result: Kinetostatics) -> tuple[tuple[str, ...], Array, Array, Array]:
+    """Names, speed over mean, acceleration, torque referred to the drive; the output where no Shaft is.
+
+    Referred to the drive, torques behind a ratio share the scale of those in front of it.
+    """
+    if not result.shafts:
+        speed = result.output_speed[None] / (result.input_speed * result.mean_ratio)
+        return ("output",), speed, result.output_acceleration[None], result.drive_torque[None]
+    ratio = result.shaft_ratio[:, None]
+    speed = result.speed / (result.input_speed * ratio)
+    return result.shafts, speed, result.acceleration, result.transmitted * ratio
 
 
 def _sizes(vectors: Array) -> Array:

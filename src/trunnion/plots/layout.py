@@ -16,7 +16,8 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.layout import Layout
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE
+from trunnion.plots.kinetostatics import head
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,10 +89,10 @@ def sketch(
     _arrow(axes, scene.ends[0], size, scene.sense)
     _frame(axes, scene)
     title = subject.name if isinstance(subject, Driveline) and subject.name else "layout"
-    note = "; lengths between joints not all known" if scene.guessed else ""
-    figure.suptitle(
-        f"{title}, forks at input angle {input_angle / DEGREE:.4g}°{note}", fontsize=TITLE, color=INK
-    )
+    head(figure, f"{title}: forks at input angle {input_angle / DEGREE:.4g}°")
+    if scene.guessed:
+        note = "lengths between joints not all known: not to scale"
+        figure.text(0.01, 0.01, note, fontsize=SMALL, color=FAINT)
     return figure
 
 

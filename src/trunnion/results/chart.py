@@ -185,11 +185,9 @@ class StabilityChart:
             "direct_box": (("direct", "edge"), _edges(list(direct))),
         }
         if patches:
-            extra["patch_coefficients"] = (
-                ("patch", "quantity", "degree_v", "degree_u"),
-                np.stack([p.coefficients for p in patches]),
-            )
-            extra["patch_error"] = (("patch", "quantity"), np.stack([p.error for p in patches]))
+            extra["patch_coefficients"] = (("patch", "quantity", "degree_v", "degree_u"), _stacked(patches))
+            errors = np.stack([p.error for p in patches])
+            extra["patch_error"] = (("patch", "quantity", "block_v", "block_u"), errors)
         with written_whole(path) as temporary:
             self.data.assign(extra).to_netcdf(temporary, engine="h5netcdf")
 
@@ -287,6 +285,16 @@ def _function_of(data: xr.Dataset) -> PatchedFunction:
         return PatchedFunction((), direct)
     parts = zip(boxes, data["patch_coefficients"].values, data["patch_error"].values, strict=True)
     return PatchedFunction(tuple(Patch(*part) for part in parts), direct)
+
+
+def _stacked(patches: tuple[Patch, ...]) -> Array:
+    """Coefficients of all patches in one array; patches keep only as many as they need, the rest are zero."""
+    shape = np.max([p.coefficients.shape for p in patches], axis=0)
+    out = np.zeros((len(patches), *shape))
+    for k, patch in enumerate(patches):
+        q, i, j = patch.coefficients.shape
+        out[k, :q, :i, :j] = patch.coefficients
+    return out
 
 
 def _edges(boxes: list[Box]) -> Array:

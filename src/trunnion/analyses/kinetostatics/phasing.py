@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 HALF_TURN = np.pi
 STARTS, POLISHED = 4000, 6
 MOST_POSITIONS = 200_000
+SAME = 1e-13
+"""Difference of irregularities that counts as none."""
 POINTS = 96
 """Angles per turn where the output has to be sampled."""
 
@@ -98,11 +100,13 @@ def phase_forks(line: Driveline, pitch: float | str | Mapping[str, float | str] 
     pitches = _pitches(train, free, pitch)
     own = np.array([train.steps[i].fork_offset for i in free])
     best = _continuous(train, free, own)
-    if np.any(np.isfinite(pitches)):
-        positions = _spline_positions(pitches, best)
-        best = positions[int(irregularity_of(train, free, positions).argmin())]
-    # half a turn need not be a whole number of splines: those offsets are kept within a whole turn
+    # half a turn need not be a whole number of splines: their offsets are kept within a whole turn
     turn = np.where(np.isfinite(pitches), 2 * HALF_TURN, HALF_TURN)
+    if np.any(np.isfinite(pitches)):
+        positions = turn / 2 - (turn / 2 - _spline_positions(pitches, best)) % turn
+        value = irregularity_of(train, free, positions)
+        good = positions[value <= value.min() + SAME]
+        best = good[int(np.abs(good).max(axis=1).argmin())]
     best = turn / 2 - (turn / 2 - best) % turn
     offsets = {train.steps[i].name: float(x) for i, x in zip(free, best, strict=True)}
     phased = line
@@ -174,7 +178,7 @@ def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:
     starts = candidates[np.argsort(value, kind="stable")[:POLISHED]]
     ends = np.array([_polish(train, free, start) for start in starts] + [own])
     value = irregularity_of(train, free, ends)
-    good = ends[value <= value.min() + 1e-13]
+    good = ends[value <= value.min() + SAME]
     away = np.abs((good - own + HALF_TURN / 2) % HALF_TURN - HALF_TURN / 2)
     return np.asarray(good[int(away.max(axis=1).argmin())])
 

@@ -200,10 +200,14 @@ class Kinetostatics:
 
         return draw(self, **options)
 
-    def __str__(self) -> str:
+    def describe(self, unit: str = "rad/s") -> str:
+        """The summary that printing gives, the input speed in ``unit``."""
         from trunnion.analyses.kinetostatics.summary import summary
 
-        return summary(self)
+        return summary(self, unit)
+
+    def __str__(self) -> str:
+        return self.describe()
 
     __repr__ = __str__
 

@@ -9,16 +9,17 @@ import numpy as np
 from trunnion.analyses.kinetostatics.measures import extremes, largest
 from trunnion.driveline.quantities import DEGREE
 from trunnion.results.finding import by_gravity
+from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
     from trunnion.analyses.kinetostatics.result import Kinetostatics
 
 
-def summary(result: Kinetostatics) -> str:
+def summary(result: Kinetostatics, unit: str) -> str:
     """Title, output, torques, couples, supports, findings: one line each."""
     return "\n".join(
         [
-            _title(result),
+            _title(result, unit),
             *_output(result),
             *_torques(result),
             *_couples(result),
@@ -29,12 +30,12 @@ def summary(result: Kinetostatics) -> str:
     )
 
 
-def _title(r: Kinetostatics) -> str:
+def _title(r: Kinetostatics, unit: str) -> str:
     name = f" of {r.line.name!r}" if r.line.name else ""
     turns = "one turn" if r.turns == 1 else f"{r.turns} turns"
     kind = "rigid" if r.rigid else "elastic"
     return (
-        f"kinetostatics{name} over {turns} at {r.input_speed:.6g} rad/s: {kind} shafts, "
+        f"kinetostatics{name} over {turns} at {show_speed(r.input_speed, unit)}: {kind} shafts, "
         f"inertia torques {'included' if r.inertia else 'left out'}, {len(r.input_angle)} points"
     )
 

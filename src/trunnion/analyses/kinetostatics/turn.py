@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,10 +68,6 @@ def kinetostatics(
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
     _whole("turns", turns, 1)
     _whole("points", points, FEWEST_POINTS)
-    if not np.isfinite(acceleration):
-        raise InputError(
-            "must be finite", key="acceleration", value=acceleration, remedy="write it in rad/s²"
-        )
     if friction is not None and not isinstance(friction, CrossFriction):
         raise InputError(
             "is not a CrossFriction",
@@ -83,7 +80,7 @@ def kinetostatics(
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
     torque = _number(output_torque, TORQUE, "output_torque")
-    drive = Drive(input_angle, drive_speed, float(acceleration), torque, pin_moment, inertia)
+    drive = Drive(input_angle, drive_speed, _acceleration(acceleration), torque, pin_moment, inertia)
     motion, passed, twist = solve(train, drive, rigid=rigid)
     couples = secondary_couples(train, motion, passed, pin_moment)
     forces = support_forces(train, couples, supports) if supports is not None else None
@@ -198,6 +195,12 @@ def _number(value: float | str, kind: Kind, key: str) -> float:
         return parse(value, kind)
     except InputError as error:
         raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+
+
+def _acceleration(value: float) -> float:
+    if isinstance(value, Real) and np.isfinite(value):
+        return float(value)
+    raise InputError("must be a finite number", key="acceleration", value=value, remedy="write it in rad/s²")
 
 
 def _whole(key: str, value: int, least: int) -> None:

@@ -1,0 +1,258 @@
+"""A driveline as a sketch: every element in order, joints bent by their angle, numbers beside them.
+
+Not to scale. Bends are drawn alternately down and up so that the line stays on the page; planes and fork
+offsets are written. Branches get a row of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio, Shaft
+from trunnion.driveline.quantities import DEGREE
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH = 7.4
+SLANT = 38 * DEGREE
+"""Slope of the names."""
+STEEPEST = 30 * DEGREE
+"""Larger bends are drawn as this."""
+LENGTH = {"Shaft": 1.25, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9}
+JOINT_LENGTH = 0.9
+TUBE, SOLID = "#cfe3f2", "#e9e9e9"
+
+
+@dataclass(frozen=True)
+class _Place:
+    """An element on the page: its two ends and its direction [rad]; ``row`` of the branch."""
+
+    element: Element
+    name: str
+    start: np.ndarray
+    end: np.ndarray
+    direction: float
+    behind: float
+    row: int
+
+
+def draw(line: Driveline) -> Figure:
+    """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    places = _places(line)
+    floor = _floors(places)
+    x = np.array([p for q in places for p in (q.start[0], q.end[0])])
+    ceiling = max(max(q.start[1], q.end[1]) for q in places)
+    scale = WIDTH / max(x.max() - x.min() + 1.6, 9.0)
+    size = float(np.clip(SMALL * scale / 0.62, 7.5, SMALL))
+    letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
+    names = max(len(q.name) for q in places) + 3
+    right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
+    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.9])
+    low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
+    scale = WIDTH / max(high[0] - low[0], 9.0)
+    figure = Figure(figsize=(WIDTH, scale * (high[1] - low[1])))
+    FigureCanvasAgg(figure)
+    axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(low[0], low[0] + WIDTH / scale)
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    disks = [p.element.moment_of_inertia for p in places if isinstance(p.element, Disk)]
+    for number, place in enumerate(places, start=1):
+        _DRAW.get(place.element.kind, _joint)(axes, place, disks)
+        _name(axes, place, number, size, floor[place.row])
+        _numbers(axes, place, size, _between_joints(line, number - 1))
+    for place, parent in zip(places, line.parents, strict=True):
+        if parent is not None and places[parent].row != place.row:
+            axes.plot(*np.stack([places[parent].end, place.start], axis=1), color=FAINT, lw=1.2, ls=(0, (3, 2)))
+    return figure
+
+
+def _places(line: Driveline) -> list[_Place]:
+    """Walk the line; a branch starts below its parent."""
+    places: list[_Place] = []
+    down: dict[int, float] = {}
+    rows = 0
+    for i, (element, name, parent) in enumerate(zip(line.elements, line.names, line.parents, strict=True)):
+        if parent is None:
+            start, direction, row = np.zeros(2), 0.0, 0
+        elif parent == i - 1:
+            before = places[-1]
+            start, direction, row = before.end, before.behind, before.row
+        else:
+            rows += 1
+            deepest = min(min(p.start[1], p.end[1]) for p in places)
+            start, direction, row = np.array([places[parent].end[0] + 0.5, deepest - 3.2]), 0.0, rows
+        angle = abs(float(getattr(element, "angle", 0.0)))
+        behind = direction
+        if angle:
+            down[row] = -down.get(row, 1.0)
+            behind = _turned(direction, angle) if direction else down[row] * min(angle, STEEPEST)
+        length = LENGTH.get(element.kind, JOINT_LENGTH)
+        if angle or element.kind not in LENGTH:
+            half = length / 2
+            end = start + half * _along(direction) + half * _along(behind)
+        else:
+            end = start + length * _along(direction)
+        places.append(_Place(element, name, start, end, direction, behind, row))
+    return places
+
+
+def _turned(direction: float, angle: float) -> float:
+    """Direction behind a joint that bends a sloping line back towards the horizontal."""
+    return direction - np.sign(direction) * min(angle, STEEPEST)
+
+
+def _along(direction: float) -> np.ndarray:
+    return np.array([np.cos(direction), np.sin(direction)])
+
+
+def _across(direction: float) -> np.ndarray:
+    return np.array([-np.sin(direction), np.cos(direction)])
+
+
+def _box(axes: Axes, place: _Place, half: float, **look: Any) -> None:
+    from matplotlib.patches import Polygon
+
+    side = half * _across(place.direction)
+    corners = [place.start - side, place.end - side, place.end + side, place.start + side]
+    axes.add_patch(Polygon(corners, closed=True, **{"ec": INK, "lw": 1.1, "zorder": 3, **look}))
+
+
+def _drive(axes: Axes, place: _Place, disks: list[float]) -> None:
+    _box(axes, place, 0.5, fc="white", hatch="////")
+
+
+def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
+    shaft = place.element
+    assert isinstance(shaft, Shaft)
+    tube = shaft.outer_diameter is not None
+    _box(axes, place, 0.17 if tube else 0.08, fc=TUBE if tube else SOLID)
+
+
+def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Height by the logarithm of the inertia: drivelines span decades."""
+    disk = place.element
+    assert isinstance(disk, Disk)
+    low, high = min(disks), max(disks)
+    share = np.log(disk.moment_of_inertia / low) / np.log(high / low) if high > low * 1.001 else 0.5
+    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
+    middle = (place.start + place.end) / 2
+    inner = 0.16 * _along(place.direction)
+    slim = _Place(disk, place.name, middle - inner, middle + inner, place.direction, place.behind, place.row)
+    _box(axes, slim, 0.4 + 0.5 * float(share), fc="#9db7c9")
+
+
+def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two wheels in mesh, sizes by the ratio."""
+    from matplotlib.patches import Ellipse
+
+    element = place.element
+    assert isinstance(element, Ratio)
+    share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
+    first = 0.8 / (1 + share)
+    middle = (place.start + place.end) / 2
+    up = _across(place.direction)
+    axes.plot(*np.stack([place.start, middle], axis=1), color=INK, lw=2.0, zorder=2)
+    axes.plot(*np.stack([middle, place.end], axis=1), color=INK, lw=2.0, zorder=2)
+    for radius, offset, face in ((first, 0.0, "#f1d9a7"), (first * share, first * (1 + share), "#f7ead0")):
+        centre = middle + offset * up
+        wheel = Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), fc=face, ec=INK, lw=1.1)
+        wheel.set_zorder(3)
+        axes.add_patch(wheel)
+
+
+def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
+    centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
+    for end, direction, sign in ((place.start, place.direction, 1), (place.end, place.behind, -1)):
+        side = 0.26 * _across(direction)
+        neck = end + sign * 0.14 * _along(direction)
+        for arm in (side, -side):
+            path = np.stack([end, neck, neck + arm, centre + arm * 0.9], axis=1)
+            axes.plot(*path, color=INK, lw=1.6, solid_joinstyle="round", zorder=3)
+    hooke = place.element.kind == "HookeJoint"
+    axes.plot(*centre, "P" if hooke else "o", ms=7, mfc="white", mec=INK, mew=1.4, zorder=4)
+    if place.behind != place.direction:
+        straight = np.stack([centre, centre + 1.5 * _along(place.direction)], axis=1)
+        axes.plot(*straight, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=1)
+
+
+_DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
+    "ConstantSpeed": _drive,
+    "Shaft": _shaft,
+    "Disk": _disk,
+    "Ratio": _ratio,
+}
+
+
+def _floors(places: list[_Place]) -> dict[int, float]:
+    """Height of the names of each row: below everything in it."""
+    rows = {place.row for place in places}
+    return {r: min(min(p.start[1], p.end[1]) for p in places if p.row == r) - 1.05 for r in rows}
+
+
+def _name(axes: Axes, place: _Place, number: int, size: float, floor: float) -> None:
+    """Number and name, slanted below the row."""
+    middle = (place.start + place.end) / 2
+    axes.text(
+        middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
+        fontsize=size, color=INK, ha="left", va="center",
+    )  # fmt: skip
+    below = 0.95 if isinstance(place.element, Disk) else 0.55
+    if middle[1] - below > floor + 0.1:
+        axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)
+
+
+def _between_joints(line: Driveline, place: int) -> bool:
+    """Whether a shaft has a joint on both sides of it along its chain, so that its fork offset matters."""
+
+    def bends(i: int | None) -> bool:
+        return i is not None and hasattr(line.elements[i], "angle")
+
+    before, behind = line.parents[place], place
+    while before is not None and not bends(before) and not isinstance(line.elements[before], Shaft):
+        before = line.parents[before]
+    follow = True
+    while follow:
+        children = [i for i, p in enumerate(line.parents) if p == behind]
+        behind = children[0] if children else -1
+        follow = behind >= 0 and not bends(behind) and not isinstance(line.elements[behind], Shaft)
+    return bends(before) and behind >= 0 and bends(behind)
+
+
+def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
+    """What the geometry of the line needs: angles, planes, fork offsets, ratios; above the element."""
+    element = place.element
+    text = ""
+    if hasattr(element, "angle"):
+        text = f"β {element.angle / DEGREE:.4g}°"
+        if element.plane:
+            text += f"\nplane {element.plane / DEGREE:.4g}°"
+    elif isinstance(element, Shaft) and (element.fork_offset or between):
+        text = f"forks {element.fork_offset / DEGREE:.4g}°"
+    elif isinstance(element, Ratio):
+        text = f"i {element.speed_ratio:.4g}"
+    elif isinstance(element, Disk) and element.load_torque:
+        text = f"load\n{element.load_torque:.4g} N·m"
+    elif isinstance(element, ConstantSpeed):
+        text = "Ω"
+    middle = (place.start + place.end) / 2
+    if isinstance(element, Ratio):  # beside the upper wheel
+        at = place.end + np.array([0.05, 0.75])
+        axes.text(*at, text, fontsize=size, color=INK, ha="left", va="bottom")
+    elif text:
+        height = 1.0 if isinstance(element, Disk) else 0.55
+        colour = ACCENT if hasattr(element, "angle") else INK
+        axes.text(*(middle + np.array([0, height])), text, fontsize=size, color=colour, ha="center", va="bottom")

@@ -1,0 +1,73 @@
+"""Mode shapes as small multiples: one column per mode, one row per inertia, from the drive downwards."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.analyses.natural_frequencies import NaturalFrequencies
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PER_ROW = 6
+"""Modes side by side; more begin a new row of panels."""
+ROW_HEIGHT = 0.27
+"""Height of one inertia [inches]."""
+WIDTH = 7.2
+
+
+def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = None) -> Figure:
+    """Rotation of every inertia in every mode, the largest drawn to full width.
+
+    Parameters
+    ----------
+    modes : natural frequencies with their shapes.
+    unit : of the frequencies.
+    drive : name of the prescribed rotation in front of the line, drawn at rest; None leaves it out.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    names = [*([drive] if drive else []), *modes.names]
+    count, columns = len(modes.frequency), min(PER_ROW, len(modes.frequency))
+    rows = -(-count // columns)
+    height = rows * (ROW_HEIGHT * len(names) + 0.65) + 0.35
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid: Any = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    place = np.arange(len(names))
+    for i, axes in enumerate(grid.ravel()):
+        if i >= count:
+            axes.set_visible(False)
+            continue
+        shape = np.concatenate([[0.0] if drive else [], modes.shape[:, i]])
+        axes.axvline(0.0, color=FAINT, lw=0.8)
+        axes.hlines(place, 0.0, shape, color=ACCENT, lw=1.2)
+        axes.plot(shape, place, "o-", color=ACCENT, ms=4.5, lw=0.9, mfc=ACCENT, mec="white", mew=0.6)
+        frequency = "rigid body" if modes.rigid_body and i == 0 else _shown(float(modes.frequency[i]), unit)
+        axes.set_title(f"mode {i + 1}\n{frequency}", fontsize=SMALL, color=INK)
+        axes.set_yticks(place, names, fontsize=SMALL)
+        axes.set_xticks([-1, 0, 1], ["−1", "0", "1"], fontsize=SMALL - 1)
+        axes.set_xlim(-1.15, 1.15)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.tick_params(colors=INK, length=2.5)
+        axes.grid(axis="y", color="#e4e4e4", lw=0.7)
+        axes.set_axisbelow(True)
+        for spine in axes.spines.values():
+            spine.set_color(FAINT)
+    figure.supxlabel("rotation, largest = 1", fontsize=TEXT - 1, color=INK)
+    return figure
+
+
+def _shown(frequency: float, unit: str) -> str:
+    return show_speed(float(f"{frequency:.4g}"), unit) if unit == "rad/s" else _four(frequency, unit)
+
+
+def _four(frequency: float, unit: str) -> str:
+    from trunnion.results.speeds import speed_factor
+
+    return f"{frequency * speed_factor(unit):.4g} {unit}"

@@ -1,0 +1,151 @@
+"""Everything the report shows, computed once: results only, no text and no pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.analyses.bending import BendingSpeed, bending_findings, bending_speeds
+from trunnion.analyses.kinetostatics import kinetostatics
+from trunnion.analyses.kinetostatics.result import Kinetostatics
+from trunnion.analyses.overview import Overview
+from trunnion.analyses.resonance_speeds import ResonanceSpeeds, resonance_speeds
+from trunnion.analyses.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
+from trunnion.analyses.stable_limit import LimitKind, StableLimit, limit_of_chart
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import speed_factor
+
+IRREGULAR = 0.0027
+"""Irregularity of the output that propeller-shaft practice allows: one joint of 3°."""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """Results of a report; None where the line has no joints, or a question does not apply."""
+
+    overview: Overview
+    assembly: Assembly
+    turn: Kinetostatics | None
+    sweep: SpeedSweep | None
+    limit: StableLimit | None
+    bending: tuple[BendingSpeed, ...]
+    findings: tuple[Finding, ...]
+    left_out: tuple[str, ...]
+
+
+def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> Contents:
+    """What an overview does not hold yet: irregularity, torques over speed, the limit angle, bending speeds."""
+    assembly = assemble(seen.line)
+    low, high = _speeds(seen)
+    left_out: list[str] = []
+
+    def unless_refused(question: str, answer: Callable[[], object]) -> object:
+        try:
+            return answer()
+        except InputError as error:
+            left_out.append(f"{question}: {error}")
+            return None
+
+    jointed = seen.chart is not None
+    turn = sweep = None
+    if jointed:
+        turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line, speed=1.0))
+        speeds = sweep_speeds(assembly, low, high)
+        sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
+    limit = _limit(seen, resonance_speeds(assembly)) if jointed else None
+    bending = bending_speeds(assembly)
+    assert turn is None or isinstance(turn, Kinetostatics)
+    assert sweep is None or isinstance(sweep, SpeedSweep)
+    more = [
+        *bending_findings(bending, high, seen.unit),
+        *(_limit_findings(limit, seen) if limit else []),
+        *(_torque_findings(sweep, seen) if sweep else []),
+        *(_irregularity_findings(turn) if turn else []),
+    ]
+    findings = by_gravity([*seen.findings, *more])
+    return Contents(seen, assembly, turn, sweep, limit, bending, findings, tuple(left_out))
+
+
+def _speeds(seen: Overview) -> tuple[float, float]:
+    """The range, clipped as the chart's axis is."""
+    low, high = seen.speed_range
+    return (max(low, float(seen.chart.x[0])), high) if seen.chart else (low, high)
+
+
+def _limit(seen: Overview, named: ResonanceSpeeds) -> StableLimit | None:
+    """At the chart's speeds and at the resonance speeds themselves, where regions are narrowest."""
+    chart = seen.chart
+    if chart is None or len(chart.y) < 2:
+        return None
+    low, high = _speeds(seen)
+    at = [r.speed for r in named if r.opens and low <= r.speed <= high]
+    return limit_of_chart(chart, at, own=True)
+
+
+def _limit_findings(limit: StableLimit, seen: Overview) -> list[Finding]:
+    """The chart's own finding says where instability begins; this one gives the angle to design by."""
+    end = f"{np.rad2deg(limit.high):.3g}°"
+    if np.all(limit.kind == LimitKind.BEYOND):
+        return []
+    at = limit.critical_speed
+    assert at is not None
+    where = _rounded(at, seen.unit)
+    if np.any(limit.kind == LimitKind.AT_ONCE):
+        start = f"{np.rad2deg(limit.low):.3g}°"
+        return [Finding(Gravity.DANGER, f"Even at {start} in all joints the line is unstable, at {where}.")]
+    value = np.rad2deg(limit.smallest)
+    return [
+        Finding(
+            Gravity.NOTE,
+            f"Up to {value:.3g}° in all joints the line is stable over the whole speed range (scanned to {end}); "
+            f"the limit is set at {where}.",
+        )
+    ]
+
+
+def _rounded(speed: float, unit: str) -> str:
+    """A speed to four figures in the unit it is read in."""
+    return f"{float(f'{speed * speed_factor(unit):.4g}'):.10g} {unit}"
+
+
+def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
+    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
+    if not np.any(sweep.linear):
+        return []
+    i, j = np.unravel_index(int(np.nanargmax(trusted)), trusted.shape)
+    at = _rounded(float(sweep.speed[i]), seen.unit)
+    found = [
+        Finding(
+            Gravity.NOTE,
+            f"The joints force a torque amplitude of up to {trusted[i, j]:.3g} N·m, in {sweep.shafts[j]} at {at}.",
+        )
+    ]
+    beyond = ~sweep.linear
+    if beyond.any():
+        weight = np.gradient(sweep.speed)
+        share = float(weight[beyond].sum() / weight.sum())
+        found.append(
+            Finding(
+                Gravity.CAUTION,
+                f"Over {100 * share:.2g} % of the speed range the joints force such large twists that torques and "
+                "verdicts there are an indication only.",
+            )
+        )
+    return found
+
+
+def _irregularity_findings(turn: Kinetostatics) -> list[Finding]:
+    angle = np.rad2deg(turn.equivalent_angle)
+    if turn.irregularity <= IRREGULAR:
+        return []
+    return [
+        Finding(
+            Gravity.CAUTION,
+            f"The output runs unevenly by {100 * turn.irregularity:.3g} % of its speed, as behind one joint of "
+            f"{angle:.3g}°; practice allows {100 * IRREGULAR:.2g} % (3°).",
+        )
+    ]

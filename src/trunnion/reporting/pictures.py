@@ -1,0 +1,41 @@
+"""Figures as text inside a page: SVG as a data address, so that nothing is fetched and ids cannot clash."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RASTER_DPI = 200
+"""Of meshes inside an SVG: a chart stays sharp in print and small in the file."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """An image for a page: its address, words for those who cannot see it, a caption."""
+
+    address: str
+    alt: str
+    caption: str
+
+
+def picture(figure: Figure, alt: str, caption: str = "") -> Picture:
+    """``figure`` as SVG; meshes in it as pixels."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="svg", dpi=RASTER_DPI, metadata={"Date": None})
+    return Picture(_address("image/svg+xml", stream.getvalue()), alt, caption)
+
+
+def pixels(figure: Figure, alt: str, caption: str = "", dpi: int = 130) -> Picture:
+    """``figure`` as PNG, for pages with many charts."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=dpi)
+    return Picture(_address("image/png", stream.getvalue()), alt, caption)
+
+
+def _address(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"

@@ -1,0 +1,154 @@
+"""The report: one HTML file that opens offline, prints on A4 and says first what matters most."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from trunnion.analyses.overview import CHART_POINTS, Overview, hooke_joints, overview
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed
+from trunnion.reporting import tables
+from trunnion.reporting.contents import Contents, gather
+from trunnion.reporting.pictures import Picture, picture
+from trunnion.reporting.provenance import provenance
+from trunnion.results.files import written_whole
+from trunnion.results.speeds import show_speed, speed_factor
+
+
+@dataclass(frozen=True)
+class Report:
+    """A page as text, and the results it was made from. ``save`` writes it; a notebook shows it."""
+
+    html: str
+    contents: Contents
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page; an existing file is replaced only when all is written."""
+        with written_whole(path) as temporary:
+            temporary.write_text(self.html, encoding="utf-8", newline="\n")
+        return Path(path)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f'<iframe srcdoc="{escape(self.html)}" style="width:100%;height:80vh;border:0"></iframe>'
+
+    def __repr__(self) -> str:
+        size = len(self.html.encode()) / 1e6
+        return f"report on {self.contents.overview.line.name or 'a driveline'}, {size:.1f} MB of HTML; .save(path) writes it"
+
+
+def report(
+    line: Driveline | Overview,
+    *,
+    speed: float | None = None,
+    unit: str | None = None,
+    points: tuple[int, int] = CHART_POINTS,
+    source: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Report:
+    """Everything about ``line`` on one page.
+
+    Parameters
+    ----------
+    line : the driveline, or an overview of it that is computed already (then ``speed``, ``unit`` and
+        ``points`` are its own).
+    speed : operating speed [rad/s]; default the one of the description.
+    unit : of speeds: "rpm", "Hz" or "rad/s"; default the description's.
+    points : speeds × angles of the chart.
+    source : the file the line was read from, for its name and hash.
+    progress : called as progress(share done) while the chart is computed.
+
+    Raises
+    ------
+    InputError : the line has no equations of motion, or no steady motion to judge.
+    """
+    if unit is not None:
+        speed_factor(unit)
+    seen = line if isinstance(line, Overview) else overview(line, speed=speed, unit=unit, points=points, progress=progress)
+    contents = gather(seen)
+    path = None if source is None else Path(source)
+    return Report(_page(contents, path), contents)
+
+
+def _page(contents: Contents, source: Path | None) -> str:
+    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+    environment = Environment(
+        loader=PackageLoader("trunnion.reporting", "templates"),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    seen = contents.overview
+    unit, frequency_unit = seen.unit, "rad/s" if seen.unit == "rad/s" else "Hz"
+    made = datetime.now().astimezone()
+    facts: dict[str, Any] = {
+        "title": seen.line.name or "Driveline",
+        "description": seen.line.description or "",
+        "made": made.strftime("%Y-%m-%d"),
+        "findings": contents.findings,
+        "left_out": contents.left_out,
+        "remarks": seen.remarks,
+        "operation": tables.operation(contents, unit),
+        "elements": tables.elements(seen.line),
+        "modes": tables.modes(contents, frequency_unit),
+        "crossings": tables.crossing_table(contents, unit, frequency_unit),
+        "resonances": tables.resonances(contents, unit),
+        "joints": tables.joints(seen.line),
+        "irregularity": tables.irregularity(contents),
+        "torques": tables.torques(contents, unit),
+        "bending": tables.bending(contents, unit),
+        "stability": _verdict(seen),
+        "at_speed": show_speed(seen.stability.speed, unit) if seen.stability else "",
+        "limit": contents.limit,
+        "provenance": provenance(contents, source, made),
+        "pictures": pictures(contents, frequency_unit),
+    }
+    return environment.get_template("report.html.j2").render(**facts)
+
+
+def _verdict(seen: Overview) -> str:
+    """The verdict at the operating speed, without the forced response, which has its own table."""
+    return seen.stability.describe(seen.unit).split("\n  linear forced response")[0] if seen.stability else ""
+
+
+def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
+    """The figures of a report by name."""
+    from trunnion.plots import driveline_sketch, irregularity, mode_shapes, speed_frequency, stability_chart
+    from trunnion.plots import stable_limit as limit_plot
+    from trunnion.plots import torque_over_speed
+
+    seen, unit = contents.overview, contents.overview.unit
+    line, operating = seen.line, seen.operation
+    first = line.elements[0]
+    drive = line.names[0] if isinstance(first, ConstantSpeed) else None
+    diagram = speed_frequency.draw(
+        contents.assembly, speeds=seen.speed_range, unit=unit, frequency_unit=frequency_unit, operating=operating
+    )
+    shown = {
+        "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
+        "modes": picture(
+            mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"
+        ),
+        "speed_frequency": picture(diagram.figure.figure, "Speed–frequency diagram"),
+    }
+    if contents.turn is not None:
+        shown["irregularity"] = picture(irregularity.draw(contents.turn).figure.figure, "Speed of the shafts over a turn")
+    if contents.sweep is not None:
+        drawn = torque_over_speed.draw(contents.sweep, unit=unit, operating=operating)
+        shown["torque"] = picture(drawn.figure.figure, "Torque amplitude of every shaft over speed")
+    if seen.chart is not None:
+        drawn = stability_chart.draw(seen.chart, unit=unit, operating=operating)
+        shown["chart"] = picture(drawn.figure.figure, "Stability chart over speed and joint angle")
+    if contents.limit is not None:
+        stands = {name: abs(angle) for name, angle in hooke_joints(line)}
+        drawn = limit_plot.draw(contents.limit, unit=unit, operating=operating, values=stands)
+        shown["limit"] = picture(drawn.figure.figure, "Largest stable joint angle over speed")
+    return shown

@@ -1,0 +1,206 @@
+"""Results as tables of text, in units an engineer reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk, Element, Shaft
+from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, shown
+from trunnion.plots.speed_frequency import crossings
+from trunnion.reporting.contents import Contents
+from trunnion.results.speeds import speed_factor
+
+_SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+MOST_RESONANCES = 30
+
+
+@dataclass(frozen=True)
+class Table:
+    """Column heads and rows of text; ``numeric`` columns are aligned right."""
+
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    @property
+    def numeric(self) -> tuple[bool, ...]:
+        """Whether a column holds numbers alone."""
+        return tuple(all(_is_number(row[i]) for row in self.rows) for i in range(len(self.heads)))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace("−", "-").replace("–", "0") or "0")
+    except ValueError:
+        return False
+    return True
+
+
+def four(value: float) -> str:
+    """Four figures with a true minus sign."""
+    return f"{float(f'{value:.4g}'):.10g}".replace("-", "−") if np.isfinite(value) else "–"
+
+
+def elements(line: Driveline) -> Table:
+    """Every element with what it is and its numbers."""
+    rows = []
+    for i, (name, element) in enumerate(zip(line.names, line.elements, strict=True), start=1):
+        after = f"after {element.after}; " if element.after else ""
+        rows.append((str(i), name, element.kind, after + "; ".join(_numbers(element))))
+    return Table(("no.", "name", "element", "numbers"), tuple(rows))
+
+
+def _numbers(element: Element) -> list[str]:
+    """Stated numbers with units, and what follows from a geometry."""
+    parts = []
+    for key, value in element.stated.items():
+        if key in ("name", "after"):
+            continue
+        kind = element.quantity_of(key)
+        text = shown(value, kind) if kind else str(value)
+        parts.append(f"{key.replace('_', ' ')} {_signs(text)}")
+    if isinstance(element, Shaft) and element.stiffness is None:
+        tube = [shown(element.torsional_stiffness, STIFFNESS, digits=4)]
+        if element.moment_of_inertia:
+            tube.append(shown(element.moment_of_inertia, INERTIA, digits=4))
+        parts.append("hence " + ", ".join(_signs(t) for t in tube))
+    if isinstance(element, Shaft) and element.loss_factor is not None:
+        parts.append("hence " + _signs(shown(element.damping_coefficient, DAMPING, digits=4)))
+    if isinstance(element, Disk) and element.inertia is None:
+        parts.append("hence " + _signs(shown(element.moment_of_inertia, INERTIA, digits=4)))
+    return parts
+
+
+def _signs(text: str) -> str:
+    return text.replace("*", "·").replace("^2", "²").replace("^3", "³").replace(" deg", "°")
+
+
+def modes(contents: Contents, unit: str) -> Table:
+    """Natural frequencies and damping ratios."""
+    found = contents.overview.natural_frequencies
+    rows = [
+        (str(row["mode"]), four(float(str(row[f"frequency [{unit}]"]))), four(float(str(row["damping ratio"]))), str(row["moves most"]))
+        for row in found.table(unit)
+    ]  # fmt: skip
+    return Table(("mode", f"frequency [{unit}]", "damping ratio", "moves most"), tuple(rows))
+
+
+def joints(line: Driveline) -> Table:
+    """What each joint alone makes of a constant speed: U = tan β sin β."""
+    rows = []
+    for name, element in zip(line.names, line.elements, strict=True):
+        if not hasattr(element, "angle"):
+            continue
+        beta = abs(float(element.angle))
+        alone = 100 * np.tan(beta) * np.sin(beta) if element.kind == "HookeJoint" else float("nan")
+        lead = np.rad2deg(np.arcsin(np.tan(beta / 2) ** 2)) if element.kind == "HookeJoint" else float("nan")
+        rows.append((name, element.kind, four(beta / DEGREE), four(alone), four(lead)))
+    return Table(("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows))
+
+
+def irregularity(contents: Contents) -> Table | None:
+    """What each shaft does in the assembly, and the output."""
+    turn = contents.turn
+    if turn is None:
+        return None
+    from trunnion.analyses.kinetostatics.measures import equivalent_angle, extremes
+
+    rows = []
+    for name, speed, ratio in zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True):
+        low, high = extremes(speed)
+        u = float(high - low) / abs(turn.input_speed * float(ratio))
+        u = 0.0 if u < 1e-12 else u
+        rows.append((name, four(100 * u), four(float(np.rad2deg(equivalent_angle(u))))))
+    output = turn.irregularity if turn.irregularity > 1e-12 else 0.0
+    rows.append(("output of the line", four(100 * output), four(float(np.rad2deg(equivalent_angle(output))))))
+    return Table(("shaft, as assembled", "irregularity [%]", "as one joint of [°]"), tuple(rows))
+
+
+def crossing_table(contents: Contents, speed_unit: str, frequency_unit: str) -> Table:
+    """Crossings of the 2Ω and 4Ω lines with the modes in the speed range."""
+    rows = [
+        (
+            four(c.speed * speed_factor(speed_unit)),
+            f"{c.order}Ω" if c.ratio == 1 else f"{c.order}·{c.ratio:.4g}Ω",
+            f"ω{c.mode}".translate(_SUBSCRIPT),
+            four(c.frequency * speed_factor(frequency_unit)),
+            "yes" if c.excited else "no joint turns at this speed",
+        )
+        for c in crossings(contents.assembly, *contents.overview.speed_range)
+    ]
+    heads = (f"input speed [{speed_unit}]", "excitation", "mode", f"frequency [{frequency_unit}]", "excited")
+    return Table(heads, tuple(rows))
+
+
+def resonances(contents: Contents, unit: str) -> Table:
+    """Parametric resonance speeds in the range that can open."""
+    rows = [
+        (four(r.speed * speed_factor(unit)), r.kind, r.formula)
+        for r in contents.overview.resonance_speeds
+        if r.opens
+    ]
+    return Table((f"input speed [{unit}]", "kind", "formula"), tuple(rows[:MOST_RESONANCES]))
+
+
+def torques(contents: Contents, unit: str) -> Table | None:
+    """At the operating speed, and the largest in the range where the linear response can be trusted."""
+    sweep = contents.sweep
+    if sweep is None:
+        return None
+    here = contents.overview.stability
+    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
+    rows = []
+    for j, name in enumerate(sweep.shafts):
+        now: Sequence[str] = ("–", "–")
+        if here is not None and here.response is not None:
+            mean = float(here.response.torque_mean[j])
+            amplitude = float(here.response.torque_amplitude[j])
+            # a mean far below the amplitude is its second-order part or rounding, not a load
+            now = (four(mean if abs(mean) > 1e-4 * max(amplitude, 1e-9) else 0.0), four(amplitude))
+        top = ("–", "–")
+        if np.any(sweep.linear):
+            i = int(np.nanargmax(trusted[:, j]))
+            top = (four(float(trusted[i, j])), four(float(sweep.speed[i]) * speed_factor(unit)))
+        rows.append((name, *now, *top))
+    heads = (
+        "shaft", "mean, operating [N·m]", "amplitude, operating [N·m]", "largest amplitude [N·m]", f"at [{unit}]",
+    )  # fmt: skip
+    return Table(heads, tuple(rows))
+
+
+def bending(contents: Contents, unit: str) -> Table:
+    """Bending critical speeds of tubes against the highest speed of the range."""
+    high = contents.overview.speed_range[1]
+    rows = [
+        (
+            b.shaft,
+            four(b.critical_speed * speed_factor(unit)),
+            four(b.input_speed * speed_factor(unit)),
+            four(100 * high / b.input_speed),
+            shown(b.young_modulus, PRESSURE, digits=4) + (" (from the shear modulus)" if b.assumed_modulus else ""),
+        )
+        for b in contents.bending
+    ]
+    heads = (
+        "tube", f"critical speed of the tube [{unit}]", f"of the input [{unit}]", "top of the range over it [%]", "E",
+    )  # fmt: skip
+    return Table(heads, tuple(rows))
+
+
+def operation(contents: Contents, unit: str) -> Table:
+    """Where the line runs."""
+    seen, factor = contents.overview, speed_factor(unit)
+    low, high = seen.speed_range
+    rows = [("speed range", f"{four(low * factor)} to {four(high * factor)} {unit}")]
+    if seen.operation.speed:
+        rows.insert(0, ("operating speed", f"{four(seen.operation.speed * factor)} {unit}"))
+    if seen.chart is not None:
+        first, last = (np.rad2deg(a) for a in seen.angle_range)
+        rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
+    for name, element in zip(seen.line.names, seen.line.elements, strict=True):
+        if isinstance(element, Disk) and element.load_torque:
+            rows.append((f"load torque on {name}", f"{four(element.load_torque)} N·m"))
+    return Table(("", ""), tuple(rows))

@@ -1,0 +1,135 @@
+"""Elastic shafts: the balance of power, derivatives, S2's example, and inertia near a resonance."""
+
+import lines
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.results.finding import Gravity
+
+
+def heavy(speed_share):
+    """A line with inertia and its lowest elastic frequency [rad/s]; ``speed_share`` of it is 2Ω."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=2e4),
+            tn.Disk(inertia=0.05),
+            tn.HookeJoint(angle=tn.deg(6)),
+            tn.Shaft(stiffness=1e4),
+            tn.Disk(inertia=0.4, load_torque=50.0),
+        ]
+    )
+    lowest = tn.natural_frequencies(line).elastic[0]
+    return line, speed_share * lowest / 2
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_power_balance_rigid(seed):
+    line = lines.random_line(6, seed)
+    result = tn.kinetostatics(lines.driveline(line), speed=2.0)
+    assert result.power_residual < 1e-12
+    supplied, used = result.drive_torque * 2.0, line.load * result.output_speed
+    assert np.abs(supplied - used).max() < 1e-12 * np.abs(supplied).max()
+
+
+@pytest.mark.parametrize("options", [{"rigid": False}, {"inertia": True}, {"friction": True}, {"all": True}])
+def test_power_balance_with_springs_inertias_and_friction(options):
+    line = lines.random_line(4, 3, stiffness=[4000.0] * 5, inertias=[0.1] * 5)
+    chosen = {
+        "rigid": "all" not in options and options.get("rigid", True),
+        "inertia": "inertia" in options or "all" in options,
+        "friction": tn.CrossFriction(0.01, 0.012, 0.04) if {"friction", "all"} & set(options) else None,
+    }
+    assert tn.kinetostatics(lines.driveline(line), speed=2.0, **chosen).power_residual < 1e-12
+
+
+def test_friction_costs_power():
+    line = lines.driveline(lines.random_line(3, 3))
+    result = tn.kinetostatics(line, friction=tn.CrossFriction("1 %", "12 mm", "40 mm"))
+    assert 0.98 < result.efficiency < 0.9999
+    assert np.all(result.power_loss > 0)
+    assert tn.kinetostatics(line).efficiency == 1
+
+
+def test_speed_and_acceleration_are_derivatives_of_the_angle():
+    """The rates of the twist included."""
+    line = lines.random_line(3, 11, stiffness=[3000.0, 2000.0, 2500.0, 1e9])
+    result = tn.kinetostatics(lines.driveline(line), speed=3.0, points=360, rigid=False)
+    order = 1j * np.fft.fftfreq(360, 1 / 360)
+    for angle, speed, acceleration in zip(result.angle, result.speed, result.acceleration, strict=True):
+        spectrum = np.fft.fft(angle - result.input_angle)
+        assert np.allclose(3 + 3 * np.fft.ifft(order * spectrum).real, speed, atol=1e-10)
+        assert np.allclose(9 * np.fft.ifft(order**2 * spectrum).real, acceleration, atol=1e-8)
+
+
+def test_twist_is_torque_over_stiffness():
+    line = lines.random_line(3, 11, stiffness=[300.0, 200.0, 250.0, 1e3])
+    result = tn.kinetostatics(lines.driveline(line), rigid=False)
+    assert np.abs(result.twist).max() > 0.4
+    assert np.allclose(result.twist, result.torque / np.array(line.stiffness)[:, None], rtol=0, atol=1e-14)
+
+
+def test_shafts_too_soft_are_reported():
+    line = lines.random_line(3, 11, stiffness=[30.0, 20.0, 25.0, 1e3])
+    with pytest.raises(tn.ComputationError, match=r"Shaft 2 yields more than .* make it stiffer") as caught:
+        tn.kinetostatics(lines.driveline(line), rigid=False)
+    assert "\n" not in str(caught.value)
+
+
+def test_stiff_limit_is_rigid():
+    line = lines.random_line(3, 11, stiffness=[1e12] * 4)
+    elastic = tn.kinetostatics(lines.driveline(line), rigid=False)
+    rigid = tn.kinetostatics(lines.driveline(line))
+    assert np.abs(elastic.output_speed - rigid.output_speed).max() < 1e-9
+    assert not np.any(rigid.twist)
+
+
+def test_example_of_s2():
+    """Printed angles: ω_out/ω_in from 0.780 to 1.282; corrected stiffness: 1.574e-5 rad at 150 N·m."""
+    line = tn.catalogue("bicardan-elastic")
+    slow, fast = tn.kinetostatics(line).speed_ratio
+    assert (round(slow, 4), round(fast, 4)) == (0.7801, 1.2819)
+    shaft = line.elements[line.index("intermediate shaft 1")]
+    assert 150 / shaft.stiffness == pytest.approx(1.574e-5, rel=4e-4)
+    printed = tn.catalogue("bicardan-elastic", printed_stiffness=True)
+    assert 150 / printed.elements[3].stiffness == pytest.approx(1.574e-8, rel=4e-4)
+    assert tn.kinetostatics(tn.catalogue("bicardan-elastic", homokinetic=True)).irregularity < 1e-12
+
+
+def test_constant_twist_of_s2_is_off_by_an_eighth():
+    """The paper finds ξ nearly constant; by its own angles it swings by ± 12.6 % of its mean."""
+    result = tn.kinetostatics(tn.catalogue("bicardan-elastic"), rigid=False)
+    assert result.constant_twist.variation[1] == pytest.approx(0.1257, abs=2e-4)
+    assert result.constant_twist.variation[2] < 1e-12  # behind the last joint the torque is the load
+    # what that does to the motion is nothing: the twist itself is 1.6e-5 rad
+    assert result.constant_twist.speed < 1e-5
+    assert result.constant_twist.angle < 3e-6
+
+
+def test_tube_formula_of_s2_in_its_own_units():
+    """c = πG(D⁴ − d⁴)/(32 l) with mm and N/mm² is in N·mm/rad: a thousandth of it in N·m/rad."""
+    tube = tn.Shaft(outer_diameter="90 mm", inner_diameter="84 mm", length="1000 mm", shear_modulus="81 GPa")
+    in_millimetres = np.pi * 81000 * (90**4 - 84**4) / (32 * 1000)
+    assert tube.torsional_stiffness == pytest.approx(in_millimetres / 1000, rel=1e-14)
+
+
+def test_quasi_static_inertia_agrees_with_the_linear_response_at_low_speed():
+    """Torque amplitudes against the linear forced response, which has the dynamics: apart by (2Ω/ω₁)²."""
+    line, speed = heavy(0.1)
+    result = tn.kinetostatics(line, speed=speed, rigid=False, inertia=True)
+    assert not result.findings
+    response = tn.stability(line, speed=speed).response
+    amplitude = np.ptp(result.torque, axis=1) / 2
+    assert np.allclose(amplitude, response.torque_amplitude, rtol=0.02)
+
+
+@pytest.mark.parametrize(("share", "gravity"), [(0.3, None), (0.5, Gravity.CAUTION), (1.2, Gravity.DANGER)])
+@pytest.mark.parametrize("rigid", [True, False])
+def test_warning_near_a_resonance(share, gravity, rigid):
+    line, speed = heavy(share)
+    found = tn.kinetostatics(line, speed=speed, rigid=rigid, inertia=True).findings
+    assert [f.gravity for f in found] == ([] if gravity is None else [gravity])
+    if gravity is not None:
+        assert "natural frequency" in found[0].sentence
+    assert not tn.kinetostatics(line, speed=speed, rigid=rigid).findings

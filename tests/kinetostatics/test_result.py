@@ -1,0 +1,229 @@
+"""The result as a value: how it prints, what it holds, what it writes, how it draws."""
+
+import csv
+import warnings
+
+import lines
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.kinetostatics.measures import extremes, parts
+from trunnion.plots import kinetostatics as plots
+
+LINE = lines.row([12, 15], planes=[0, 20], load=150.0)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return tn.kinetostatics(
+        LINE,
+        speed=tn.rpm(900),
+        rigid=False,
+        supports=[("Shaft 1", -0.3, -0.1), ("Shaft 3", 0.1, 0.4)],
+        lengths={"Shaft 2": "800 mm"},
+    )
+
+
+def test_prints_a_summary(result):
+    text = str(result)
+    assert text == repr(result)
+    for words in (
+        "720 points",
+        "elastic shafts",
+        "irregularity",
+        "drive torque",
+        "secondary couple",
+        "twice per turn",
+    ):
+        assert words in text
+    assert text.count("bearing Shaft") == 4
+    assert max(len(row) for row in text.splitlines()) < 220
+
+
+def test_torque_has_the_sign_of_the_twist(result):
+    assert np.all(result.torque < 0)
+    assert np.all(result.twist < 0)
+    assert np.all(result.transmitted > 0)
+    assert np.all(result.drive_torque > 0)
+
+
+def test_dataset_has_names_and_units(result):
+    data = result.data
+    assert all(v.attrs["units"] and v.attrs["long_name"] for v in data.data_vars.values())
+    assert list(data["shaft"].values) == ["Shaft 1", "Shaft 2", "Shaft 3"]
+    assert data["secondary_couple"].dims == ("fork", "standing", "input_angle")
+    assert data["support_force"].sel(bearing="Shaft 1 at -0.3 m").shape == (2, 720)
+    assert tn.loads(data.attrs["driveline"]) == LINE
+    assert data.attrs["irregularity"] == result.irregularity
+
+
+def test_dataset_is_a_netcdf_file(result, tmp_path):
+    import xarray as xr
+
+    result.data.to_netcdf(tmp_path / "turn.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "turn.nc", engine="h5netcdf") as again:
+        assert again["speed"].equals(result.data["speed"])
+
+
+def test_csv(result, tmp_path):
+    result.to_csv(tmp_path / "turn.csv")
+    with (tmp_path / "turn.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.reader(stream))
+    assert len(rows) == 721
+    column = rows[0].index("Shaft 2 speed [rad/s]")
+    assert [float(row[column]) for row in rows[1:]] == list(result.speed[1])
+    assert rows[0][0] == "input angle [rad]"
+    assert all("[" in name for name in rows[0])
+
+
+def test_table_rows(result):
+    rows = result.table()
+    assert [row["shaft"] for row in rows] == list(result.shafts)
+    assert rows[1]["fastest [rad/s]"] == pytest.approx(result.speed[1].max(), rel=1e-6)
+
+
+def test_result_does_not_change_its_line():
+    before = tn.dumps(LINE)
+    tn.kinetostatics(LINE, rigid=False)
+    assert tn.dumps(LINE) == before
+
+
+def test_turns_behind_a_ratio():
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=1e5),
+            tn.HookeJoint(angle=0.2),
+            tn.Ratio(teeth_in=2, teeth_out=3),
+            tn.Shaft(stiffness=1e5),
+            tn.HookeJoint(angle=0.3),
+            tn.Disk(inertia=1, load_torque=30.0),
+        ]
+    )
+    short = tn.kinetostatics(line)
+    assert any("repeats after 3 turns" in f.sentence for f in short.findings)
+    whole = tn.kinetostatics(line, turns=3)
+    assert not whole.findings
+    assert whole.irregularity >= short.irregularity
+    assert whole.power_residual < 1e-12
+    assert whole.output_angle[-1] + whole.output_speed[-1] * 2 * np.pi / 720 == pytest.approx(
+        4 * np.pi, abs=1e-3
+    )
+
+
+def test_negative_ratio_turns_the_load_with_it():
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.HookeJoint(angle=0.3),
+            tn.Ratio(ratio=-2.0),
+            tn.Disk(inertia=1, load_torque=30.0),
+        ]
+    )
+    result = tn.kinetostatics(line, friction=tn.CrossFriction(0.01, 0.01, 0.04))
+    assert np.all(result.output_speed < 0)
+    assert np.all(result.drive_torque > 0)
+    assert result.power_residual < 1e-12
+    assert result.irregularity == pytest.approx(np.tan(0.3) * np.sin(0.3), rel=1e-6)
+
+
+def test_branches_share_the_drive():
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Disk(inertia=1, name="hub"),
+            tn.HookeJoint(angle=0.3),
+            tn.Disk(inertia=1, load_torque=20.0),
+            tn.HookeJoint(angle=0.2, after="hub"),
+            tn.Disk(inertia=1, load_torque=30.0),
+        ]
+    )
+    result = tn.kinetostatics(line)
+    assert np.allclose(result.drive_torque, result.joint_torque_in.sum(axis=0))
+    assert result.drive_torque.mean() == pytest.approx(50, rel=0.05)
+    assert result.power_residual < 1e-12
+
+
+def test_load_cases_and_outer_torque_are_the_same_thing():
+    loaded = tn.kinetostatics(lines.row([20, 10], load=75.0))
+    pulled = tn.kinetostatics(lines.row([20, 10]), output_torque="75 N*m")
+    assert np.array_equal(loaded.drive_torque, pulled.drive_torque)
+
+
+def test_extremes_are_finer_than_the_grid():
+    x = np.arange(60) * 2 * np.pi / 60
+    low, high = extremes(np.stack([np.sin(x + 0.03), 5 + 0.1 * np.cos(x - 0.05)]))
+    assert np.allclose(high, [1, 5.1], atol=2e-6)
+    assert np.allclose(low, [-1, 4.9], atol=2e-6)
+    assert extremes(np.linspace(0, 1, 50))[1] == 1  # does not close: nothing beyond the last point
+
+
+def test_parts_of_a_vector():
+    x = np.arange(360) * 2 * np.pi / 360
+    z = (3 - 2j) + 1.5 * np.exp(1j * (x + 1)) + 0.7 * np.exp(2j * x) + 0.2 * np.exp(-2j * x)
+    split = parts(np.stack([z.real, z.imag]), x)
+    assert split.steady == pytest.approx((3, -2))
+    assert (split.once, split.twice, split.twice_back) == pytest.approx((1.5, 0.7, 0.2))
+    assert split.two_per_turn == pytest.approx(0.9)
+
+
+def texts(figure):
+    return [
+        t.get_text() for ax in figure.axes for t in (ax.xaxis.label, ax.yaxis.label, ax.title) if t.get_text()
+    ]
+
+
+@pytest.mark.parametrize("draw", [plots.draw, plots.draw_polar, plots.draw_paper])
+def test_figures(draw, result):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = draw(result)
+        figure.canvas.draw()
+    assert any("[" in text for text in texts(figure))
+    box, size = figure.get_tightbbox(), figure.get_size_inches()
+    assert box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < size[0] + 0.01 and box.y1 < size[1] + 0.01
+
+
+@pytest.mark.parametrize("joint", [tn.HookeJoint(angle=0.3), tn.IdealJoint()])
+def test_a_line_without_shafts_still_shows_itself(joint, tmp_path):
+    result = tn.kinetostatics(tn.Driveline([tn.ConstantSpeed(), joint, tn.Disk(inertia=1)]))
+    assert "irregularity" in str(result)
+    assert result.data["speed"].shape == (0, 720)
+    result.to_csv(tmp_path / "turn.csv")
+    for draw in (plots.draw, plots.draw_polar):
+        draw(result).canvas.draw()
+
+
+@pytest.mark.parametrize("what", ["line", "layout", "tripod"])
+def test_sketches(what):
+    subject = {
+        "line": LINE,
+        "layout": tn.layout(
+            [(0, 0, 0), (1, 0, 0.1), (2, 0.2, 0)], (1, 0.2, 0), (1, 0, 0.3), right_handed=False
+        ),
+        "tripod": tn.Driveline(
+            [tn.Shaft(stiffness=1), tn.TripodJoint(angle=0.2, radius=0.03, length=0.5), tn.Shaft(stiffness=1)]
+        ),
+    }[what]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tn.sketch(subject, input_angle=0.3).canvas.draw()
+
+
+def test_names_in_the_package():
+    for name in (
+        "kinetostatics",
+        "CrossFriction",
+        "phase_forks",
+        "assembly_sensitivity",
+        "check_limits",
+        "layout",
+        "combined_angle",
+        "cardan_line",
+        "sketch",
+        "TripodJoint",
+        "DoubleCardanJoint",
+    ):
+        assert getattr(tn, name) is not None
+        assert name in tn.__all__
