@@ -69,7 +69,7 @@ CASES = [
     ((*CHART, "--x", "speed:1:2:0"), ("must be a whole number of points",)),
     ((*CHART, "--x", "speed:1:2:many"), ("= 'many': must be a whole number of points",)),
     ((*CHART, "--y", "HookeJoint 1.angle:0:95deg:3", "--x", "HookeJoint *.angle:90deg:95deg:3"), ("89°",)),
-    ((*CHART, "--y", "speed"), ("speed: stands on both axes",)),
+    ((*CHART, "--y", "speed"), ("speed: is moved by both axes",)),
     ((*CHART, "--y", "factor of Shaft *.damping:-1:1:3:log"), ("cannot start at or below zero",)),
     (("analyze", "line.toml", "--points", "many"), ("--points = 'many': is not a size", "200x150")),
     (("analyze", "line.toml", "--points", "1x5"), ("2 or more",)),

@@ -20,12 +20,14 @@ ALLOWED = {
     "numerics": set(),
     "systems": {"numerics"},
     "driveline": {"joints", "plots"},  # plots where something draws itself, see test_plots_load_late
-    "published": {"driveline"},
+    "published": {"driveline", "systems", "joints"},  # what papers print as matrices is a system
     "equations": {"driveline", "joints", "systems", "numerics"},
     "results": {"driveline", "numerics", "plots"},  # a chart keeps the patches behind its pixels
     "analyses": {"plots", *COMPUTE},
     "plots": {"analyses", *COMPUTE},
-    "cli": {"plots", "analyses", "published", *COMPUTE},
+    "reporting": {"plots", "analyses", "published", *COMPUTE},
+    "reproduction": {"plots", "analyses", "published", "reporting", *COMPUTE},
+    "cli": {"plots", "analyses", "published", "reporting", "reproduction", *COMPUTE},
 }
 FILES = sorted(ROOT.rglob("*.py"))
 

@@ -20,7 +20,13 @@ from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
-from trunnion.numerics.chain_monodromy import Window, chain_monodromy, chain_propagator, complete, symmetry_phase
+from trunnion.numerics.chain_monodromy import (
+    Window,
+    chain_monodromy,
+    chain_propagator,
+    complete,
+    symmetry_phase,
+)
 from trunnion.numerics.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.characteristic import LARGEST, coefficients_from_matrices
 from trunnion.numerics.dense_monodromy import propagate
@@ -34,9 +40,17 @@ Array = NDArray[np.float64]
 class ChartFamily(Protocol):
     """Anything a chart can be made of."""
 
-    size: int
-    rigid_body: bool
-    period: float
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+
+    @property
+    def rigid_body(self) -> bool:
+        """Whether a rigid-body pair of multipliers is to be set aside."""
+
+    @property
+    def period(self) -> float:
+        """Period in τ."""
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """Quantities and their error bounds at points (x, y), each (points, quantities)."""
@@ -230,7 +244,9 @@ def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) 
     def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
         u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
         v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
-        values, bounds = family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
+        values, bounds = family.evaluate(
+            family.from_patch(u, True), family.from_patch(v, False), tolerance, threads
+        )
         cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
         return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 

@@ -25,7 +25,7 @@ class Pixels:
 
 
 def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
-    """Pixels from quantities (q, points) and their bounds (q, points) or (q, 1).
+    """Pixels from quantities (q, points) and their bounds (q, points).
 
     See ``chart_families.quantities`` for what the quantities are.
     """
@@ -34,20 +34,21 @@ def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
         e, de = values[:m].copy(), bounds[:m].copy()
         # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
         e[-1] = np.exp(-trace)
-        de[-1] = bounds[-1] + 1e-15
+        de[-1] = e[-1] * (bounds[-1] + 1e-15)
         radius, error = np.empty(len(trace)), np.empty(len(trace))
         critical = np.empty(len(trace), dtype=complex)
         radii(e, de, radius, error, critical)
     else:
-        full = np.broadcast_to(bounds, values.shape)
-        radius, error, critical = _largest(values.T, full.T, m, rigid_body)
+        radius, error, critical = _largest(values.T, bounds.T, m, rigid_body)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
 
 
 def multipliers_of(values: Array, size: int) -> Complex:
     """All multipliers of one point from its quantities, by falling modulus."""
     m = 2 * size
-    found = roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    found = (
+        roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    )
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
@@ -62,7 +63,9 @@ def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Ar
         matrix_error = bounds[:, :-1].max(axis=1)
     else:
         matrix = values[:, :-1].reshape(-1, m, m)
-        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
+        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(
+            matrix, axis=(1, 2)
+        )
         every = np.full((len(values), m), np.nan, dtype=complex)
         finite = np.isfinite(matrix).all(axis=(1, 2))
         every[finite] = np.linalg.eigvals(matrix[finite])

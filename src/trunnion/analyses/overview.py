@@ -10,12 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.analyses.axes import lowest_speed
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.analyses.natural_frequencies import NaturalFrequencies, natural_frequencies
 from trunnion.analyses.overview_findings import (
     chart_findings,
     line_findings,
     resonance_findings,
+    slow_findings,
     sweep_findings,
 )
 from trunnion.analyses.resonance_speeds import ResonanceSpeeds, resonance_speeds
@@ -99,7 +101,8 @@ def overview(
     at_speed = None if speed is None else stability(assembly, speed)
     sweep = chart = None
     joints = hooke_joints(line)
-    if joints:
+    slowest = lowest_speed(assembly)
+    if joints and high > slowest:
         name, angle = joints[0]
         sweep = stability_chart(
             assembly, ("speed", low, high, SWEEP_POINTS), (f"{name}.angle", angle, angle, 1)
@@ -112,6 +115,7 @@ def overview(
         *(sweep_findings(assembly, sweep, unit) if sweep else ()),
         *resonance_findings(here, (low, high), speed, unit),
         *(chart_findings(chart, unit) if chart else ()),
+        *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
     ]
     return Overview(
         line=line,

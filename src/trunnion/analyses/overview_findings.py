@@ -20,6 +20,17 @@ NEAR = 0.05
 """Relative distance from a resonance speed that deserves a word."""
 
 
+def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
+    """Why no chart is drawn for a line that turns far below its natural frequencies."""
+    factor = speed_factor(unit)
+    yield Finding(
+        Gravity.NOTE,
+        f"The line runs at no more than {high * factor:.4g} {unit} and follows its joints statically there: below "
+        f"{slowest * factor:.4g} {unit} a turn spans hundreds of cycles of its highest mode, resonances of such "
+        "high order stay closed, and no chart is drawn.",
+    )
+
+
 def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
     """What the description itself lacks or strains."""
     if speed is None:

@@ -158,19 +158,31 @@ def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:
 
 
 def nearest_resonance(
-    frequency: np.ndarray, multiplier: complex, rates: tuple[Fraction, ...] = (Fraction(1),), orders: int = 8
+    frequency: np.ndarray,
+    multiplier: complex,
+    rates: tuple[Fraction, ...] = (Fraction(1),),
+    half_turns: Fraction = Fraction(1),
+    farthest: float = 0.1,
+    orders: int = 4,
 ) -> Resonance | None:
-    """The resonance that a critical multiplier names, or None where no mode is elastic.
+    """The resonance that a critical multiplier names, or None where none is near.
 
-    ``frequency`` are natural frequencies over the input speed, so that speed 1 is where the line runs. A real
-    positive multiplier is harmonic, a real negative one subharmonic, a complex one of sum type; among those
-    the nearest in speed is taken, low orders first where two are equally near.
+    ``frequency`` are natural frequencies over the input speed, so that speed 1 is where the line runs;
+    ``half_turns`` is the period of the multiplier in half turns of the input. A mode locked to m times a joint's
+    excitation 2RΩ turns by m R π in every half turn, so over the period a real multiplier must have the sign
+    of cos(m R π half_turns); a complex one belongs to a sum. Among those that fit and lie
+    within a relative distance ``farthest`` in speed, the nearest.
     """
-    if abs(multiplier.imag) > 1e-7 * abs(multiplier):
-        kinds: tuple[str, ...] = ("sum",) if np.count_nonzero(frequency) > 1 else ("harmonic", "subharmonic")
-    else:
-        kinds = ("harmonic",) if multiplier.real > 0 else ("subharmonic",)
-    candidates = [r for rate in rates for r in _at_rate(frequency, orders, rate) if r.kind in kinds]
-    if not candidates:
-        return None
-    return min(candidates, key=lambda r: (round(abs(np.log(r.speed)), 9), r.order))
+    real = abs(multiplier.imag) <= 1e-7 * abs(multiplier)
+    candidates = []
+    for rate in rates:
+        for r in _at_rate(frequency, orders, rate):
+            if r.kind in ("harmonic", "subharmonic"):
+                m = 2 * r.order if r.kind == "harmonic" else 2 * r.order - 1
+                sign = np.cos(np.pi * float(m * rate * half_turns))
+                fits = real and sign * multiplier.real > 0.99 * abs(multiplier.real)
+            else:
+                fits = r.kind == "sum" and (not real or half_turns != 1)
+            if fits and abs(np.log(r.speed)) <= farthest:
+                candidates.append(r)
+    return min(candidates, key=lambda r: (round(abs(np.log(r.speed)), 9), r.order)) if candidates else None

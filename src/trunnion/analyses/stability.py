@@ -21,6 +21,7 @@ from trunnion.analyses.resonance_speeds import Resonance, nearest_resonance
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system
+from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.dense_monodromy import Propagation, propagate
 from trunnion.numerics.spectrum import multipliers, spectral_radius
@@ -66,7 +67,7 @@ class Stability:
     def exponents(self) -> NDArray[np.complex128]:
         """Characteristic exponents ln σ / period, in 1/s (imaginary part modulo the excitation)."""
         with np.errstate(divide="ignore"):
-            return np.log(self.multipliers) * self.speed / self.period
+            return np.asarray(np.log(self.multipliers) * (self.speed / self.period), dtype=complex)
 
     @property
     def growth_rate(self) -> float:
@@ -163,9 +164,9 @@ def stability(
             raise InputError(
                 "belongs to a driveline; this system carries its own rate", key="speed", value=speed
             )
-        rates, frequency = (Fraction(1),), np.array(line.frequencies) * line.period / np.pi
+        scaled = np.array(line.frequencies) * line.period / np.pi
         run = _propagate(line, tolerance)
-        return _judge(line, run, rates, frequency, None, rigid_body=False)
+        return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, rigid_body=False)
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
@@ -175,7 +176,8 @@ def stability(
     rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
     response = linear_response(assembly, coefficients, run)
     frequency = np.array(system.frequencies)
-    return _judge(system, run, rates, frequency, response, rigid_body=topo.free)
+    half_turns = 2 * require_period(assembly.line, topo)
+    return _judge(system, run, rates, half_turns, frequency, response, rigid_body=topo.free)
 
 
 def operating_speed(line: Driveline, speed: float | None) -> float:
@@ -184,12 +186,17 @@ def operating_speed(line: Driveline, speed: float | None) -> float:
         speed = line.operation.speed if line.operation else None
     if speed is None:
         raise InputError(
-            "is not given", element="operation", key="speed", remedy='write speed = "1500 rpm", or pass a speed'
+            "is not given",
+            element="operation",
+            key="speed",
+            remedy='write speed = "1500 rpm", or pass a speed',
         )
     if isinstance(speed, bool) or not isinstance(speed, int | float | np.number):
         raise InputError("must be a number in rad/s", key="speed", value=speed, remedy="write tn.rpm(1500)")
     if not (np.isfinite(speed) and speed > 0):
-        raise InputError("must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say")
+        raise InputError(
+            "must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say"
+        )
     return float(speed)
 
 
@@ -205,6 +212,7 @@ def _judge(
     system: PeriodicLinearSystem,
     run: Propagation,
     rates: tuple[Fraction, ...],
+    half_turns: Fraction,
     frequency: Array,
     response: LinearResponse | None,
     *,
@@ -219,10 +227,16 @@ def _judge(
     if rigid_body:
         kept = np.sort(np.argsort(np.abs(values - 1))[2:])
     # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
-    radius, error = spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
+    radius, error = (
+        spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
+    )
     undamped = abs(run.damping_trace) < 1e-13 * system.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
-    named = nearest_resonance(frequency, complex(values[kept[0]]), rates) if len(kept) else None
+    named = None
+    if len(kept):
+        # Tongues are wide at large angles: what is unstable is named from further away.
+        farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
+        named = nearest_resonance(frequency, complex(values[kept[0]]), rates, half_turns, farthest)
     if named is not None:
         named = Resonance(named.speed * system.rate, named.kind, named.modes, named.order, named.rate)
     sign, log_det = np.linalg.slogdet(matrix)
@@ -260,10 +274,13 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
         )
     elif result.verdict is Verdict.MARGINAL:
         yield Finding(
-            Gravity.NOTE, f"Without damping the line is marginal at {at}: disturbances neither grow nor die out."
+            Gravity.NOTE,
+            f"Without damping the line is marginal at {at}: disturbances neither grow nor die out.",
         )
     else:
-        yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
+        yield Finding(
+            Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s."
+        )
     response = result.response
     if response is not None and not response.linear:
         worst = int(response.joint_rotation.argmax())

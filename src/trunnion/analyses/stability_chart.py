@@ -71,8 +71,10 @@ def stability_chart(
     InputError : see ``axes.axis``; both axes the same; no speed.
     KeyboardInterrupt : passed on; nothing is kept.
     """
-    task = _own_task(line, x, y) if isinstance(line, PeriodicLinearFamily) else _line_task(
-        line, x, y, speed, statically_twisted
+    task = (
+        _own_task(line, x, y)
+        if isinstance(line, PeriodicLinearFamily)
+        else _line_task(line, x, y, speed, statically_twisted)
     )
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
@@ -164,7 +166,9 @@ def _patched(
         return PatchedFunction((), (box,))
 
     sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads)
-    return build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
+    return build(
+        sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell
+    )
 
 
 def _fill(
@@ -179,7 +183,10 @@ def _fill(
 
     def put(where: Any, values: Array, bounds: Array) -> None:
         found = judge(values, bounds, family.size, family.rigid_body)
-        radius[where], error[where] = found.radius.reshape(radius[where].shape), found.error.reshape(radius[where].shape)
+        radius[where], error[where] = (
+            found.radius.reshape(radius[where].shape),
+            found.error.reshape(radius[where].shape),
+        )
         critical[where] = found.critical.reshape(radius[where].shape)
         verdict[where] = found.verdict.reshape(radius[where].shape)
 
@@ -227,9 +234,13 @@ def _pointwise(
         u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
         patch = function.find(u, v)
         if patch is not None:
-            values, bounds = (part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid))
+            values, bounds = (
+                part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid)
+            )
         else:
-            values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
+            values, bounds = (
+                part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1)
+            )
         found = judge(values, bounds, family.size, family.rigid_body)
         return ChartPoint(
             x=x,
@@ -254,7 +265,9 @@ def _resampler(
     return resample
 
 
-def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int) -> StabilityChart:
+def _self_checked(
+    chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int
+) -> StabilityChart:
     """Compare random pixels with direct integration; enlarge the error estimates if one falls short."""
     rng = np.random.default_rng(chart.verdict.size)
     rows, columns = rng.integers(0, len(chart.y), SPOTS), rng.integers(0, len(chart.x), SPOTS)
@@ -269,7 +282,10 @@ def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, 
     return replace(
         chart.with_errors_times(2 * ratio),
         spot_check=check,
-        remarks=(*chart.remarks, f"a spot check was off by {ratio:.1f} times its estimate; all were enlarged"),
+        remarks=(
+            *chart.remarks,
+            f"a spot check was off by {ratio:.1f} times its estimate; all were enlarged",
+        ),
     )
 
 

@@ -181,7 +181,8 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
             each[i] = shaft_stiffness(assembly, table, i)
         k = [each[i] for i in compliance.shafts]
         c = [
-            _shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts
+            _shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases)
+            for i in compliance.shafts
         ]
         stiffness[:, e], damping[:, e] = _series(k, c)
     load = np.zeros((cases, stations))
@@ -190,15 +191,17 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
     torque = static_torque(topo, load) if twisted else np.zeros_like(stiffness)
     shift = np.zeros((cases, stations))
     compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}
-    for s, station in enumerate(topo.stations):
-        if station.link is Link.SHAFT:
-            i = station.element
+    for s, here in enumerate(topo.stations):
+        if here.link is Link.SHAFT:
+            i = here.element
             shift[:, s] = table[:, column(i, "fork_offset")] + torque[:, compliance_of[i]] / each[i]
-        elif station.link is Link.HOOKE:
-            shift[:, s] = -table[:, column(station.element, "plane")]
-            shift[:, s] -= _planes_in_front(assembly, table, station.element)
+        elif here.link is Link.HOOKE:
+            shift[:, s] = -table[:, column(here.element, "plane")]
+            shift[:, s] -= _planes_in_front(assembly, table, here.element)
     joints = [topo.stations[j].element for j in topo.joints]
-    angle = np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
+    angle = (
+        np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
+    )
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,

@@ -177,4 +177,5 @@ def wide_module_source() -> str:
 def _nodes() -> str:
     # The embedded estimate is of order 5; the order-8 solution that is kept was never further off than a
     # twentieth of it on random chains (see tests/laws), so a tenth of it is reported and controlled.
-    return f"LOCAL_TO_TRUE = 0.1\nROUNDING = 2e-15\nC = np.array({[float(c) for c in C]!r})\nB = np.array({[float(b) for b in B]!r})\n"
+    nodes, weights = [float(c) for c in C], [float(b) for b in B]
+    return f"LOCAL_TO_TRUE = 0.1\nROUNDING = 2e-15\nC = np.array({nodes!r})\nB = np.array({weights!r})\n"

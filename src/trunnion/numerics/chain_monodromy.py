@@ -71,7 +71,13 @@ def chain_propagator(
 
 
 def complete(
-    program: ChainProgram, lanes: ChainLanes, window: Window, phi: Array, error: Array, trace: Array, threads: int = 1
+    program: ChainProgram,
+    lanes: ChainLanes,
+    window: Window,
+    phi: Array,
+    error: Array,
+    trace: Array,
+    threads: int = 1,
 ) -> tuple[Array, Array, Array]:
     """Monodromy matrices from propagators over the window's length: over half the period where that suffices."""
     if not window.half:

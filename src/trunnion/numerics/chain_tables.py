@@ -117,7 +117,9 @@ def gather(program, lanes, first):  # type: ignore[no-untyped-def]
         nu = lanes.frequency[at]
         for j in range(joints):
             o = j * PER_JOINT + lane
-            same = lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
+            same = (
+                lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
+            )
             alike = alike and same
             joint[o + COSINE * LANES] = lanes.cosine[j, at]
             joint[o + PHASE * LANES] = lanes.phase[j, at]
@@ -153,7 +155,9 @@ def empty_table(program, block):  # type: ignore[no-untyped-def]
             for lane in range(LANES):
                 table[o + OVER_MASS * LANES + lane] = 1.0
                 if program.near_source[i] < 0:
-                    table[o + NEAR * LANES + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
+                    table[o + NEAR * LANES + lane] = block.unknown[
+                        i * PER_UNKNOWN + NEAR_SCALE * LANES + lane
+                    ]
     return table
 
 
@@ -226,7 +230,11 @@ def _plain_joint_on_drive(own, used, begin, step, nodes, rate, factor):  # type:
         c0, s0 = math.cos(angle), math.sin(angle)
         o = MOVING * LANES + m * PER_STAGE
         for lane in range(used):
-            turn_c, turn_s, cb = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane], own[COSINE * LANES + lane]
+            turn_c, turn_s, cb = (
+                own[TURN_COS * LANES + lane],
+                own[TURN_SIN * LANES + lane],
+                own[COSINE * LANES + lane],
+            )
             c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
             cb2 = cb * cb
             over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
@@ -244,7 +252,11 @@ def _plain_joint_on_joint(own, before, used, count, rate, factor):  # type: igno
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
         for lane in range(used):
-            turn_c, turn_s, cb = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane], own[COSINE * LANES + lane]
+            turn_c, turn_s, cb = (
+                own[TURN_COS * LANES + lane],
+                own[TURN_SIN * LANES + lane],
+                own[COSINE * LANES + lane],
+            )
             c0, s0 = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
             c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
             cb2 = cb * cb
@@ -303,7 +315,9 @@ def _unwrap(own, before, begin, step, nodes, driven, rate):  # type: ignore[no-u
             chi = rate * angle + own[PHASE * LANES + lane]
             cosine = own[COSINE * LANES + lane]
             t = (1.0 - cosine) / (1.0 + cosine)
-            own[o + ANGLE * LANES + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
+            own[o + ANGLE * LANES + lane] = chi + math.atan2(
+                t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi)
+            )
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -374,7 +388,9 @@ def _shaft_behind_joint(joint, shaft, alike, count, rows):  # type: ignore[no-un
                 rows[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1
         else:
             for lane in range(LANES):
-                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
+                rows[t + NEAR * LANES + lane] = (
+                    shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
+                )
                 slope = shaft[SLOPE_SCALE * LANES + lane] * joint[o + RATIO1 * LANES + lane]
                 rows[t + NEAR_SLOPE * LANES + lane] = slope
 

@@ -54,15 +54,15 @@ def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[n
 def radii(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
     """Spectral radius, its error and the critical multiplier for columns of coefficients.
 
-    values (m, count) with m = 2, 4 or 6; bounds (m, count), or (m, 1) where all columns share them; radius,
-    error (count,) and critical (count,) complex are filled. Columns that are not finite give NaN.
+    values, bounds (m, count) with m = 2, 4 or 6; radius, error (count,) and critical (count,) complex are filled.
+    Columns that are not finite give NaN.
     """
     m, count = values.shape
     roots = np.zeros(m, dtype=np.complex128)
     e, size = np.empty(m), np.empty(m)
     warm = False
     for p in range(count):
-        b = p if bounds.shape[1] > 1 else 0
+        b = p
         total = 0.0
         for k in range(m):
             e[k] = values[k, p]
@@ -135,9 +135,12 @@ def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
         return 2 * moved ** (1 / m)
     alone = moved / rest
     if alone > second * second * second:
-        return 2 * alone ** (1 / 3)
-    pair = alone / second
-    return 2 * (math.sqrt(pair) if pair > first * first else pair / first)
+        bound = alone ** (1 / 3)
+    else:
+        pair = alone / second
+        bound = math.sqrt(pair) if pair > first * first else pair / first
+    # However close the roots, the product of all m distances to the true ones is at most E.
+    return 2 * (min(bound, moved ** (1 / m)) if bound > 1e-3 else bound)
 
 
 @njit(cache=True, nogil=True)

@@ -39,18 +39,30 @@ def step_source(parent: tuple[int, ...], extra: bool) -> str:
         "def step_with_error(table, unknown, h, u, un, squares):",
         "    squares[:] = 0.0",
     ]
-    out += [f"    for c in range({wide}):", f"        o = c * {wide} * LANES", "        for l in range(LANES):"]
+    out += [
+        f"    for c in range({wide}):",
+        f"        o = c * {wide} * LANES",
+        "        for l in range(LANES):",
+    ]
     body = [f"nu = h * unknown[{FREQUENCY * LANES} + l]"]
     for i in range(n):
         own = i * PER_UNKNOWN
-        body += [f"k{i} = unknown[{own + STIFFNESS * LANES} + l]", f"d{i} = unknown[{own + DAMPING * LANES} + l]"]
+        body += [
+            f"k{i} = unknown[{own + STIFFNESS * LANES} + l]",
+            f"d{i} = unknown[{own + DAMPING * LANES} + l]",
+        ]
     body += [f"u{i} = u[o + {i} * LANES + l]" for i in range(wide)]
     for m in range(STAGES):
         body += _stage(m, parent, extra)
     for i in range(wide):
         body += [f"z = u{i}{_sum(B, i)}", f"un[o + {i} * LANES + l] = z", "squares[2 * LANES + l] += z * z"]
         # A sum of squares vectorises; a running maximum takes the compiler minutes.
-        body += [f"z = {_sum(E5, i)[3:]}", "squares[l] += z * z", f"z = {_sum(E3, i)[3:]}", "squares[LANES + l] += z * z"]
+        body += [
+            f"z = {_sum(E5, i)[3:]}",
+            "squares[l] += z * z",
+            f"z = {_sum(E3, i)[3:]}",
+            "squares[LANES + l] += z * z",
+        ]
     return "\n".join(out + ["            " + line for line in body])
 
 

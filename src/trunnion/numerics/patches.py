@@ -75,10 +75,12 @@ class Patch:
         # (q, i, j) · (j, u), then (v, i) · (q, i, u)
         return np.asarray(up.T @ (self.coefficients @ across))
 
-
     def error_grid(self, u: Array, v: Array) -> Array:
         """Error bounds on the same grid; shape (quantity, v, u)."""
-        rows, columns = _block(_to_unit(v, self.box.v0, self.box.v1)), _block(_to_unit(u, self.box.u0, self.box.u1))
+        rows, columns = (
+            _block(_to_unit(v, self.box.v0, self.box.v1)),
+            _block(_to_unit(u, self.box.u0, self.box.u1)),
+        )
         return self.error[:, rows[:, None], columns]
 
 
@@ -109,8 +111,8 @@ def build(
 ) -> PatchedFunction:
     """Patch ``boxes`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
 
-    Each rectangle is sampled at ``nodes`` × ``nodes`` points. Rectangles with at most ``direct_below`` of the pixels ``u_pixels`` × ``v_pixels`` are left to direct
-    evaluation; ``tick`` is called with the share of the box that is settled.
+    Each rectangle is sampled at ``nodes`` × ``nodes`` points. Rectangles with at most ``direct_below`` of the
+    pixels ``u_pixels`` × ``v_pixels`` are left to direct evaluation; ``tick`` is called with the share of the box that is settled.
     """
     patches: list[Patch] = []
     direct: list[Box] = []
@@ -158,7 +160,9 @@ def _sample(
             yield box, depth, values, errors
 
 
-def _transform(values: Array, errors: Array, nodes: int, tolerance: float) -> tuple[Array, float, float, Array]:
+def _transform(
+    values: Array, errors: Array, nodes: int, tolerance: float
+) -> tuple[Array, float, float, Array]:
     """Chebyshev coefficients, the tails along u and v over what they may be, and the error of each quantity.
 
     A tail may be ``tolerance`` times the quantity's size, or the error of its samples where that is larger:

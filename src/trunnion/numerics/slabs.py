@@ -59,9 +59,7 @@ def slab_edges(frequency: float, tau: Array, weight: Array) -> Array:
     return np.interp(np.linspace(0.0, passed[-1], count + 1), passed, tau)
 
 
-def build_slabs(
-    propagate: Propagate, box: Box, edges: Array, size: int, tolerance: float
-) -> Slabs | None:
+def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, tolerance: float) -> Slabs | None:
     """Patch the slabs between ``edges`` over ``box``, together to ``tolerance``; None if one resists."""
     nowhere = np.zeros(0)
     functions = []
@@ -78,15 +76,15 @@ def build_slabs(
             cuts = np.cumsum([a * b for a, b in shapes])[:-1]
             return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 
-        functions.append(build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
+        functions.append(
+            build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1)
+        )
         if functions[-1].stubborn:
             return None
     return Slabs(tuple(functions), size)
 
 
-def on_grids(
-    slabs: Slabs, grids: list[Grid], threads: int
-) -> list[tuple[Array, Array, Array]]:
+def on_grids(slabs: Slabs, grids: list[Grid], threads: int) -> list[tuple[Array, Array, Array]]:
     """``Slabs.propagators`` of several grids in parallel."""
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(slabs.propagators, grids))

@@ -26,7 +26,7 @@ def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:
     is added. NaN matrices give NaN.
     """
     matrix = np.asarray(matrix, dtype=float)
-    failed = ~np.isfinite(matrix).all(axis=(-2, -1))
+    failed = np.asarray(~np.isfinite(matrix).all(axis=(-2, -1)))
     if failed.any():
         matrix = np.where(failed[..., None, None], np.eye(matrix.shape[-1]), matrix)
     values, vectors = np.linalg.eig(matrix)

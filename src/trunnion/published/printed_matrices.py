@@ -47,7 +47,7 @@ def printed_system(
     loss, square = 2 * zeta / speed, speed**2
 
     def e(tau: Array) -> Array:
-        eta, eta1, _ = _joint(tau, angle)
+        eta, eta1, _ = joint_ratio(tau, angle)
         slopes = 2 if version == "derived" else 1
         return _square(
             [loss + 0 * tau, -alpha * loss * eta],
@@ -55,7 +55,7 @@ def printed_system(
         )
 
     def p(tau: Array) -> Array:
-        eta, _, eta2 = _joint(tau, angle)
+        eta, _, eta2 = joint_ratio(tau, angle)
         coupling = {"printed": eta / square, "sign": -eta / square}.get(version, eta2 - eta / square)
         return _square(
             [1 / square + 0 * tau, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)]
@@ -64,7 +64,7 @@ def printed_system(
     return from_matrices(np.eye(2), e, p, period=np.pi, names=("twist of shaft 1", "twist of shaft 2"))
 
 
-def _joint(tau: Array, beta: float) -> tuple[Array, Array, Array]:
+def joint_ratio(tau: Array, beta: float) -> tuple[Array, Array, Array]:
     """η, η′, η″ with the fork square to the joint plane at τ = 0."""
     s2 = np.sin(beta) ** 2
     d = 1 - s2 * np.sin(tau) ** 2

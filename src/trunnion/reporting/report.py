@@ -121,9 +121,15 @@ def _verdict(seen: Overview) -> str:
 
 def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
     """The figures of a report by name."""
-    from trunnion.plots import driveline_sketch, irregularity, mode_shapes, speed_frequency, stability_chart
+    from trunnion.plots import (
+        driveline_sketch,
+        irregularity,
+        mode_shapes,
+        speed_frequency,
+        stability_chart,
+        torque_over_speed,
+    )
     from trunnion.plots import stable_limit as limit_plot
-    from trunnion.plots import torque_over_speed
 
     seen, unit = contents.overview, contents.overview.unit
     line, operating = seen.line, seen.operation

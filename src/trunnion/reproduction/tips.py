@@ -17,6 +17,8 @@ from trunnion.analyses.resonance_speeds import Resonance
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
 
+Array = NDArray[np.float64]
+
 WINDOW = 0.06
 """Half-width of the window, relative to the resonance speed."""
 POINTS = (401, 201)
@@ -50,17 +52,37 @@ def tip(chart: StabilityChart, resonance: Resonance, others: tuple[float, ...] =
         return nothing
     fine = chart.zoom((low, high, POINTS[0]), (float(chart.y.min()), top, POINTS[1]))
     inside = (fine.verdict == Verdict.UNSTABLE) & _of_kind(fine.critical_multiplier, resonance.kind)
-    rows = np.flatnonzero(inside.any(axis=1))
-    if not len(rows):
+    tongue = _nearest_tongue(inside, np.abs(fine.x - resonance.speed))
+    if tongue is None:
         return nothing
+    rows = np.flatnonzero(tongue.any(axis=1))
     first = rows[0]
-    column = int(np.argmax(np.where(inside[first], fine.spectral_radius[first], -np.inf)))
+    column = int(np.argmax(np.where(tongue[first], fine.spectral_radius[first], -np.inf)))
     middle = [
-        (float(fine.y[r]), float(fine.x[inside[r]].mean()))
+        (float(fine.y[r]), float(fine.x[tongue[r]].mean()))
         for r in rows
-        if fine.y[r] <= fine.y[first] + ABOVE and not inside[r, 0] and not inside[r, -1]
+        if fine.y[r] <= fine.y[first] + ABOVE and not tongue[r, 0] and not tongue[r, -1]
     ]
     return Tip(resonance, float(fine.x[column]), float(fine.y[first]), _intercept(middle))
+
+
+def _nearest_tongue(inside: NDArray[np.bool_], distance: Array) -> NDArray[np.bool_] | None:
+    """The connected region whose lowest point is nearest to the named speed.
+
+    Regions that come in through the side of the window are tongues of other resonances.
+    """
+    from scipy.ndimage import label
+
+    regions, count = label(inside, structure=np.ones((3, 3)))
+    best, nearest = None, np.inf
+    for number in range(1, count + 1):
+        region = regions == number
+        row = region[np.argmax(region.any(axis=1))]
+        if row[0] or row[-1]:
+            continue
+        if (there := float(distance[row].min())) < nearest:
+            best, nearest = region, there
+    return best
 
 
 def _window(speed: float, others: tuple[float, ...], least: float, most: float) -> tuple[float, float]:

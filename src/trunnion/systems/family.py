@@ -50,7 +50,8 @@ class PeriodicLinearFamily:
     def matrices(self, tau: Array, values: Mapping[str, Array]) -> tuple[Array, Array, Array]:
         """M, C, K of shape (case, time, n, n) at times (time,) for parameter values (case,)."""
         cases = max((np.size(v) for v in values.values()), default=1)
-        full = {k: np.broadcast_to(v, (cases,))[:, None] for k, v in {**self.parameters, **values}.items()}
+        given: dict[str, Array] = {k: np.asarray(v, dtype=float) for k, v in self.parameters.items()} | dict(values)
+        full = {k: np.broadcast_to(v, (cases,))[:, None] for k, v in given.items()}
         parts = self.coefficients(np.asarray(tau)[None, :], **full)
         shape = (cases, np.size(tau), self.size, self.size)
         try:

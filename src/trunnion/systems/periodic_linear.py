@@ -94,7 +94,10 @@ def from_matrices(
     def coefficients(tau: Array) -> Matrices:
         square = (size, size)
         return Matrices(
-            at(mass, tau, square), at(damping, tau, square), at(stiffness, tau, square), at(forcing, tau, (size,))
+            at(mass, tau, square),
+            at(damping, tau, square),
+            at(stiffness, tau, square),
+            at(forcing, tau, (size,)),
         )
 
     mean = coefficients(period * (np.arange(64) + 0.5) / 64)
