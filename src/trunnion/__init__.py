@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from trunnion._version import __version__
 
 if TYPE_CHECKING:
+    from trunnion.analyses.bending import bending_speeds
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -24,8 +25,10 @@ if TYPE_CHECKING:
     )
     from trunnion.analyses.natural_frequencies import natural_frequencies
     from trunnion.analyses.resonance_speeds import resonance_speeds
+    from trunnion.analyses.speed_sweep import speed_sweep, sweep_speeds
     from trunnion.analyses.stability import stability
     from trunnion.analyses.stability_chart import load_chart, stability_chart
+    from trunnion.analyses.stable_limit import stable_limit
     from trunnion.driveline import (
         ConstantSpeed,
         Disk,
@@ -52,6 +55,8 @@ if TYPE_CHECKING:
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.plots.layout import sketch
     from trunnion.published import catalogue
+    from trunnion.reporting import report
+    from trunnion.reproduction import reproduce
     from trunnion.systems.family import PeriodicLinearFamily
     from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
@@ -90,6 +95,10 @@ _HOME = {
     "stability": "trunnion.analyses.stability",
     "stability_chart": "trunnion.analyses.stability_chart",
     "load_chart": "trunnion.analyses.stability_chart",
+    "stable_limit": "trunnion.analyses.stable_limit",
+    "speed_sweep": "trunnion.analyses.speed_sweep",
+    "sweep_speeds": "trunnion.analyses.speed_sweep",
+    "bending_speeds": "trunnion.analyses.bending",
     "kinetostatics": "trunnion.analyses.kinetostatics",
     "CrossFriction": "trunnion.analyses.kinetostatics",
     "check_limits": "trunnion.analyses.kinetostatics",
@@ -97,6 +106,9 @@ _HOME = {
     "assembly_sensitivity": "trunnion.analyses.kinetostatics",
     "PeriodicLinearSystem": "trunnion.systems.periodic_linear",
     "PeriodicLinearFamily": "trunnion.systems.family",
+    # hand on
+    "report": "trunnion.reporting",
+    "reproduce": "trunnion.reproduction",
     # errors
     "InputError": "trunnion.errors",
     "InputRemark": "trunnion.errors",

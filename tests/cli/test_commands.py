@@ -121,7 +121,7 @@ def test_analyze_prints_and_writes(run, here):
         assert part in result.stdout
     assert "rad/s" not in result.stdout.replace("rad/s^2", "")  # accelerations are in no unit of speed
     written = sorted(p.name for p in (here / "trunnion-out").iterdir())
-    assert written == ["line-stability-chart.nc", "line-stability-chart.png"]
+    assert written == ["line-report.html", "line-stability-chart.nc", "line-stability-chart.png"]
 
 
 def test_analyze_json_and_folder(run, here):
@@ -129,7 +129,7 @@ def test_analyze_json_and_folder(run, here):
     assert data["stability"]["speed"] == pytest.approx(1500)
     assert data["stability_chart"]["x"]["points"] == 12
     assert {f["gravity"] for f in data["findings"]} <= {"danger", "caution", "note"}
-    assert len(list((here / "deep" / "er").iterdir())) == len(data["written"]) == 2
+    assert len(list((here / "deep" / "er").iterdir())) == len(data["written"]) == 3
 
 
 def test_analyze_names_the_unstable_band_of_the_catalogue(run):

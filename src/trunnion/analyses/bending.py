@@ -57,9 +57,7 @@ def bending_speeds(line: Driveline | Assembly) -> tuple[BendingSpeed, ...]:
             continue
         assert shaft.length and shaft.shear_modulus and shaft.inner_diameter is not None
         modulus = shaft.young_modulus or YOUNG_OVER_SHEAR * shaft.shear_modulus
-        critical = tube_critical_speed(
-            shaft.outer_diameter, shaft.inner_diameter, shaft.length, modulus, shaft.density
-        )
+        critical = tube_critical_speed(shaft.outer_diameter, shaft.inner_diameter, shaft.length, modulus, shaft.density)
         at_input = critical / ratio.get(place, 1.0)
         found.append(BendingSpeed(name, critical, at_input, modulus, shaft.young_modulus is None))
     return tuple(found)

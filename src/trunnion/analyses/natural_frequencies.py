@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -72,6 +73,12 @@ class NaturalFrequencies:
             }
             for i, (w, z, v) in enumerate(zip(self.frequency, self.damping_ratio, self.shape.T, strict=True))
         ]
+
+    def plot(self, **options: Any) -> Figure:
+        """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
+        from trunnion.plots.mode_shapes import draw
+
+        return draw(self, **options)
 
     def __str__(self) -> str:
         lines = [f"{len(self.frequency)} natural frequencies of the aligned line (joint angles zero)"]

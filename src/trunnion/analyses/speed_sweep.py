@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FEWEST, MOST = 4, 12
+FEWEST, MOST = 6, 14
 """Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
-SMALL_ENOUGH = 1e-6
+SMALL_ENOUGH = 1e-9
 MOST_UNKNOWNS = 3000
 BATCH = 40
 """Speeds solved together: bounded memory, and steps of progress."""
@@ -104,7 +104,9 @@ class SpeedSweep:
             rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {at:.6g} rad/s")
         beyond = np.count_nonzero(~self.linear)
         if beyond:
-            rows.append(f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only")
+            rows.append(
+                f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only"
+            )
         return "\n".join(rows)
 
 
@@ -125,7 +127,9 @@ def speed_sweep(
     require_steady_base(assembly)
     speed = np.atleast_1d(np.asarray(speeds, dtype=float))
     if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
-        raise InputError("must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)")
+        raise InputError(
+            "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+        )
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
     harmonics = int(np.ceil(_harmonics(assembly) * float(half_turns)))

@@ -152,7 +152,9 @@ def stable_limit(
     """
     speed = np.asarray(speeds, dtype=float)
     if speed.ndim != 1 or len(speed) < 2 or not np.all(np.isfinite(speed)) or not np.all(speed > 0):
-        raise InputError("must be two or more positive numbers", key="speeds", remedy="tn.rpm(np.linspace(300, 3000, 200))")
+        raise InputError(
+            "must be two or more positive numbers", key="speeds", remedy="tn.rpm(np.linspace(300, 3000, 200))"
+        )
     across = ("speed", float(speed.min()), float(speed.max()), 2)
     chart = stability_chart(line, across, (parameter, low, high, scan + 1), tolerance=tolerance, progress=progress)
     return limit_of_chart(chart, speed)

@@ -15,6 +15,7 @@ from typer.core import TyperGroup
 from trunnion._version import __version__
 from trunnion.cli import describe, study
 from trunnion.cli.kinetostatics import kinetostatics
+from trunnion.cli.reproduce import reproduce
 from trunnion.errors import InputRemark, TrunnionError
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
@@ -111,6 +112,7 @@ app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)
 app.command("resonance-speeds")(study.resonance_speeds)
 app.command("kinetostatics")(kinetostatics)
+app.command("reproduce")(reproduce)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)
 app.command("schema")(describe.schema)

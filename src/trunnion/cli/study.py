@@ -29,7 +29,7 @@ DEFAULT_FOLDER = Path("trunnion-out")
 def analyze(
     file: File,
     folder: Annotated[
-        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder for chart and data.")
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder for report, chart and data.")
     ] = DEFAULT_FOLDER,
     speed: Speed = None,
     unit: Unit = None,
@@ -37,20 +37,23 @@ def analyze(
     points: Points = "200x150",
     as_json: Json = False,
 ) -> None:
-    """Frequencies, resonance speeds, stability, a chart, and the findings in plain sentences."""
+    """Frequencies, resonance speeds, stability, a chart, the findings, and a report as one HTML file."""
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     size, at = read_points(points), read_speed(speed, unit)
     from trunnion.analyses.overview import overview
     from trunnion.cli.files import chart_files, check_folder
     from trunnion.cli.report import overview_json, print_overview, print_written
+    from trunnion.reporting import report
 
     check_folder(folder)
     with output.progress("stability chart") as advance:
         seen = overview(line, speed=at, unit=unit, points=size, progress=advance)
-    written = (
-        [] if seen.chart is None else chart_files(seen.chart, folder, file_stem(file), unit, seen.operation)
-    )
+    page = report(seen, source=file)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = [page.save(folder / f"{file_stem(file)}-report.html")]
+    if seen.chart is not None:
+        written += chart_files(seen.chart, folder, file_stem(file), unit, seen.operation)
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return

@@ -112,7 +112,7 @@ def build(
     """Patch ``boxes`` until every quantity is known to ``tolerance`` (relative to its size on the patch).
 
     Each rectangle is sampled at ``nodes`` × ``nodes`` points. Rectangles with at most ``direct_below`` of the
-    pixels ``u_pixels`` × ``v_pixels`` are left to direct evaluation; ``tick`` is called with the share of the box that is settled.
+    pixels ``u_pixels`` × ``v_pixels`` are left to direct evaluation; ``tick`` is called with the share settled.
     """
     patches: list[Patch] = []
     direct: list[Box] = []

@@ -58,7 +58,7 @@ def draw(line: Driveline) -> Figure:
     letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
     names = max(len(q.name) for q in places) + 3
     right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
-    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.9])
+    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
     scale = WIDTH / max(high[0] - low[0], 9.0)
     figure = Figure(figsize=(WIDTH, scale * (high[1] - low[1])))
@@ -210,7 +210,7 @@ def _name(axes: Axes, place: _Place, number: int, size: float, floor: float) -> 
         middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
         fontsize=size, color=INK, ha="left", va="center",
     )  # fmt: skip
-    below = 0.95 if isinstance(place.element, Disk) else 0.55
+    below = 0.95 if isinstance(place.element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
     if middle[1] - below > floor + 0.1:
         axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)
 
@@ -236,10 +236,9 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
     """What the geometry of the line needs: angles, planes, fork offsets, ratios; above the element."""
     element = place.element
     text = ""
+    angle, plane = (float(getattr(element, key, 0.0)) for key in ("angle", "plane"))
     if hasattr(element, "angle"):
-        text = f"β {element.angle / DEGREE:.4g}°"
-        if element.plane:
-            text += f"\nplane {element.plane / DEGREE:.4g}°"
+        text = f"β {angle / DEGREE:.4g}°" + (f"\nplane {plane / DEGREE:.4g}°" if plane else "")
     elif isinstance(element, Shaft) and (element.fork_offset or between):
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
     elif isinstance(element, Ratio):
@@ -251,8 +250,8 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
     middle = (place.start + place.end) / 2
     if isinstance(element, Ratio):  # beside the upper wheel
         at = place.end + np.array([0.05, 0.75])
-        axes.text(*at, text, fontsize=size, color=INK, ha="left", va="bottom")
+        axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:
-        height = 1.0 if isinstance(element, Disk) else 0.55
+        height = 1.0 if isinstance(element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
         colour = ACCENT if hasattr(element, "angle") else INK
-        axes.text(*(middle + np.array([0, height])), text, fontsize=size, color=colour, ha="center", va="bottom")
+        axes.text(middle[0], middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom")

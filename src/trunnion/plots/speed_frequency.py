@@ -92,7 +92,7 @@ def draw(
     for rate in rates:
         for order in ORDERS:
             _excitation(axes, rate, order, high, top, (x, y), rate in excited)
-    for i, w in enumerate(modes.frequency, start=1):
+    for w in modes.frequency:
         if 0 < w < top:
             axes.axhline(w * y, color=INK, lw=1.1)
     _name_modes(axes, modes.frequency, in_sight, top, y, frequency_unit)
@@ -112,7 +112,9 @@ def draw(
             0.012, 0.98, f"{which} above the diagram",
             transform=axes.transAxes, fontsize=SMALL, color=FAINT, va="top",
         )  # fmt: skip
-    _key(axes, bool(operating and operating.speed), any(r not in excited for r in rates), bool(len(in_sight)), bool(met))
+    _key(
+        axes, bool(operating and operating.speed), any(r not in excited for r in rates), bool(len(in_sight)), bool(met)
+    )
     return axes
 
 

@@ -81,6 +81,4 @@ def _key(axes: Axes, all_stable: bool, operating: bool) -> None:
         handles.append(Patch(facecolor="#b9a7ad", edgecolor=INK, label="at and above the first instability"))
     if operating:
         handles.append(Line2D([], [], color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"))
-    axes.figure.figure.legend(
-        handles=handles, loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False
-    )
+    axes.figure.figure.legend(handles=handles, loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)

@@ -59,8 +59,9 @@ def draw(
     axes.set_ylabel("torque amplitude [N·m]", fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
+    columns = 3 if np.all(sweep.linear) else 2  # the words for the hatching are long
     axes.figure.figure.legend(
-        handles=handles, loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False,
+        handles=handles, loc="outside lower left", ncols=columns, fontsize=SMALL, frameon=False,
         columnspacing=1.5, handlelength=2.6,
     )  # fmt: skip
     return axes

@@ -57,9 +57,7 @@ def printed_system(
     def p(tau: Array) -> Array:
         eta, _, eta2 = joint_ratio(tau, angle)
         coupling = {"printed": eta / square, "sign": -eta / square}.get(version, eta2 - eta / square)
-        return _square(
-            [1 / square + 0 * tau, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)]
-        )
+        return _square([1 / square + 0 * tau, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)])
 
     return from_matrices(np.eye(2), e, p, period=np.pi, names=("twist of shaft 1", "twist of shaft 2"))
 

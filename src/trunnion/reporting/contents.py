@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.analyses.bending import BendingSpeed, bending_findings, bending_speeds
 from trunnion.analyses.kinetostatics import kinetostatics
 from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.analyses.overview import Overview
+from trunnion.analyses.overview import Overview, hooke_joints
 from trunnion.analyses.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.analyses.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.analyses.stable_limit import LimitKind, StableLimit, limit_of_chart
@@ -50,7 +50,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
             left_out.append(f"{question}: {error}")
             return None
 
-    jointed = seen.chart is not None
+    jointed = bool(hooke_joints(seen.line))
     turn = sweep = None
     if jointed:
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line, speed=1.0))
@@ -73,7 +73,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
 def _speeds(seen: Overview) -> tuple[float, float]:
     """The range, clipped as the chart's axis is."""
     low, high = seen.speed_range
-    return (max(low, float(seen.chart.x[0])), high) if seen.chart else (low, high)
+    return max(low, float(seen.chart.x[0]) if seen.chart else high / 200), high
 
 
 def _limit(seen: Overview, named: ResonanceSpeeds) -> StableLimit | None:
@@ -117,11 +117,11 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
     if not np.any(sweep.linear):
         return []
     i, j = np.unravel_index(int(np.nanargmax(trusted)), trusted.shape)
-    at = _rounded(float(sweep.speed[i]), seen.unit)
+    at, most = _rounded(float(sweep.speed[i]), seen.unit), float(f"{trusted[i, j]:.3g}")
     found = [
         Finding(
             Gravity.NOTE,
-            f"The joints force a torque amplitude of up to {trusted[i, j]:.3g} N·m, in {sweep.shafts[j]} at {at}.",
+            f"The joints force a torque amplitude of up to {most:.10g} N·m, in {sweep.shafts[j]} at {at}.",
         )
     ]
     beyond = ~sweep.linear
@@ -146,6 +146,6 @@ def _irregularity_findings(turn: Kinetostatics) -> list[Finding]:
         Finding(
             Gravity.CAUTION,
             f"The output runs unevenly by {100 * turn.irregularity:.3g} % of its speed, as behind one joint of "
-            f"{angle:.3g}°; practice allows {100 * IRREGULAR:.2g} % (3°).",
+            f"{angle:.3g}°; practice for propeller shafts allows {100 * IRREGULAR:.2g} % (3°).",
         )
     ]

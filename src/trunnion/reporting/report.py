@@ -40,7 +40,8 @@ class Report:
 
     def __repr__(self) -> str:
         size = len(self.html.encode()) / 1e6
-        return f"report on {self.contents.overview.line.name or 'a driveline'}, {size:.1f} MB of HTML; .save(path) writes it"
+        name = self.contents.overview.line.name or "a driveline"
+        return f"report on {name}, {size:.1f} MB of HTML; .save(path) writes it"
 
 
 def report(
@@ -70,7 +71,11 @@ def report(
     """
     if unit is not None:
         speed_factor(unit)
-    seen = line if isinstance(line, Overview) else overview(line, speed=speed, unit=unit, points=points, progress=progress)
+    seen = (
+        line
+        if isinstance(line, Overview)
+        else overview(line, speed=speed, unit=unit, points=points, progress=progress)
+    )
     contents = gather(seen)
     path = None if source is None else Path(source)
     return Report(_page(contents, path), contents)
@@ -136,7 +141,11 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
     first = line.elements[0]
     drive = line.names[0] if isinstance(first, ConstantSpeed) else None
     diagram = speed_frequency.draw(
-        contents.assembly, speeds=seen.speed_range, unit=unit, frequency_unit=frequency_unit, operating=operating
+        contents.assembly,
+        speeds=seen.speed_range,
+        unit=unit,
+        frequency_unit=frequency_unit,
+        operating=operating,
     )
     shown = {
         "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
@@ -146,7 +155,9 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
         "speed_frequency": picture(diagram.figure.figure, "Speed–frequency diagram"),
     }
     if contents.turn is not None:
-        shown["irregularity"] = picture(irregularity.draw(contents.turn).figure.figure, "Speed of the shafts over a turn")
+        shown["irregularity"] = picture(
+            irregularity.draw(contents.turn).figure.figure, "Speed of the shafts over a turn"
+        )
     if contents.sweep is not None:
         drawn = torque_over_speed.draw(contents.sweep, unit=unit, operating=operating)
         shown["torque"] = picture(drawn.figure.figure, "Torque amplitude of every shaft over speed")

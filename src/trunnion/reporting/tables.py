@@ -80,11 +80,10 @@ def _signs(text: str) -> str:
 
 def modes(contents: Contents, unit: str) -> Table:
     """Natural frequencies and damping ratios."""
-    found = contents.overview.natural_frequencies
-    rows = [
-        (str(row["mode"]), four(float(str(row[f"frequency [{unit}]"]))), four(float(str(row["damping ratio"]))), str(row["moves most"]))
-        for row in found.table(unit)
-    ]  # fmt: skip
+    rows = []
+    for row in contents.overview.natural_frequencies.table(unit):
+        frequency, damping = (four(float(str(row[key]))) for key in (f"frequency [{unit}]", "damping ratio"))
+        rows.append((str(row["mode"]), frequency, damping, str(row["moves most"])))
     return Table(("mode", f"frequency [{unit}]", "damping ratio", "moves most"), tuple(rows))
 
 
@@ -98,7 +97,9 @@ def joints(line: Driveline) -> Table:
         alone = 100 * np.tan(beta) * np.sin(beta) if element.kind == "HookeJoint" else float("nan")
         lead = np.rad2deg(np.arcsin(np.tan(beta / 2) ** 2)) if element.kind == "HookeJoint" else float("nan")
         rows.append((name, element.kind, four(beta / DEGREE), four(alone), four(lead)))
-    return Table(("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows))
+    return Table(
+        ("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows)
+    )
 
 
 def irregularity(contents: Contents) -> Table | None:
@@ -180,7 +181,8 @@ def bending(contents: Contents, unit: str) -> Table:
             four(b.critical_speed * speed_factor(unit)),
             four(b.input_speed * speed_factor(unit)),
             four(100 * high / b.input_speed),
-            shown(b.young_modulus, PRESSURE, digits=4) + (" (from the shear modulus)" if b.assumed_modulus else ""),
+            shown(b.young_modulus, PRESSURE, digits=4)
+            + (" (from the shear modulus)" if b.assumed_modulus else ""),
         )
         for b in contents.bending
     ]

@@ -70,7 +70,7 @@ def curves(
         axes.axhline(1.0, color=FAINT, lw=0.8)
         axes.plot(x, values, color=INK, lw=1.2)
         axes.fill_between(x, 1.0, np.maximum(values, 1.0), color="#8c2f39", lw=0)
-        axes.set_title(name, fontsize=SMALL, color=INK, loc="left")
+        axes.set_title(name, fontsize=SMALL, color=INK, loc="right")
         plain(axes)
         axes.tick_params(labelsize=SMALL)
         axes.set_xlim(x[0], x[-1])
@@ -79,8 +79,8 @@ def curves(
         for at, word in marks:
             axes.axvline(at, color="#0072b2", lw=0.8, ls=(0, (4, 3)), zorder=0)
             if k == 0:
-                axes.annotate(word, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2),
-                              textcoords="offset points", fontsize=SMALL, color="#0072b2", ha="center", va="bottom")  # fmt: skip
+                look: dict[str, Any] = {"fontsize": SMALL, "color": "#0072b2", "ha": "center", "va": "bottom"}
+                axes.text(at, 1.03, word, transform=axes.get_xaxis_transform(), **look)
     grid[-1, 0].set_xlabel("speed Ω [1]", fontsize=TEXT, color=INK)
     figure.supylabel(y_label, fontsize=TEXT, color=INK)
     figure.suptitle(title, fontsize=TITLE - 1, color=INK, x=0.01, ha="left")

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.analyses.resonance_speeds import Resonance, resonance_speeds
 from trunnion.reproduction.result import Row
-from trunnion.reproduction.tips import Tip, tip
+from trunnion.reproduction.tips import FOLLOWED, Tip, tip
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
 
@@ -14,9 +14,7 @@ Printed = tuple[str, tuple[int, ...], int, float]
 """Kind, modes, order k and the value a paper prints."""
 
 
-def resonance_row(
-    printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]
-) -> Row:
+def resonance_row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]) -> Row:
     """One printed resonance speed.
 
     Parameters
@@ -45,11 +43,21 @@ def _holding(charts: tuple[StabilityChart, ...], named: Resonance) -> StabilityC
 
 def _tongue(at: Tip, low: Tip, pixel: float) -> str:
     if not low.found:
-        return "no tongue below the top of the chart"
+        return "so narrow that nothing shows, even at a hundredth of the damping"
+    if low.angle > FOLLOWED:
+        return (
+            f"opens above β = {low.angle:.1f} rad only, even at a hundredth of the damping: "
+            "its speed at β → 0 is not seen"
+        )
     limit = low.intercept if np.isfinite(low.intercept) else low.speed
-    where = "within a pixel" if abs(limit - low.resonance.speed) <= pixel else f"{limit - low.resonance.speed:+.4f} off"
-    text = f"tongue for β → 0 at {limit:.4f}, {where} of {pixel:.4f}"
-    return text + (f"; at ζ = 0.001 its tip is ({at.speed:.4f}, {at.angle:.2f} rad)" if at.found else "; damped away at ζ = 0.001")
+    away = limit - low.resonance.speed
+    where = f"within a pixel of {pixel:.4f}" if abs(away) <= pixel else f"{away:+.4f} from its name"
+    text = f"tongue for β → 0 at {limit:.4f}, {where}"
+    return text + (
+        f"; at ζ = 0.001 its tip is ({at.speed:.4f}, {at.angle:.2f} rad)"
+        if at.found
+        else "; closed by damping at ζ = 0.001"
+    )
 
 
 def _stays_shut(chart: StabilityChart, named: Resonance, pixel: float) -> str:
@@ -68,6 +76,11 @@ def frequency_rows(place: str, printed: tuple[float, ...], computed: np.ndarray,
     """Natural frequencies as printed and computed."""
     below = str.maketrans("123", "₁₂₃")
     return tuple(
-        Row(f"{place}, ω{str(i).translate(below)}", f"{p:.3f}", f"{w:.5f}", remark if abs(p - w) > 0.6e-3 else "agrees")
+        Row(
+            f"{place}, ω{str(i).translate(below)}",
+            f"{p:.3f}",
+            f"{w:.5f}",
+            remark if abs(p - w) > 0.6e-3 else "agrees",
+        )
         for i, (p, w) in enumerate(zip(printed, computed, strict=True), start=1)
     )

@@ -46,18 +46,17 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
     """Reproduce S3 on ``points`` × ``points`` pixels a chart."""
     tell = progress or (lambda share: None)
 
-    def chart(tolerance: float = 1e-9, **changes: Any) -> StabilityChart:
+    def chart(tolerance: float = 1e-9, ends: tuple[float, float] = (LOW, HIGH), **changes: Any) -> StabilityChart:
         line = catalogue(NAME, **changes)
-        return stability_chart(
-            line, ("speed", LOW, HIGH, points), (ANGLE, 0.0, TOP, points), tolerance=tolerance
-        )
+        return stability_chart(line, ("speed", *ends, points), (ANGLE, 0.0, TOP, points), tolerance=tolerance)
 
     plane_line = catalogue("two-shaft-cardan", inertia_of_disk_2=10.0)
     plane = stability_chart(
         plane_line, ("speed", LOW, HIGH, points), ("HookeJoint 1.angle", 0.0, TOP, points), tolerance=1e-9
     )
     alone = chart(angle_1=0.0)
-    faint = chart(1e-10, angle_1=0.0, damping_ratio=1e-5)
+    parts = (((LOW, 0.2), 1e-9), ((0.15, HIGH), 1e-10))
+    faint = tuple(chart(tolerance, ends, angle_1=0.0, damping_ratio=1e-5) for ends, tolerance in parts)
     tell(0.4)
     cases = {"4": (0.2, 10.0), "5": (0.2, 100.0), "6": (0.4, 10.0)}
     worst = {n: chart(angle_1=b, inertia_of_disk_3=g) for n, (b, g) in cases.items()}
@@ -71,7 +70,8 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
     )
     figures = [
         _figure("2", "Validation: one joint (β₂ = 0, third shaft left out), γ₁ = 10",
-                "The two-shaft line; ranges assumed.", panel(plane, "two shafts, γ₁ = 10", "joint angle β₁ [rad]", limits)),
+                "The two-shaft line; ranges assumed.",
+                panel(plane, "two shafts, γ₁ = 10", "joint angle β₁ [rad]", limits)),
         _figure("3", "Check of the three-shaft model against its resonance speeds, γ₂ = 10",
                 "β₁ = 0 assumed, as for the natural frequencies that the paper compares it with.",
                 panel(alone, "β₁ = 0, γ₂ = 10", two, limits)),
@@ -83,7 +83,7 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
         )
         figures.append(_figure(n, f"β₂–Ω for γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
     modes = natural_frequencies(catalogue(NAME)).frequency
-    rows = [resonance_row(p, (alone,), (faint,)) for p in (*TABLE_1, *TABLE_2)]
+    rows = [resonance_row(p, (alone,), faint) for p in (*TABLE_1, *TABLE_2)]
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."
     tables = (
         Comparison("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),

@@ -23,7 +23,13 @@ def conclusions(
     four: StabilityChart, five: StabilityChart, six: StabilityChart, inline: Mapping[str, StabilityChart]
 ) -> tuple[Conclusion, ...]:
     """From Figures 4, 5, 6, and the same with the forks in line."""
-    return (_second(four), _first(four, six), _inertia(four, five), _speed(four), _forks(four, five, six, inline))
+    return (
+        _second(four),
+        _first(four, six),
+        _inertia(four, five),
+        _speed(four),
+        _forks(four, five, six, inline),
+    )
 
 
 def _second(four: StabilityChart) -> Conclusion:
@@ -46,8 +52,8 @@ def _first(four: StabilityChart, six: StabilityChart) -> Conclusion:
         "the unstable regions as a whole seem to shrink.",
         "confirmed" if small[1] > small[0] and fewer else "corrected",
         f"β₁ = 0.2 and 0.4 rad: {percents(small)} unstable for β₂ below 0.2, {percents(practical)} up to 45°, "
-        f"{percents(everything)} of the whole chart; {through[0]:.2g} % and {through[1]:.2g} % of the speeds are unstable "
-        f"at nearly every β₂ up to 45°. As a whole the regions {'shrink' if fewer else 'grow'}.",
+        f"{percents(everything)} of the whole chart; {through[0]:.2g} % and {through[1]:.2g} % of the speeds are "
+        f"unstable at nearly every β₂ up to 45°. As a whole the regions {'shrink' if fewer else 'grow'}.",
     )
 
 
@@ -84,12 +90,13 @@ def _forks(
     near = {n: (b - NEAR, b + NEAR) for n, b in angle.items()}
     equal = [[share(c[n], y=near[n]) for n in charts] for c in (charts, inline)]
     whole = [[share(c[n], y=(0.0, PRACTICAL)) for n in charts] for c in (charts, inline)]
-    less = all(b < a for a, b in zip(whole[0], whole[1], strict=True))
+    more = all(b > a for a, b in zip(whole[0], whole[1], strict=True))
     return Conclusion(
-        "With the forks of shaft 2 in line, as one would assemble them (not in the paper), less is unstable where the "
-        f"two angles are equal{'' if less else ', but not over all angles'}.",
+        "Beside the paper: forks in line, as one would assemble them, cancel what equal joints force on the line, but "
+        f"not the parametric excitation{'; slightly more is unstable' if more else ''}.",
         "added",
         f"Figures 4, 5 and 6 with β₂ within {NEAR} rad of β₁: {percents(equal[0])} unstable with joints in phase, "
-        f"{percents(equal[1])} with forks in line. For all β₂ up to 45°: {percents(whole[0])} and {percents(whole[1])}: "
-        "where the angles differ much, one joint rules, and fork phases matter little.",
+        f"{percents(equal[1])} with forks in line; for all β₂ up to 45°: {percents(whole[0])} and "
+        f"{percents(whole[1])}. The joints still modulate "
+        "the coupling of their own two disks; only their sum at the output cancels.",
     )

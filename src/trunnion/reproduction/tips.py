@@ -19,18 +19,21 @@ from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
 
-WINDOW = 0.06
+WINDOW = 0.05
 """Half-width of the window, relative to the resonance speed."""
 POINTS = (401, 201)
 ABOVE = 0.25
 """How far above its tip a tongue is followed [rad]."""
+FOLLOWED = 0.7
+"""Largest angle of a tip [rad] from which a tongue is still followed down to 0."""
 COMPLEX = 1e-5
 """Imaginary part over modulus above which a multiplier counts as complex."""
 
 
 @dataclass(frozen=True)
 class Tip:
-    """Tip of a tongue: speed and angle of its lowest unstable point; ``intercept`` of its middle at β = 0."""
+    """Tip of a tongue: speed and angle of its lowest unstable point; ``intercept`` of its middle at β = 0,
+    NaN where too few points show it."""
 
     resonance: Resonance
     speed: float

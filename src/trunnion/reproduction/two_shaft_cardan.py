@@ -54,8 +54,10 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
     tell(0.2)
     faint = tuple(over_angle(*ends, 1e-10, damping_ratio=1e-5, **heavy) for ends in ((0.015, 0.4), (0.25, 2.0)))
     tell(0.4)
-    base, damped, stiff = over_angle(0.04, 2.0), over_angle(0.04, 2.0, damping_of_shaft_2=20.0), over_angle(
-        0.06, 2.0, stiffness_of_shaft_2=20.0
+    base, damped, stiff = (
+        over_angle(0.04, 2.0),
+        over_angle(0.04, 2.0, damping_of_shaft_2=20.0),
+        over_angle(0.06, 2.0, stiffness_of_shaft_2=20.0),
     )
     tell(0.6)
     damping, stiffness = _over_group(DAMPING_OF_SHAFT_2, points), _over_group(STIFFNESS_OF_SHAFT_2, points)

@@ -23,7 +23,13 @@ def conclusions(
     heavy: StabilityChart,
 ) -> tuple[Conclusion, ...]:
     """From Figures 3 (base), 4 (damped), 6 (stiff), 7 (stiffness) and 2 (heavy)."""
-    return (_angle(base), _stiffness(base, stiff, stiffness), _damping(base, damped), _speed(base), _difference(heavy))
+    return (
+        _angle(base),
+        _stiffness(base, stiff, stiffness),
+        _damping(base, damped),
+        _speed(base),
+        _difference(heavy),
+    )
 
 
 def _angle(base: StabilityChart) -> Conclusion:

@@ -14,18 +14,19 @@ from trunnion.reproduction.result import Comparison, PaperFigure, Row
 
 Array = NDArray[np.float64]
 BETA, GAMMA = 0.5, 100.0
-SPEEDS = np.unique(np.concatenate([np.linspace(0.25, 1.6, 91), np.linspace(0.325, 0.38, 23), np.linspace(1.36, 1.47, 12)]))
+SPEEDS = np.unique(
+    np.concatenate([np.linspace(0.25, 1.6, 91), np.linspace(0.325, 0.38, 23), np.linspace(1.36, 1.47, 12)])
+)
 DIFFERENCE, HALF = 0.336, 0.705
 
 
 @cache
 def _radii() -> dict[str, Array]:
-    return {
-        version: np.array(
-            [stability(printed_system(version, s, BETA, inertia_of_disk_2=GAMMA), tolerance=1e-7).spectral_radius for s in SPEEDS]
-        )
-        for version in VERSIONS
-    }  # fmt: skip
+    def radius(version: str, speed: float) -> float:
+        system = printed_system(version, speed, BETA, inertia_of_disk_2=GAMMA)
+        return stability(system, tolerance=1e-7).spectral_radius
+
+    return {version: np.array([radius(version, s) for s in SPEEDS]) for version in VERSIONS}
 
 
 def versions_figure() -> PaperFigure:
@@ -70,5 +71,6 @@ def errata() -> Comparison:
                 "the root's first term is squared as a whole"),
             Row("Figure 6, text", "damping ratio × 20", "stiffness ratio × 20", "slip in the text"),
         ),
-        f"The first four rows: β = {BETA} rad, γ = {GAMMA:g}, {len(SPEEDS)} speeds from {SPEEDS[0]:g} to {SPEEDS[-1]:g}.",
+        f"The first four rows: β = {BETA} rad, γ = {GAMMA:g}, {len(SPEEDS)} speeds from {SPEEDS[0]:g} to "
+        f"{SPEEDS[-1]:g}.",
     )  # fmt: skip

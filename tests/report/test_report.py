@@ -1,0 +1,183 @@
+"""The report: every section, nothing fetched, the same numbers as the results."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.reporting import Report
+
+TEXT = """
+format = 1
+name = "test line <& co>"
+[operation]
+speed = "1500 rpm"
+speed_range = ["600 rpm", "3000 rpm"]
+angle_range = ["0 deg", "40 deg"]
+[[element]]
+type = "ConstantSpeed"
+name = "motor"
+[[element]]
+type = "Shaft"
+name = "front shaft"
+stiffness = "12 kN*m/rad"
+damping = "1 N*m*s/rad"
+[[element]]
+type = "Disk"
+name = "fork"
+inertia = "0.2 kg*m^2"
+[[element]]
+type = "HookeJoint"
+angle = "20 deg"
+[[element]]
+type = "Shaft"
+name = "tube"
+outer_diameter = "76 mm"
+inner_diameter = "71 mm"
+length = "1.6 m"
+shear_modulus = "79.3 GPa"
+density = "7850 kg/m^3"
+[[element]]
+type = "Disk"
+name = "pump"
+inertia = "0.4 kg*m^2"
+load_torque = "100 N*m"
+"""
+SECTIONS = (
+    "findings", "driveline", "modes", "speed-frequency", "irregularity", "torque", "stability", "limit",
+    "bending", "provenance",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "line.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def made(file: Path) -> Report:
+    return tn.report(tn.load(file), points=(60, 40), source=file)
+
+
+class Page(HTMLParser):
+    """Tags with attributes, and the text of the page."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.text += data + " "
+
+
+def test_sections(made: Report) -> None:
+    ids = [attrs["id"] for tag, attrs in Page(made.html).tags if tag == "section"]
+    assert ids == list(SECTIONS)
+
+
+def test_fetches_nothing(made: Report) -> None:
+    page = Page(made.html)
+    assert not {"script", "link", "iframe", "object", "base", "form"} & {tag for tag, _ in page.tags}
+    for _, attrs in page.tags:
+        for key in ("src", "href", "srcset", "action", "poster"):
+            assert attrs.get(key) is None or str(attrs[key]).startswith("data:image/")
+        assert "url(" not in str(attrs.get("style"))
+    assert not re.search(r"https?://|url\(|@import", made.html)
+    assert len(made.html.encode()) < 5e6
+
+
+def test_pictures(made: Report) -> None:
+    images = [attrs for tag, attrs in Page(made.html).tags if tag == "img"]
+    assert len(images) == 7
+    assert all(str(a["src"]).startswith("data:image/svg+xml;base64,") and a["alt"] for a in images)
+
+
+def test_names_are_escaped(made: Report) -> None:
+    assert "<& co>" not in made.html and "test line &lt;&amp; co&gt;" in made.html
+
+
+def test_numbers_are_those_of_the_results(made: Report) -> None:
+    text = Page(made.html).text
+    line = made.contents.overview.line
+    for hertz in tn.natural_frequencies(line).hertz:
+        assert f"{hertz:.4g}" in text
+    beta = np.deg2rad(20)
+    assert f"{100 * np.tan(beta) * np.sin(beta):.4g}" in text
+    (tube,) = tn.bending_speeds(line)
+    assert f"{tube.critical_speed * 30 / np.pi:.4g}" in text
+    response = tn.stability(line).response
+    assert response is not None and f"{response.torque_amplitude[0]:.4g}" in text
+
+
+def test_findings_come_gravest_first(made: Report) -> None:
+    gravities = [f.gravity for f in made.contents.findings]
+    assert gravities == sorted(gravities)
+    text = Page(made.html).text
+    places = [text.index(f.sentence) for f in made.contents.findings]
+    assert places == sorted(places)
+
+
+def test_limit_angle_agrees_with_stability(made: Report) -> None:
+    limit = made.contents.limit
+    assert limit is not None and limit.critical_speed is not None
+    line = made.contents.overview.line
+    for offset, verdict in ((-0.003, "STABLE"), (0.003, "UNSTABLE")):
+        bent = line.replace("HookeJoint 1", angle=limit.smallest + offset)
+        assert tn.stability(bent, limit.critical_speed).verdict.name == verdict
+
+
+def test_provenance(made: Report, file: Path) -> None:
+    text = Page(made.html).text
+    assert hashlib.sha256(file.read_bytes()).hexdigest() in text
+    assert tn.__version__ in text and "line.toml" in text and str(file.parent) not in made.html
+    assert "Lateral vibration" in text and "outside this torsional model" in text
+
+
+@pytest.mark.parametrize(("unit", "shown"), [("Hz", "10 to 50 Hz"), ("rad/s", "62.83 to 314.2 rad/s")])
+def test_speed_unit(file: Path, unit: str, shown: str) -> None:
+    text = Page(tn.report(tn.load(file), unit=unit, points=(20, 12)).html).text
+    assert shown in text and "rpm" not in text
+
+
+def test_print_style(made: Report) -> None:
+    assert "size: A4" in made.html and "@media print" in made.html
+
+
+def test_saves_whole(made: Report, tmp_path: Path) -> None:
+    path = made.save(tmp_path / "report.html")
+    assert path.read_text(encoding="utf-8") == made.html
+    with pytest.raises(tn.InputError, match="folder"):
+        made.save(tmp_path / "none" / "report.html")
+
+
+def test_line_without_joints_and_with_a_branch() -> None:
+    line = tn.Driveline([
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1, name="hub"),
+        tn.Ratio(teeth_in=10, teeth_out=31), tn.Shaft(stiffness=2e4), tn.Disk(inertia=1.0, name="left"),
+        tn.Shaft(stiffness=2e4, after="hub"), tn.Disk(inertia=2.0, name="right"),
+    ])  # fmt: skip
+    page = Page(tn.report(line, speed=50.0).html)
+    ids = [attrs["id"] for tag, attrs in page.tags if tag == "section"]
+    assert "torque" not in ids and "limit" not in ids and {"driveline", "modes", "bending"} <= set(ids)
+
+
+def test_line_too_slow_for_a_chart(file: Path) -> None:
+    """Far below every resonance there is no chart, but the forced torques are still given."""
+    line = tn.load(file)
+    slow = tn.Driveline(line.elements, operation=tn.Operation(speed="1 rpm", speed_range=["0.2 rpm", "2 rpm"]))
+    made = tn.report(slow)
+    assert made.contents.overview.chart is None and made.contents.sweep is not None
+    assert "no chart" in Page(made.html).text

@@ -1,0 +1,102 @@
+"""S1 computed anew: numbers of its tables, the errata's evidence, what its conclusions rest on."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.reproduction import Reproduction
+from trunnion.reproduction.two_shaft_cardan import TABLE_1, TABLE_2
+
+
+@pytest.fixture(scope="module")
+def found() -> Reproduction:
+    return tn.reproduce("two-shaft-cardan")
+
+
+def remarks(found: Reproduction) -> dict[str, str]:
+    return {row.place: row.remark for table in found.tables for row in table.rows}
+
+
+def test_natural_frequencies_beside_the_printed(found: Reproduction) -> None:
+    rows = found.tables[0].rows
+    assert [(r.published, r.computed) for r in rows] == [("0.072", "0.07062"), ("1.422", "1.41598")]
+    assert all("equation 25" in r.remark for r in rows)
+
+
+def test_every_entry_of_the_tables_is_there(found: Reproduction) -> None:
+    printed = [f"{value:.3f}" for *_, value in (*TABLE_1, *TABLE_2)]
+    assert [r.published for table in found.tables[1:] for r in table.rows] == printed
+
+
+def test_tongues_start_at_the_named_resonances(found: Reproduction) -> None:
+    for place, remark in remarks(found).items():
+        if place.startswith(("harmonic", "subharmonic", "sum")):
+            assert "within a pixel" in remark, (place, remark)
+
+
+def test_difference_resonances_stay_shut(found: Reproduction) -> None:
+    shut = {p: r for p, r in remarks(found).items() if p.startswith("difference")}
+    assert len(shut) == 2
+    for remark in shut.values():
+        reach = float(re.search(r"β = ([\d.]+)", remark).group(1))  # type: ignore[union-attr]
+        assert "does not open" in remark and reach > 0.9
+
+
+def test_errata_evidence(found: Reproduction) -> None:
+    rows = {r.place: r for r in found.errata.rows}
+    assert rows["E₂₁, P₂₁ as printed"].computed.startswith("100 %")
+    assert rows["sign of P₂₁ mended"].computed.startswith("0 %")
+    single, derived = (
+        float(re.search(r"ρ = ([\d.]+)", rows[k].computed).group(1))  # type: ignore[union-attr]
+        for k in ("η″ added, η′ single", "derived")
+    )
+    assert single > 1.01 and derived < 1
+
+
+def test_conclusions(found: Reproduction) -> None:
+    held = {c.statement.split(".")[0]: c.holds for c in found.conclusions}
+    assert held["A larger joint angle widens the unstable regions"] == "confirmed"
+    assert held["Difference combinations are among the resonances (Table 2)"] == "corrected"
+    assert next(h for s, h in held.items() if "stiffer" in s) == "corrected"
+    assert next(h for s, h in held.items() if "More damping" in s) == "confirmed"
+    assert all(re.search(r"\d", c.evidence) for c in found.conclusions)
+
+
+def test_figures_2_to_7(found: Reproduction) -> None:
+    assert [f.number for f in found.figures] == ["2", "3", "4", "5", "6", "7"]
+    slow, fast = found.figure(2).charts
+    assert slow.x[-1] == 0.4 and (fast.x[0], fast.x[-1]) == (0.25, 2.0)
+    for chart in (slow, fast):
+        assert 0 < chart.unstable_share < 0.5
+    # the tongue at ω₂, β = 0.5: known edges to the width of a pixel
+    row = fast.verdict[int(np.abs(fast.y - 0.5).argmin())] == 1
+    tongue = fast.x[row & (fast.x > 1.2)]
+    pixel = fast.x[1] - fast.x[0]
+    assert tongue.min() == pytest.approx(1.372337, abs=1.5 * pixel)
+    assert tongue.max() == pytest.approx(1.464882, abs=1.5 * pixel)
+
+
+def test_folder(found: Reproduction, tmp_path: Path) -> None:
+    written = found.save(tmp_path / "out")
+    assert {p.suffix for p in written} == {".png", ".html"}
+    assert len(written) == 1 + len(found.figures) + len(found.evidence)
+    page = written[0].read_text(encoding="utf-8")
+    assert page.count("<img ") == len(written) - 1
+    assert not re.search(r"https?://", page)
+    assert "<script" not in page and "<link" not in page
+    text = unescape(page)
+    for row in found.errata.rows:
+        assert row.remark in text
+
+
+def test_unknown_paper() -> None:
+    with pytest.raises(tn.InputError, match="two-shaft-cardan"):
+        tn.reproduce("bicardan")
+    with pytest.raises(tn.InputError, match="points"):
+        tn.reproduce("two-shaft-cardan", points=3)
