@@ -51,11 +51,7 @@ def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> 
 def chart_files(
     chart: StabilityChart, folder: Path, stem: str, unit: str, operating: Operation | None = None
 ) -> list[Path]:
-    """Picture and data of a chart in ``folder``, which is made if need be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        _refuse(folder, f"cannot be made: {error.strerror}")
+    """Picture and data of a chart in ``folder``."""
     names = [folder / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
     return [write_chart(chart, path, unit, operating) for path in names]
 

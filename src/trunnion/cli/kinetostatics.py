@@ -203,17 +203,18 @@ def _files(result: Kinetostatics, stem: str, unit: str) -> list[Path]:
     from trunnion.plots.kinetostatics import draw_polar
     from trunnion.plots.layout import sketch
     from trunnion.plots.style import save
+    from trunnion.results.files import folder_written_whole
 
-    DEFAULT_FOLDER.mkdir(parents=True, exist_ok=True)
-    base = DEFAULT_FOLDER / f"{stem}-kinetostatics"
-    written = [_write(result, base.with_suffix(ending), unit) for ending in (".png", ".csv")]
-    save(draw_polar(result, unit=unit), polar := base.with_name(f"{base.name}-polar.png"))
-    written.append(polar)
-    if result.joints:
-        drawing = sketch(result.line)
-        save(drawing, drawn := base.with_name(f"{base.name}-sketch.png"))
-        written.append(drawn)
-    return written
+    with folder_written_whole(DEFAULT_FOLDER) as temporary:
+        base = temporary / f"{stem}-kinetostatics"
+        written = [_write(result, base.with_suffix(ending), unit) for ending in (".png", ".csv")]
+        save(draw_polar(result, unit=unit), polar := base.with_name(f"{base.name}-polar.png"))
+        written.append(polar)
+        if result.joints:
+            drawing = sketch(result.line)
+            save(drawing, drawn := base.with_name(f"{base.name}-sketch.png"))
+            written.append(drawn)
+    return [DEFAULT_FOLDER / path.name for path in written]
 
 
 def _write(result: Kinetostatics, path: Path, unit: str) -> Path:

@@ -45,15 +45,18 @@ def analyze(
     from trunnion.cli.files import chart_files, check_folder
     from trunnion.cli.report import overview_json, print_overview, print_written
     from trunnion.reporting import report
+    from trunnion.results.files import folder_written_whole
 
     check_folder(folder)
     with output.progress("stability chart") as advance:
         seen = overview(line, speed=at, unit=unit, points=size, progress=advance)
     page = report(seen, source=file)
-    folder.mkdir(parents=True, exist_ok=True)
-    written = [page.save(folder / f"{file_stem(file)}-report.html")]
-    if seen.chart is not None:
-        written += chart_files(seen.chart, folder, file_stem(file), unit, seen.operation)
+    stem = file_stem(file)
+    with folder_written_whole(folder) as temporary:
+        written = [page.save(temporary / f"{stem}-report.html")]
+        if seen.chart is not None:
+            written += chart_files(seen.chart, temporary, stem, unit, seen.operation)
+    written = [folder / path.name for path in written]
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
@@ -123,6 +126,7 @@ def stability_chart(
     from trunnion.cli.files import chart_files, check_folder, check_outputs, write_chart
     from trunnion.cli.report import chart_json, chart_text, print_written
     from trunnion.equations.coefficients import assemble
+    from trunnion.results.files import folder_written_whole
 
     assembly = assemble(line)
     across = read_axis(x, assembly, unit, nx, "--x")
@@ -136,7 +140,9 @@ def stability_chart(
     if to:
         written = [write_chart(chart, path, unit) for path in to]
     else:
-        written = chart_files(chart, DEFAULT_FOLDER, file_stem(file), unit)
+        with folder_written_whole(DEFAULT_FOLDER) as temporary:
+            written = chart_files(chart, temporary, file_stem(file), unit)
+        written = [DEFAULT_FOLDER / path.name for path in written]
     if as_json:
         output.write_json("stability-chart", chart_json(chart, unit, written))
         return

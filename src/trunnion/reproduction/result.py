@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.results.chart import StabilityChart
-from trunnion.results.files import written_whole
+from trunnion.results.files import folder_written_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -93,19 +93,14 @@ class Reproduction:
         from trunnion.plots.style import DPI
         from trunnion.reproduction.page import page
 
-        target = Path(folder)
-        target.mkdir(parents=True, exist_ok=True)
-        written = []
         drawn = [(figure, figure.plot()) for figure in (*self.figures, *self.evidence)]
-        for figure, picture in drawn:
-            path = target / figure.file
-            with written_whole(path) as temporary:
-                picture.savefig(temporary, format="png", dpi=DPI)
-            written.append(path)
-        path = target / f"{self.name}.html"
-        with written_whole(path) as temporary:
-            temporary.write_text(page(self, [picture for _, picture in drawn]), encoding="utf-8", newline="\n")
-        return [path, *written]
+        first = f"{self.name}.html"
+        with folder_written_whole(folder) as temporary:
+            for figure, picture in drawn:
+                picture.savefig(temporary / figure.file, format="png", dpi=DPI)
+            text = page(self, [picture for _, picture in drawn])
+            (temporary / first).write_text(text, encoding="utf-8", newline="\n")
+        return [Path(folder) / name for name in (first, *(figure.file for figure, _ in drawn))]
 
     def __str__(self) -> str:
         parts = [f"{self.title}\n{self.source}"]

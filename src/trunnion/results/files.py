@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 from trunnion.errors import InputError
 
@@ -46,3 +48,37 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
         os.replace(temporary, target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
+    """A temporary folder to write several files to; they move into ``folder`` together on success.
+
+    On failure, also on Ctrl-C, nothing is left: neither ``folder`` if it was not there nor any of the files.
+
+    Raises
+    ------
+    InputError : ``folder`` cannot be made.
+    """
+    target = Path(folder)
+    nearest = next(parent for parent in target.absolute().parents if parent.is_dir())
+    try:
+        temporary = Path(tempfile.mkdtemp(dir=nearest, prefix=f".{target.name}-"))
+    except OSError as error:
+        _cannot_be_made(target, error)
+    try:
+        yield temporary
+        try:
+            target.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            _cannot_be_made(target, error)
+        for written in sorted(temporary.iterdir()):
+            os.replace(written, target / written.name)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _cannot_be_made(folder: Path, error: OSError) -> NoReturn:
+    raise InputError(
+        f"cannot be made: {error.strerror}", key="output", value=str(folder), remedy="choose another folder"
+    ) from None
