@@ -6,8 +6,11 @@ the compiler caches only what stands in one file.
 
 from __future__ import annotations
 
+from trunnion.numerics.joint_series_source import joint_series_source
 from trunnion.numerics.lane_step_source import step_source
 from trunnion.numerics.runge_kutta import B, C
+from trunnion.numerics.series_driver_source import SERIES_DRIVER, SERIES_IMPORTS
+from trunnion.numerics.series_step_source import series_step_source
 from trunnion.numerics.wide_step_source import wide_step_source
 
 _IMPORTS = """\
@@ -142,8 +145,9 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
             # An early error grows with Φ; one made where Φ is largest can grow by as much again.
             error[l] = (LOCAL_TO_TRUE * error[l] + ROUNDING * count) * largest[l] * max(1.0, norm)
     return count
+"""
 
-
+_INTEGRATE = """\
 @njit(cache=True, nogil=True)
 def integrate(program, lanes, first, last, begin, length, tolerance, extra, most_steps, matrix, error, trace):
     n = len(program.parent)
@@ -152,11 +156,7 @@ def integrate(program, lanes, first, last, begin, length, tolerance, extra, most
     steps = 0
     for at in range(first, last, LANES):
         block = gather(program, lanes, at)
-        table = empty_table(program, block)
-        steps += propagate_block(
-            program, block, table, begin, length, tolerance, extra, most_steps, out, block_error, block_trace
-        )
-        for l in range(min(LANES, last - at)):
+{propagate}        for l in range(min(LANES, last - at)):
             matrix[at + l] = out[l]
             error[at + l] = block_error[l]
             trace[at + l] = block_trace[l]
@@ -164,18 +164,47 @@ def integrate(program, lanes, first, last, begin, length, tolerance, extra, most
 """
 
 
+_BY_RUNGE_KUTTA = """\
+        table = empty_table(program, block)
+        steps += propagate_block(
+            program, block, table, begin, length, tolerance, extra, most_steps, out, block_error, block_trace
+        )
+"""
+
+_BY_SERIES = """\
+        steps += propagate_block(program, block, begin, length, tolerance, most_steps, out, block_error, block_trace)
+"""
+
+
 def lane_module_source(parent: tuple[int, ...], extra: bool) -> str:
-    """Whole module for a small tree of unknowns; ``extra``: static torque or angle-dependent inertia act."""
-    return "\n\n".join([_IMPORTS, _nodes(), step_source(parent, extra), _LANES_STATE, _DRIVER])
+    """Whole module for a small tree of unknowns; ``extra``: static torque or angle-dependent inertia act.
+
+    Plain chains go by Taylor series, whose recurrences would be three times as long with the extra terms.
+    """
+    if extra:
+        parts = [_IMPORTS, _nodes(), step_source(parent), _LANES_STATE, _DRIVER, _integrate(_BY_RUNGE_KUTTA)]
+    else:
+        parts = [SERIES_IMPORTS, _limits(), joint_series_source(), series_step_source(parent)]
+        parts += [SERIES_DRIVER, _integrate(_BY_SERIES)]
+    return "\n\n".join(parts)
 
 
 def wide_module_source() -> str:
     """Whole module for trees of any number of unknowns."""
-    return "\n\n".join([_IMPORTS, _nodes(), wide_step_source(), _WIDE_STATE, _DRIVER])
+    parts = [_IMPORTS, _nodes(), wide_step_source(), _WIDE_STATE, _DRIVER, _integrate(_BY_RUNGE_KUTTA)]
+    return "\n\n".join(parts)
+
+
+def _integrate(propagation: str) -> str:
+    return _INTEGRATE.replace("{propagate}", propagation)
 
 
 def _nodes() -> str:
     # The embedded estimate is of order 5; the order-8 solution that is kept was never further off than a
     # twentieth of it on random chains (see tests/laws), so a tenth of it is reported and controlled.
     nodes, weights = [float(c) for c in C], [float(b) for b in B]
-    return f"LOCAL_TO_TRUE = 0.1\nROUNDING = 2e-15\nC = np.array({nodes!r})\nB = np.array({weights!r})\n"
+    return f"LOCAL_TO_TRUE = 0.1\n{_limits()}C = np.array({nodes!r})\nB = np.array({weights!r})\n"
+
+
+def _limits() -> str:
+    return "ROUNDING = 2e-15\n"

@@ -117,9 +117,7 @@ def gather(program, lanes, first):  # type: ignore[no-untyped-def]
         nu = lanes.frequency[at]
         for j in range(joints):
             o = j * PER_JOINT + lane
-            same = (
-                lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
-            )
+            same = lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
             alike = alike and same
             joint[o + COSINE * LANES] = lanes.cosine[j, at]
             joint[o + PHASE * LANES] = lanes.phase[j, at]
@@ -155,13 +153,11 @@ def empty_table(program, block):  # type: ignore[no-untyped-def]
             for lane in range(LANES):
                 table[o + OVER_MASS * LANES + lane] = 1.0
                 if program.near_source[i] < 0:
-                    table[o + NEAR * LANES + lane] = block.unknown[
-                        i * PER_UNKNOWN + NEAR_SCALE * LANES + lane
-                    ]
+                    table[o + NEAR * LANES + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
     return table
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-untyped-def]
     """Coefficients at input angles ``begin + nodes · step`` into the stages of ``table``.
 
@@ -222,7 +218,7 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
         _members(program, block, len(nodes), table)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _plain_joint_on_drive(own, used, begin, step, nodes, rate, factor):  # type: ignore[no-untyped-def]
     """A joint alone in its group and driven by the input: all of its law in one pass."""
     for m in range(len(nodes)):
@@ -246,7 +242,7 @@ def _plain_joint_on_drive(own, used, begin, step, nodes, rate, factor):  # type:
             own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _plain_joint_on_joint(own, before, used, count, rate, factor):  # type: ignore[no-untyped-def]
     """The same behind another joint, at its speed or reversed."""
     for m in range(count):
@@ -269,7 +265,7 @@ def _plain_joint_on_joint(own, before, used, count, rate, factor):  # type: igno
             own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _input_from_drive(own, begin, step, nodes, rate):  # type: ignore[no-untyped-def]
     """cos 2χ, sin 2χ, speed and acceleration at a joint's input, left where its output will stand."""
     for m in range(len(nodes)):
@@ -284,7 +280,7 @@ def _input_from_drive(own, begin, step, nodes, rate):  # type: ignore[no-untyped
             own[o + ACCELERATION * LANES + lane] = 0.0
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _input_from_joint(own, before, count, rate):  # type: ignore[no-untyped-def]
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
@@ -315,12 +311,10 @@ def _unwrap(own, before, begin, step, nodes, driven, rate):  # type: ignore[no-u
             chi = rate * angle + own[PHASE * LANES + lane]
             cosine = own[COSINE * LANES + lane]
             t = (1.0 - cosine) / (1.0 + cosine)
-            own[o + ANGLE * LANES + lane] = chi + math.atan2(
-                t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi)
-            )
+            own[o + ANGLE * LANES + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _first_in_group(own, count, factor):  # type: ignore[no-untyped-def]
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
@@ -330,7 +324,7 @@ def _first_in_group(own, count, factor):  # type: ignore[no-untyped-def]
             own[o + RATIO2 * LANES + lane] = 0.0
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _behind_in_group(own, before, count, factor):  # type: ignore[no-untyped-def]
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
@@ -340,7 +334,7 @@ def _behind_in_group(own, before, count, factor):  # type: ignore[no-untyped-def
             own[o + RATIO2 * LANES + lane] = factor * before[o + RATIO2 * LANES + lane]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _curve(own, count):  # type: ignore[no-untyped-def]
     """Second derivative of r behind the joint; before ``_pass_joint`` overwrites what it needs."""
     for m in range(count):
@@ -357,7 +351,7 @@ def _curve(own, count):  # type: ignore[no-untyped-def]
             own[o + RATIO2 * LANES + lane] = eta * before + 3 * slope * r * r1 + curvature * r * r * r
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _pass_joint(own, count):  # type: ignore[no-untyped-def]
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
@@ -377,7 +371,7 @@ def _pass_joint(own, count):  # type: ignore[no-untyped-def]
             own[o + SIN2 * LANES + lane] = eta * s
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _shaft_behind_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
     for m in range(count):
         o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
@@ -388,14 +382,12 @@ def _shaft_behind_joint(joint, shaft, alike, count, rows):  # type: ignore[no-un
                 rows[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1
         else:
             for lane in range(LANES):
-                rows[t + NEAR * LANES + lane] = (
-                    shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
-                )
+                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
                 slope = shaft[SLOPE_SCALE * LANES + lane] * joint[o + RATIO1 * LANES + lane]
                 rows[t + NEAR_SLOPE * LANES + lane] = slope
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _times_speed(driver, alike, count, rows):  # type: ignore[no-untyped-def]
     for m in range(count):
         o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
@@ -408,7 +400,7 @@ def _times_speed(driver, alike, count, rows):  # type: ignore[no-untyped-def]
                 rows[t + NEAR_SLOPE * LANES + lane] *= driver[o + SPEED * LANES + lane]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _torque_on_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
     """−r₁T̄ on the unknown in front of the joint."""
     for m in range(count):
@@ -418,7 +410,7 @@ def _torque_on_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyp
             rows[t + EXTRA_STIFFNESS * LANES + lane] -= slope * shaft[TORQUE * LANES + lane]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _members(program, block, count, table):  # type: ignore[no-untyped-def]
     """Inertia that depends on the angle: members behind a joint of their own group."""
     w, owner = block.joint, program.member_unknown
@@ -455,7 +447,7 @@ def _members(program, block, count, table):  # type: ignore[no-untyped-def]
             done = owner[k]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def add_damping_trace(parent, unknown, table, weights, step, trace):  # type: ignore[no-untyped-def]
     """∫ tr(M⁻¹C) dτ over one step, by the weights of its stages, added to ``trace`` per lane."""
     for i in range(len(parent)):

@@ -17,6 +17,7 @@ from types import ModuleType
 
 import numba
 import numpy as np
+import scipy
 from platformdirs import user_cache_dir
 
 from trunnion.numerics import chain_driver_source, chain_tables, half_period
@@ -44,14 +45,28 @@ def _name(parent: tuple[int, ...], extra: bool) -> tuple[str, tuple[tuple[int, .
 
 
 @cache
+def kernel_file(source: str) -> ModuleType:
+    """The file of kernels ``source``, which imports nothing of the package, compiled from a cached copy.
+
+    Copied rather than imported, so that the folder's name tells which sources the machine code belongs to.
+    """
+    text = Path(source).read_text(encoding="utf-8")
+    versions = f"{numba.__version__} {np.__version__} {scipy.__version__} {sys.version}"
+    digest = hashlib.sha256((text + versions).encode()).hexdigest()[:16]
+    return _module(Path(source).stem, text, digest)
+
+
+@cache
 def _load(name: str, small: tuple[tuple[int, ...], bool] | None) -> ModuleType:
-    source = (
-        chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
-    )
-    path = _folder() / f"{name}.py"
+    source = chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
+    return _module(name, source, _digest())
+
+
+def _module(name: str, source: str, digest: str) -> ModuleType:
+    path = _writable(digest) / f"{name}.py"
     if not path.exists() or path.read_text(encoding="utf-8") != source:
         _write(path, source)
-    full = f"trunnion_kernels.{_digest()}.{name}"
+    full = f"trunnion_kernels.{digest}.{name}"
     spec = importlib.util.spec_from_file_location(full, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -67,10 +82,14 @@ def _write(path: Path, source: str) -> None:
     os.replace(temporary, path)
 
 
-@cache
 def _folder() -> Path:
+    return _writable(_digest())
+
+
+@cache
+def _writable(digest: str) -> Path:
     chosen = Path(os.environ.get("TRUNNION_CACHE") or user_cache_dir("trunnion", appauthor=False))
-    folder = chosen / _digest()
+    folder = chosen / digest
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -88,6 +107,7 @@ def _digest() -> str:
         assert module.__file__ is not None
         hashed.update(Path(module.__file__).read_bytes())
     hashed.update(chain_driver_source.wide_module_source().encode())
-    hashed.update(chain_driver_source.lane_module_source((-1, 0), True).encode())
+    for extra in (False, True):
+        hashed.update(chain_driver_source.lane_module_source((-1, 0), extra).encode())
     hashed.update(f"{numba.__version__} {np.__version__} {sys.version}".encode())
     return hashed.hexdigest()[:16]

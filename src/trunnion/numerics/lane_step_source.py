@@ -6,7 +6,7 @@ scalars, looped over lanes: the compiler keeps them in vector registers. With un
     T_i = κ_i (x_i − e_i x_p) + d_i (v_i − e_i v_p − f_i x_p)
     v_i′ = (−T_i + Σ_children e T − g_i v_i − h_i x_i)/m_i,     x_i′ = ν v_i
 
-(κ, f, h over ν). Terms that a line does not have (g, h, m) are left out of its source.
+(κ, f, h over ν). Lines without g, h and m go by Taylor series instead, see ``series_step_source``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from trunnion.numerics.chain_tables import (
 from trunnion.numerics.runge_kutta import E3, E5, STAGES, A, B
 
 
-def step_source(parent: tuple[int, ...], extra: bool) -> str:
+def step_source(parent: tuple[int, ...]) -> str:
     """Function ``step_with_error`` for a tree of ``len(parent)`` unknowns; squares per lane of two errors and Φ."""
     n = len(parent)
     wide = 2 * n
@@ -53,7 +53,7 @@ def step_source(parent: tuple[int, ...], extra: bool) -> str:
         ]
     body += [f"u{i} = u[o + {i} * LANES + l]" for i in range(wide)]
     for m in range(STAGES):
-        body += _stage(m, parent, extra)
+        body += _stage(m, parent)
     for i in range(wide):
         body += [f"z = u{i}{_sum(B, i)}", f"un[o + {i} * LANES + l] = z", "squares[2 * LANES + l] += z * z"]
         # A sum of squares vectorises; a running maximum takes the compiler minutes.
@@ -66,7 +66,7 @@ def step_source(parent: tuple[int, ...], extra: bool) -> str:
     return "\n".join(out + ["            " + line for line in body])
 
 
-def _stage(m: int, parent: tuple[int, ...], extra: bool) -> list[str]:
+def _stage(m: int, parent: tuple[int, ...]) -> list[str]:
     n = len(parent)
     lines = [f"x{i} = u{i}{_sum(A[m, :m], i)}" for i in range(2 * n)]
     lines += [f"K{m}_{i} = nu * x{n + i}" for i in range(n)]
@@ -77,15 +77,12 @@ def _stage(m: int, parent: tuple[int, ...], extra: bool) -> list[str]:
             continue
         lines.append(f"e{i} = {_at(m, i, NEAR)}")
         lines.append(
-            f"T{i} = k{i} * (x{i} - e{i} * x{p}) "
-            f"+ d{i} * (x{n + i} - e{i} * x{n + p} - {_at(m, i, NEAR_SLOPE)} * x{p})"
+            f"T{i} = k{i} * (x{i} - e{i} * x{p}) + d{i} * (x{n + i} - e{i} * x{n + p} - {_at(m, i, NEAR_SLOPE)} * x{p})"
         )
         force[p] += f" + e{i} * T{i}"
     for i in range(n):
-        total = force[i]
-        if extra:
-            damping, stiffness = _at(m, i, EXTRA_DAMPING), _at(m, i, EXTRA_STIFFNESS)
-            total = f"({total} - {damping} * x{n + i} - {stiffness} * x{i}) * {_at(m, i, OVER_MASS)}"
+        damping, stiffness = _at(m, i, EXTRA_DAMPING), _at(m, i, EXTRA_STIFFNESS)
+        total = f"({force[i]} - {damping} * x{n + i} - {stiffness} * x{i}) * {_at(m, i, OVER_MASS)}"
         lines.append(f"K{m}_{n + i} = h * ({total})")
     return lines
 
