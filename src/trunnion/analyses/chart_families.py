@@ -183,7 +183,7 @@ class LineFamily:
             return [box]
         low, high = (box.u0, box.u1) if self.x.is_speed else (box.v0, box.v1)
         phase = self.size * frequency * self.period * (1 - low / high) / 2
-        edges = np.linspace(low, high, max(1, int(np.ceil(phase / (NODES - 20)))) + 1)
+        edges = np.linspace(low, high, max(1, int(np.ceil(phase / (NODES - 4)))) + 1)
         pairs = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
         if self.x.is_speed:
             return [Box(a, b, box.v0, box.v1) for a, b in pairs]

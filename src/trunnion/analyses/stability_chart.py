@@ -25,7 +25,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
-from trunnion.numerics.patches import Box, PatchedFunction, build
+from trunnion.numerics.patches import Box, Patch, PatchedFunction, build
 from trunnion.results.chart import ChartPoint, SpotCheck, StabilityChart
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
@@ -123,9 +123,7 @@ class _Task:
     remarks: tuple[str, ...]
 
 
-def _line_task(
-    line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed: float | None, twisted: bool
-) -> _Task:
+def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed: float | None, twisted: bool) -> _Task:
     assembly = line if isinstance(line, Assembly) else assemble(line)
     require_steady_base(assembly)
     require_period(assembly.line, assembly.topology)
@@ -166,14 +164,10 @@ def _patched(
         return PatchedFunction((), (box,))
 
     sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads)
-    return build(
-        sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell
-    )
+    return build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
 
 
-def _fill(
-    family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int
-) -> Pixels:
+def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int) -> Pixels:
     """Every pixel, patch by patch in parallel, the rest by direct integration."""
     shape = (len(y), len(x))
     radius, error = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -190,23 +184,21 @@ def _fill(
         critical[where] = found.critical.reshape(radius[where].shape)
         verdict[where] = found.verdict.reshape(radius[where].shape)
 
-    def fill_patch(task: tuple[int, slice, slice]) -> None:
-        index, rows, columns = task
-        patch = function.patches[index]
-        width = (columns.stop - columns.start) * len(patch.error)
-        for part in _strips(rows, width):
-            values = patch.grid(u[columns], v[part])
-            bounds = patch.error_grid(u[columns], v[part])
-            put((part, columns), values.reshape(len(values), -1), bounds.reshape(len(values), -1))
+    def fill_strip(task: tuple[Patch, slice, slice]) -> None:
+        patch, rows, columns = task
+        values, bounds = patch.grid(u[columns], v[rows]), patch.error_grid(u[columns], v[rows])
+        put((rows, columns), values.reshape(len(values), -1), bounds.reshape(len(values), -1))
 
+    # One patch may cover most of the pixels, so threads share strips.
     tasks = []
-    for index, patch in enumerate(function.patches):
+    for patch in function.patches:
         rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
         if rows.stop > rows.start and columns.stop > columns.start:
-            tasks.append((index, rows, columns))
+            width = (columns.stop - columns.start) * len(patch.error)
+            tasks += [(patch, part, columns) for part in _strips(rows, width)]
             left[rows, columns] = False
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(fill_patch, tasks))
+        list(pool.map(fill_strip, tasks))
     r, c = np.nonzero(left)
     for start in range(0, len(r), 65536):
         here = (r[start : start + 65536], c[start : start + 65536])
@@ -238,9 +230,7 @@ def _pointwise(
                 part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid)
             )
         else:
-            values, bounds = (
-                part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1)
-            )
+            values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.rigid_body)
         return ChartPoint(
             x=x,
@@ -265,9 +255,7 @@ def _resampler(
     return resample
 
 
-def _self_checked(
-    chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int
-) -> StabilityChart:
+def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int) -> StabilityChart:
     """Compare random pixels with direct integration; enlarge the error estimates if one falls short."""
     rng = np.random.default_rng(chart.verdict.size)
     rows, columns = rng.integers(0, len(chart.y), SPOTS), rng.integers(0, len(chart.x), SPOTS)

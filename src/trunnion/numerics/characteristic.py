@@ -16,6 +16,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from trunnion.numerics.quartic import SETTLED, quartic_radii
+
 Array = NDArray[np.float64]
 LARGEST = 6
 """Largest matrix treated by coefficients; beyond, they are too ill-conditioned (interpolate Z itself)."""
@@ -59,38 +61,46 @@ def radii(values, bounds, radius, error, critical):  # type: ignore[no-untyped-d
     """
     m, count = values.shape
     roots = np.zeros(m, dtype=np.complex128)
-    e, size = np.empty(m), np.empty(m)
-    warm = False
+    if m != 4:
+        for p in range(count):
+            _one_radius(values, bounds, p, p > 0, roots, radius, error, critical)
+        return
+    real, imaginary, left = np.empty(count), np.empty(count), np.empty(count)
+    quartic_radii(values, bounds, radius, error, real, imaginary, left)
     for p in range(count):
-        b = p
-        total = 0.0
-        for k in range(m):
-            e[k] = values[k, p]
-            total += e[k] + bounds[k, b]
-        if not math.isfinite(total):
-            radius[p], error[p], critical[p] = math.nan, math.nan, complex(math.nan, math.nan)
-            warm = False
-            continue
-        if m == 2:
-            _quadratic(e[0], e[1], roots, 0)
-        elif m == 4:
-            if not _quartic(e, roots):
-                _companion(e, roots)
+        if left[p] < SETTLED and math.isfinite(error[p]):
+            critical[p] = complex(real[p], imaginary[p])
         else:
-            if not _aberth(e, roots, warm):
-                _companion(e, roots)
-            warm = True
-        which = 0
-        for i in range(m):
-            size[i] = math.sqrt(roots[i].real ** 2 + roots[i].imag ** 2)
-            if size[i] > size[which]:
-                which = i
-        own = _bound(roots, size, which, bounds, b)
-        upper = size[which] + own
-        for i in range(m):
-            if i != which and not _far_inside(size[i], size[which], bounds, b, m):
-                upper = max(upper, size[i] + _bound(roots, size, i, bounds, b))
-        radius[p], error[p], critical[p] = size[which], upper - size[which], roots[which]
+            _one_radius(values, bounds, p, False, roots, radius, error, critical)
+
+
+@njit(cache=True, nogil=True)
+def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # type: ignore[no-untyped-def]
+    """The same for one column; ``warm``: ``roots`` are those of its neighbour."""
+    m = values.shape[0]
+    total = 0.0
+    for k in range(m):
+        total += values[k, p] + bounds[k, p]
+    if not math.isfinite(total):
+        radius[p], error[p], critical[p] = math.nan, math.nan, complex(math.nan, math.nan)
+        roots[:] = math.nan
+        return
+    e, size = values[:, p].copy(), np.empty(m)
+    if m == 2:
+        _quadratic(e[0], e[1], roots, 0)
+    elif m == 4 or not _aberth(e, roots, warm and math.isfinite(roots[0].real)):
+        _companion(e, roots)
+    which = 0
+    for i in range(m):
+        size[i] = math.sqrt(roots[i].real ** 2 + roots[i].imag ** 2)
+        if size[i] > size[which]:
+            which = i
+    own = _bound(roots, size, which, bounds, p)
+    upper = size[which] + own
+    for i in range(m):
+        if i != which and not _far_inside(size[i], size[which], bounds, p, m):
+            upper = max(upper, size[i] + _bound(roots, size, i, bounds, p))
+    radius[p], error[p], critical[p] = size[which], upper - size[which], roots[which]
 
 
 @njit(cache=True, nogil=True)
@@ -155,79 +165,6 @@ def _quadratic(total, product, roots, at):  # type: ignore[no-untyped-def]
     else:
         rise = math.sqrt(-under)
         roots[at], roots[at + 1] = complex(half, rise), complex(half, -rise)
-
-
-@njit(cache=True, nogil=True)
-def _quartic(e, roots):  # type: ignore[no-untyped-def]
-    """Roots of x⁴ − e₁x³ + e₂x² − e₃x + e₄ with e₄ > 0; False where the check of the factors fails.
-
-    Scaled so that e₄ = 1 it is (x² − px + q)(x² − sx + t) with qt = 1. With w = q + t the largest root of the
-    resolvent w³ − bw² + (ac − 4)w − (a² + c² − 4b) all four are real; Newton's method then removes the
-    rounding that the square roots bring in.
-    """
-    if not e[3] > 0:
-        return False
-    scale2 = math.sqrt(e[3])
-    scale = math.sqrt(scale2)
-    a, b, c = e[0] / scale, e[1] / scale2, e[2] / (scale2 * scale)
-    w = _largest_cubic_root(-b, a * c - 4, 4 * b - a * a - c * c)
-    spread = math.sqrt(max(0.25 * a * a - b + w, 0.0))
-    apart = math.sqrt(max(0.25 * w * w - 1, 0.0))
-    p, s = 0.5 * a + spread, 0.5 * a - spread
-    q, t = 0.5 * w + apart, 0.5 * w - apart
-    if abs(p * q + s * t - c) < abs(p * t + s * q - c):
-        q, t = t, q
-    for _ in range(3):
-        p, s, q, t = _polish(a, b, c, p, s, q, t)
-    size = 1 + abs(a) + abs(b) + abs(c)
-    left = abs(p + s - a) + abs(q + t + p * s - b) + abs(p * t + s * q - c) + abs(q * t - 1)
-    if not left < 1e-13 * size:
-        return False
-    _quadratic(p * scale, q * scale2, roots, 0)
-    _quadratic(s * scale, t * scale2, roots, 2)
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _polish(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
-    """One Newton step on p + s = a, q + t + ps = b, pt + sq = c, qt = 1, if it is a small one."""
-    r1, r2, r3, r4 = a - p - s, b - q - t - p * s, c - p * t - s * q, 1 - q * t
-    # With ds = r1 − dp: dq + dt = u − v dp and s dq + p dt = g − h dp.
-    v, u, h, g = s - p, r2 - p * r1, t - q, r3 - q * r1
-    den = p - s
-    slope = -t * v * den + (q - t) * (s * v - h)
-    if abs(slope) < 1e-14 or den == 0.0:
-        return p, s, q, t
-    dp = ((r4 - t * u) * den - (q - t) * (g - s * u)) / slope
-    dt = (g - h * dp - s * (u - v * dp)) / den
-    dq = u - v * dp - dt
-    if abs(dp) + abs(dq) + abs(dt) > 1e-2 * (1 + abs(p) + abs(q)):
-        return p, s, q, t
-    return p + dp, s + r1 - dp, q + dq, t + dt
-
-
-@njit(cache=True, nogil=True)
-def _largest_cubic_root(c2, c1, c0):  # type: ignore[no-untyped-def]
-    """Largest real root of x³ + c₂x² + c₁x + c₀."""
-    third = c2 / 3
-    p = c1 / 3 - third * third
-    q = third * third * third - third * c1 / 2 + c0 / 2
-    under = q * q + p * p * p
-    if under > 0:
-        big = -q - math.copysign(math.sqrt(under), q)
-        root = math.copysign(abs(big) ** (1 / 3), big)
-        x = (root - p / root if root != 0 else 0.0) - third
-    else:
-        m = math.sqrt(max(-p, 0.0))
-        cosine = -q / (m * m * m) if m > 0 else 1.0
-        x = 2 * m * math.cos(math.acos(min(1.0, max(-1.0, cosine))) / 3) - third
-    for _ in range(2):
-        slope = (3 * x + 2 * c2) * x + c1
-        if slope != 0:
-            step = (((x + c2) * x + c1) * x + c0) / slope
-            if abs(step) < 1e-4 * (1 + abs(x)):
-                x -= step
-    return x
 
 
 @njit(cache=True, nogil=True)

@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 Propagate = Callable[[Array, Array, float, float], tuple[Array, Array, Array]]
 """(u, v, begin, length) → propagators (points, m, m), errors (points,), ∫tr(M⁻¹C)dτ (points,)."""
 
-RADIANS = 14.0
+RADIANS = 28.0
 """Phase of the fastest mode across a slab: then a few dozen nodes resolve it over any range of speed."""
 
 
-SLAB_NODES = 32
+SLAB_NODES = 40
 """Nodes per variable: half of RADIANS and what a smooth function needs besides."""
 
 
@@ -76,9 +76,7 @@ def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, toleran
             cuts = np.cumsum([a * b for a, b in shapes])[:-1]
             return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 
-        functions.append(
-            build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1)
-        )
+        functions.append(build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
         if functions[-1].stubborn:
             return None
     return Slabs(tuple(functions), size)
