@@ -128,6 +128,51 @@ def rival(
     return each, float(np.abs(chart.spectral_radius[rows, columns] - radii).max())
 
 
+def heyoka_seconds(line: tn.Driveline, chart: StabilityChart, sample: int) -> tuple[float, float] | None:
+    """Seconds a point of heyoka's Taylor integrator in batches on one core, and its distance; None without it.
+
+    Two shafts and a joint, all four columns in one system of 16 equations; compiling is not counted.
+    """
+    try:
+        import heyoka as hy
+    except ImportError:
+        return None
+    (k1, k2), (c1, c2), (inertia1, inertia2) = numbers_of(line)
+    fork = next(e for e in line.elements if e.kind == "Shaft").fork_offset
+    over, loss, cosine = hy.par[0], hy.par[1], hy.par[2]
+    chi = hy.time + fork
+    d = 1.0 - (1.0 - cosine**2) * hy.cos(chi) ** 2
+    eta = cosine / d
+    eta1 = -cosine * (1.0 - cosine**2) * hy.sin(2.0 * chi) / d**2
+    equations = []
+    for column in range(4):
+        x1, x2, v1, v2 = hy.make_vars(*(f"{name}{column}" for name in ("x1", "x2", "v1", "v2")))
+        near = k1 * over * x1 + c1 * loss * v1
+        far = k2 * over * (x2 - eta * x1) + c2 * loss * (v2 - eta * v1 - eta1 * x1)
+        equations += [(x1, v1), (x2, v2), (v1, (eta * far - near) / inertia1), (v2, -far / inertia2)]
+    width = hy.recommended_simd_size()
+    start = np.repeat(np.eye(4).ravel()[:, None], width, axis=1)
+    run = hy.taylor_adaptive_batch(equations, start, tol=TOLERANCE, pars=np.zeros((3, width)), compact_mode=True)
+    rng = np.random.default_rng(2)
+    sample -= sample % width
+    rows, columns = rng.integers(len(chart.y), size=sample), rng.integers(len(chart.x), size=sample)
+    # Slow and fast lanes in one batch wait for each other; neighbours stand together.
+    order = np.argsort(chart.x[columns])
+    rows, columns = rows[order], columns[order]
+    apart, begin = 0.0, time.perf_counter()
+    for at in range(0, sample, width):
+        speed, angle = chart.x[columns[at : at + width]], chart.y[rows[at : at + width]]
+        run.set_time(0.0)
+        run.state[:] = start
+        run.pars[:] = [1 / speed**2, 1 / speed, np.cos(angle)]
+        run.propagate_until(math.pi)
+        for lane in range(width):
+            monodromy = run.state[:, lane].reshape(4, 4).T
+            radius = np.abs(np.linalg.eigvals(monodromy)).max()
+            apart = max(apart, abs(radius - chart.spectral_radius[rows[at + lane], columns[at + lane]]))
+    return (time.perf_counter() - begin) / sample, apart
+
+
 def kernel_rate(line: tn.Driveline, speed: tuple[float, float], angle: tuple[float, float], lanes: int) -> float:
     """Monodromies a second of the chain kernel, one thread, at 1e-9, over a box of speed and all joint angles."""
     assembly = assemble(line)
@@ -194,6 +239,9 @@ def main() -> None:
         other = each * n**2 / threads
         print(f"{f'{name}, {n}²':34}{took:10.3f}{other:12.0f}{other / took:8.0f}   {apart:.1e}")
         print(f"{'':6}{result.spot_check}", flush=True)
+        if line is two and (other := heyoka_seconds(line, result, 400)) is not None:
+            scaled = other[0] * n**2 / threads
+            print(f"{'':6}heyoka in batches: {scaled:.0f} s, {scaled / took:.0f} times the chart, apart {other[1]:.1e}")
 
     n = 1000 // less
     for name, speed, angle in (

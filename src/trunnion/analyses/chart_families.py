@@ -71,6 +71,9 @@ def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]
     if m <= LARGEST:
         values, bounds = np.empty((count, m + 1)), np.empty((count, m + 1))
         coefficients_from_matrices(matrix, error, values[:, :m], bounds[:, :m])
+        # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
+        values[:, m - 1] = np.exp(-trace)
+        bounds[:, m - 1] = values[:, m - 1] * (np.minimum(error, 1.0) + 1e-12 * np.abs(trace))
     else:
         values, bounds = np.empty((count, m * m + 1)), np.empty((count, m * m + 1))
         values[:, :-1] = matrix.reshape(count, -1)
@@ -244,9 +247,7 @@ def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) 
     def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
         u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
         v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
-        values, bounds = family.evaluate(
-            family.from_patch(u, True), family.from_patch(v, False), tolerance, threads
-        )
+        values, bounds = family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
         cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
         return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 

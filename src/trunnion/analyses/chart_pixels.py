@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.numerics.characteristic import LARGEST, radii, roots_of
+from trunnion.numerics.characteristic import LARGEST, radii, radii_on_rows, roots_of
+from trunnion.numerics.patches import Patch
 from trunnion.results.verdict import verdicts
 
 Array = NDArray[np.float64]
@@ -31,24 +32,36 @@ def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
     """
     m, trace = 2 * size, values[-1]
     if m <= LARGEST and not rigid_body:
-        e, de = values[:m].copy(), bounds[:m].copy()
-        # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
-        e[-1] = np.exp(-trace)
-        de[-1] = e[-1] * (bounds[-1] + 1e-15)
-        radius, error = np.empty(len(trace)), np.empty(len(trace))
-        critical = np.empty(len(trace), dtype=complex)
-        radii(e, de, radius, error, critical)
+        radius, error, critical = radii(values[:m], bounds[:m])
     else:
         radius, error, critical = _largest(values.T, bounds.T, m, rigid_body)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
 
 
+def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_body: bool) -> Pixels:
+    """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
+    m, shape = 2 * size, (len(v), len(u))
+    if m > LARGEST or rigid_body:
+        values, bounds = patch.rows(along, v), patch.error_grid(u, v)
+        found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, rigid_body)
+        return Pixels(
+            found.radius.reshape(shape),
+            found.error.reshape(shape),
+            found.critical.reshape(shape),
+            found.verdict.reshape(shape),
+        )
+    column_block, row_block = patch.blocks(u, v)
+    radius, error, critical = np.empty(shape), np.empty(shape), np.empty((*shape, 2))
+    radii_on_rows(patch.weights(v), along[:m], patch.error[:m], row_block, column_block, radius, error, critical)
+    trace = patch.rows(along[-1:], v)[0]
+    code = verdicts(radius, error, np.abs(trace) < 1e-12 * size)
+    return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
+
+
 def multipliers_of(values: Array, size: int) -> Complex:
     """All multipliers of one point from its quantities, by falling modulus."""
     m = 2 * size
-    found = (
-        roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
-    )
+    found = roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
@@ -63,9 +76,7 @@ def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Ar
         matrix_error = bounds[:, :-1].max(axis=1)
     else:
         matrix = values[:, :-1].reshape(-1, m, m)
-        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(
-            matrix, axis=(1, 2)
-        )
+        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
         every = np.full((len(values), m), np.nan, dtype=complex)
         finite = np.isfinite(matrix).all(axis=(1, 2))
         every[finite] = np.linalg.eigvals(matrix[finite])

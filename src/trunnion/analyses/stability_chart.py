@@ -11,14 +11,13 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
 from trunnion.analyses.chart_families import ChartFamily, LineFamily, OwnFamily
-from trunnion.analyses.chart_pixels import Pixels, judge, multipliers_of
+from trunnion.analyses.chart_pixels import Pixels, judge, judge_rows, multipliers_of
 from trunnion.analyses.stability import operating_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -175,19 +174,11 @@ def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, to
     left = np.ones(shape, dtype=bool)
     u, v = family.to_patch(x, True), family.to_patch(y, False)
 
-    def put(where: Any, values: Array, bounds: Array) -> None:
-        found = judge(values, bounds, family.size, family.rigid_body)
-        radius[where], error[where] = (
-            found.radius.reshape(radius[where].shape),
-            found.error.reshape(radius[where].shape),
-        )
-        critical[where] = found.critical.reshape(radius[where].shape)
-        verdict[where] = found.verdict.reshape(radius[where].shape)
-
-    def fill_strip(task: tuple[Patch, slice, slice]) -> None:
-        patch, rows, columns = task
-        values, bounds = patch.grid(u[columns], v[rows]), patch.error_grid(u[columns], v[rows])
-        put((rows, columns), values.reshape(len(values), -1), bounds.reshape(len(values), -1))
+    def fill_strip(task: tuple[Patch, Array, slice, slice]) -> None:
+        patch, along, rows, columns = task
+        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.rigid_body)
+        radius[rows, columns], error[rows, columns] = found.radius, found.error
+        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
 
     # One patch may cover most of the pixels, so threads share strips.
     tasks = []
@@ -195,7 +186,8 @@ def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, to
         rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
         if rows.stop > rows.start and columns.stop > columns.start:
             width = (columns.stop - columns.start) * len(patch.error)
-            tasks += [(patch, part, columns) for part in _strips(rows, width)]
+            along = patch.columns(u[columns])
+            tasks += [(patch, along, part, columns) for part in _strips(rows, width)]
             left[rows, columns] = False
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(fill_strip, tasks))
@@ -203,7 +195,13 @@ def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, to
     for start in range(0, len(r), 65536):
         here = (r[start : start + 65536], c[start : start + 65536])
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
-        put(here, np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T))
+        found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.rigid_body)
+        radius[here], error[here], critical[here], verdict[here] = (
+            found.radius,
+            found.error,
+            found.critical,
+            found.verdict,
+        )
     return Pixels(radius, error, critical, verdict)
 
 
@@ -213,7 +211,7 @@ def _between(axis: Array, low: float, high: float) -> slice:
     return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
 
 
-def _strips(rows: slice, per_row: int, limit: int = 500_000) -> list[slice]:
+def _strips(rows: slice, per_row: int, limit: int = 200_000) -> list[slice]:
     """Rows in strips of at most ``limit`` numbers: bounded memory, and work for every thread's cache."""
     step = max(1, limit // max(per_row, 1))
     return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]

@@ -16,9 +16,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from trunnion.numerics.quartic import SETTLED, quartic_radii
+from trunnion.numerics.chebyshev_rows import weighted_sum
+from trunnion.numerics.quartic import CHUNK, ERROR, IMAGINARY, LEFT, RADIUS, REAL, ROWS, SETTLED, quartic_chunk
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 LARGEST = 6
 """Largest matrix treated by coefficients; beyond, they are too ill-conditioned (interpolate Z itself)."""
 
@@ -52,26 +54,73 @@ def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[n
                 n[i, i] += trace / k
 
 
-@njit(cache=True, nogil=True)
-def radii(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
-    """Spectral radius, its error and the critical multiplier for columns of coefficients.
+def radii(values: Array, bounds: Array) -> tuple[Array, Array, Complex]:
+    """Spectral radius, its error and the critical multiplier (count,) for columns of coefficients.
 
-    values, bounds (m, count) with m = 2, 4 or 6; radius, error (count,) and critical (count,) complex are filled.
-    Columns that are not finite give NaN.
+    values, bounds (m, count) with m = 2, 4 or 6. Columns that are not finite give NaN.
     """
+    count = values.shape[1]
+    radius, error, critical = np.empty(count), np.empty(count), np.empty((count, 2))
+    _radii_of_columns(values, bounds, radius, error, critical)
+    return radius, error, critical.view(np.complex128)[:, 0]
+
+
+@njit(cache=True, nogil=True)
+def _radii_of_columns(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
     m, count = values.shape
-    roots = np.zeros(m, dtype=np.complex128)
-    if m != 4:
-        for p in range(count):
-            _one_radius(values, bounds, p, p > 0, roots, radius, error, critical)
-        return
-    real, imaginary, left = np.empty(count), np.empty(count), np.empty(count)
-    quartic_radii(values, bounds, radius, error, real, imaginary, left)
-    for p in range(count):
-        if left[p] < SETTLED and math.isfinite(error[p]):
-            critical[p] = complex(real[p], imaginary[p])
+    e, off, work = np.ones((m, CHUNK)), np.ones((m, CHUNK)), np.ones(ROWS * CHUNK)
+    for at in range(0, count, CHUNK):
+        end = min(at + CHUNK, count)
+        e[:, : end - at], off[:, : end - at] = values[:, at:end], bounds[:, at:end]
+        _chunk(e, off, work, radius[at:end], error[at:end], critical[at:end])
+
+
+@njit(cache=True, nogil=True)
+def radii_on_rows(up, along, errors, row_block, column_block, radius, error, critical):  # type: ignore[no-untyped-def]
+    """The same on rows of pixels whose coefficients are Σ_i up[v, i] along[k, i, u], with errors by block.
+
+    up (v, i), along (m, i, u), errors (m, blocks, blocks), row_block (v,), column_block (u,); radius, error (v, u)
+    and critical (v, u, 2), real and imaginary part, are filled. Nothing but the results passes through memory.
+    """
+    m, across = along.shape[0], along.shape[2]
+    e, off, work = np.ones((m, CHUNK)), np.ones((m, CHUNK)), np.ones(ROWS * CHUNK)
+    found, bound, root = np.empty(CHUNK), np.empty(CHUNK), np.empty((CHUNK, 2))
+    high = max(1, CHUNK // across)  # rows of a narrow patch share a chunk
+    for low in range(0, up.shape[0], high):
+        top = min(low + high, up.shape[0])
+        for at in range(0, across, CHUNK):
+            end = min(at + CHUNK, across)
+            wide = end - at
+            for v in range(low, top):
+                first = (v - low) * wide
+                for k in range(m):
+                    weighted_sum(up[v], along[k], at, end, e[k, first : first + wide])
+                    own = errors[k, row_block[v]]
+                    for u in range(wide):
+                        off[k, first + u] = own[column_block[at + u]]
+            count = (top - low) * wide
+            _chunk(e, off, work, found[:count], bound[:count], root[:count])
+            for v in range(low, top):
+                first = (v - low) * wide
+                radius[v, at:end], error[v, at:end] = found[first : first + wide], bound[first : first + wide]
+                critical[v, at:end] = root[first : first + wide]
+
+
+@njit(cache=True, nogil=True)
+def _chunk(values, bounds, work, radius, error, critical):  # type: ignore[no-untyped-def]
+    """A chunk of columns, of which the first len(radius) count; roots start from those of the neighbour."""
+    m = len(values)
+    quartic = m == 4
+    if quartic:
+        quartic_chunk(values, bounds, work)
+    roots, before = np.zeros(m, dtype=np.complex128), -2
+    for p in range(len(radius)):
+        if quartic and work[LEFT * CHUNK + p] < SETTLED:
+            radius[p], error[p] = work[RADIUS * CHUNK + p], work[ERROR * CHUNK + p]
+            critical[p, 0], critical[p, 1] = work[REAL * CHUNK + p], work[IMAGINARY * CHUNK + p]
         else:
-            _one_radius(values, bounds, p, False, roots, radius, error, critical)
+            _one_radius(values, bounds, p, before == p - 1, roots, radius, error, critical)
+            before = p
 
 
 @njit(cache=True, nogil=True)
@@ -82,8 +131,8 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
     for k in range(m):
         total += values[k, p] + bounds[k, p]
     if not math.isfinite(total):
-        radius[p], error[p], critical[p] = math.nan, math.nan, complex(math.nan, math.nan)
-        roots[:] = math.nan
+        radius[p], error[p] = math.nan, math.nan
+        critical[p, 0] = critical[p, 1] = roots[0] = math.nan
         return
     e, size = values[:, p].copy(), np.empty(m)
     if m == 2:
@@ -100,7 +149,8 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
     for i in range(m):
         if i != which and not _far_inside(size[i], size[which], bounds, p, m):
             upper = max(upper, size[i] + _bound(roots, size, i, bounds, p))
-    radius[p], error[p], critical[p] = size[which], upper - size[which], roots[which]
+    radius[p], error[p] = size[which], upper - size[which]
+    critical[p, 0], critical[p, 1] = roots[which].real, roots[which].imag
 
 
 @njit(cache=True, nogil=True)
@@ -232,7 +282,7 @@ def _companion(e, roots):  # type: ignore[no-untyped-def]
         roots[i] = found[i]
 
 
-def roots_of(values: Array) -> NDArray[np.complex128]:
+def roots_of(values: Array) -> Complex:
     """All multipliers from one row of coefficients e₁…e_m."""
     signs = (-1.0) ** np.arange(1, len(values) + 1)
     return np.roots(np.concatenate([[1.0], signs * values])).astype(complex)

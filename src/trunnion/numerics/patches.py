@@ -15,7 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct
 
+from trunnion.numerics.chebyshev_rows import weighted_sums
+
 Array = NDArray[np.float64]
+Blocks = NDArray[np.intp]
 Grid = tuple[Array, Array]
 Evaluate = Callable[[list[Grid]], list[tuple[Array, Array]]]
 """Grids (u (columns,), v (rows,)) → values and error bounds on each, (rows · columns, quantities), rows slow."""
@@ -70,17 +73,31 @@ class Patch:
 
     def grid(self, u: Array, v: Array) -> Array:
         """Values on the grid of ``u`` and ``v`` inside the box; shape (quantity, v, u)."""
+        return self.rows(self.columns(u), v)
+
+    def columns(self, u: Array) -> Array:
+        """Coefficients of T_i(v) along each column ``u``; shape (quantity, i, u)."""
         across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1), self.coefficients.shape[2])
+        return np.asarray(self.coefficients @ across)
+
+    def weights(self, v: Array) -> Array:
+        """T_i(v) of rows ``v``; shape (v, i)."""
         up = _chebyshev(_to_unit(v, self.box.v0, self.box.v1), self.coefficients.shape[1])
-        # (q, i, j) · (j, u), then (v, i) · (q, i, u)
-        return np.asarray(up.T @ (self.coefficients @ across))
+        return np.ascontiguousarray(up.T)
+
+    def rows(self, columns: Array, v: Array) -> Array:
+        """Values on rows ``v`` of ``columns``; shape (quantity, v, u)."""
+        out = np.empty((len(columns), len(v), columns.shape[2]))
+        weighted_sums(self.weights(v), columns, out)
+        return out
+
+    def blocks(self, u: Array, v: Array) -> tuple[Blocks, Blocks]:
+        """The blocks of errors that columns ``u`` and rows ``v`` fall into."""
+        return _block(_to_unit(u, self.box.u0, self.box.u1)), _block(_to_unit(v, self.box.v0, self.box.v1))
 
     def error_grid(self, u: Array, v: Array) -> Array:
         """Error bounds on the same grid; shape (quantity, v, u)."""
-        rows, columns = (
-            _block(_to_unit(v, self.box.v0, self.box.v1)),
-            _block(_to_unit(u, self.box.u0, self.box.u1)),
-        )
+        columns, rows = self.blocks(u, v)
         return self.error[:, rows[:, None], columns]
 
 
@@ -149,9 +166,7 @@ BATCH = 24
 """Boxes sampled in one call: enough to keep every thread busy, few enough to bound memory."""
 
 
-def _sample(
-    evaluate: Evaluate, boxes: list[tuple[Box, int]], nodes: int
-) -> Iterator[tuple[Box, int, Array, Array]]:
+def _sample(evaluate: Evaluate, boxes: list[tuple[Box, int]], nodes: int) -> Iterator[tuple[Box, int, Array, Array]]:
     unit = np.cos(np.pi * (np.arange(nodes) + 0.5) / nodes)
     for start in range(0, len(boxes), BATCH):
         batch = boxes[start : start + BATCH]
@@ -160,9 +175,7 @@ def _sample(
             yield box, depth, values, errors
 
 
-def _transform(
-    values: Array, errors: Array, nodes: int, tolerance: float
-) -> tuple[Array, float, float, Array]:
+def _transform(values: Array, errors: Array, nodes: int, tolerance: float) -> tuple[Array, float, float, Array]:
     """Chebyshev coefficients, the tails along u and v over what they may be, and the error of each quantity.
 
     A tail may be ``tolerance`` times the quantity's size, or the error of its samples where that is larger:
@@ -212,7 +225,7 @@ def _from_unit(t: Array, low: float, high: float) -> Array:
     return (low + high) / 2 + (high - low) / 2 * t
 
 
-def _block(t: Array) -> NDArray[np.intp]:
+def _block(t: Array) -> Blocks:
     """The block of nodes that a coordinate in [−1, 1] falls into; nodes run from +1 to −1."""
     return np.minimum((np.arccos(t) / np.pi * BLOCKS).astype(np.intp), BLOCKS - 1)
 

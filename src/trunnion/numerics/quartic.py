@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 CHUNK = 256
@@ -21,35 +20,30 @@ CUBIC_STEPS = 12
 POLISHING_STEPS = 2
 SETTLED = 1e-13
 """Residual of the factors over the size of the coefficients."""
-A, B, C, SCALE, SCALE2, W, P, S, Q, T, LEFT = range(11)
-ROWS = 11
+A, B, C, SCALE, SCALE2, W, P, S, Q, T, LEFT, RADIUS, ERROR, REAL, IMAGINARY = range(15)
+ROWS = 15
 
 
 @njit(cache=True, nogil=True)
-def quartic_radii(values, bounds, radius, error, real, imaginary, left):  # type: ignore[no-untyped-def]
-    """Spectral radius, its error bound and the critical multiplier of columns of coefficients e₁…e₄.
+def quartic_chunk(values, bounds, work):  # type: ignore[no-untyped-def]
+    """Spectral radius, its error bound and the critical multiplier of ``CHUNK`` columns of e₁…e₄.
 
-    values, bounds (4, count); radius, error, real, imaginary and left (count,) are filled. Where ``left``, the
-    residual of the factors, is not below ``SETTLED`` (e₄ ≤ 0, coefficients that are not finite, factors that
-    coincide) nothing else holds.
+    values, bounds (4, CHUNK), contiguous; the results stand in the rows RADIUS, ERROR, REAL and IMAGINARY of
+    ``work`` (ROWS · CHUNK,). Where the row LEFT, the residual of the factors, is not below ``SETTLED`` (e₄ ≤ 0,
+    coefficients that are not finite, factors that coincide) nothing else holds.
     """
-    count = values.shape[1]
-    work = np.ones(ROWS * CHUNK)
-    for at in range(0, count, CHUNK):
-        end = min(at + CHUNK, count)
-        _scale(values[:, at:end], work)
-        _largest_resolvent_root(work)
-        _factor(work)
-        for _ in range(POLISHING_STEPS):
-            _polish(work)
-        _residual(work)
-        _radii(bounds[:, at:end], work, radius[at:end], error[at:end], real[at:end], imaginary[at:end], left[at:end])
+    _scale(values[0], values[1], values[2], values[3], work)
+    _largest_resolvent_root(work)
+    _factor(work)
+    for _ in range(POLISHING_STEPS):
+        _polish(work)
+    _residual(work)
+    _radii(bounds[0], bounds[1], bounds[2], bounds[3], work)
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
-def _scale(values, w):  # type: ignore[no-untyped-def]
-    e1, e2, e3, e4 = values[0], values[1], values[2], values[3]
-    for l in range(len(e1)):
+def _scale(e1, e2, e3, e4, w):  # type: ignore[no-untyped-def]
+    for l in range(CHUNK):
         scale2 = math.sqrt(e4[l])
         scale = math.sqrt(scale2)
         w[SCALE * CHUNK + l], w[SCALE2 * CHUNK + l] = scale, scale2
@@ -117,10 +111,9 @@ def _residual(w):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
-def _radii(bounds, w, radius, error, real, imaginary, left):  # type: ignore[no-untyped-def]
+def _radii(b1, b2, b3, b4, w):  # type: ignore[no-untyped-def]
     """The largest modulus, how far the four moduli may be off, and the root itself."""
-    b1, b2, b3, b4 = bounds[0], bounds[1], bounds[2], bounds[3]
-    for l in range(len(radius)):
+    for l in range(CHUNK):
         scale, scale2 = w[SCALE * CHUNK + l], w[SCALE2 * CHUNK + l]
         x1, x3, y1, big1, small1, apart1 = _pair(w[P * CHUNK + l] * scale, w[Q * CHUNK + l] * scale2)
         x2, x4, y2, big2, small2, apart2 = _pair(w[S * CHUNK + l] * scale, w[T * CHUNK + l] * scale2)
@@ -131,11 +124,11 @@ def _radii(bounds, w, radius, error, real, imaginary, left):  # type: ignore[no-
         upper3 = small1 + _bound(_moved(b1[l], b2[l], b3[l], b4[l], small1), apart1, d32, d34)
         upper4 = small2 + _bound(_moved(b1[l], b2[l], b3[l], b4[l], small2), apart2, d14, d34)
         largest = max(big1, big2)
-        radius[l] = largest
-        error[l] = max(max(upper1, upper2), max(upper3, upper4)) - largest
-        real[l] = x1 if big1 >= big2 else x2
-        imaginary[l] = y1 if big1 >= big2 else y2
-        left[l] = w[LEFT * CHUNK + l]
+        off = max(max(upper1, upper2), max(upper3, upper4)) - largest
+        w[RADIUS * CHUNK + l], w[ERROR * CHUNK + l] = largest, off
+        w[REAL * CHUNK + l] = x1 if big1 >= big2 else x2
+        w[IMAGINARY * CHUNK + l] = y1 if big1 >= big2 else y2
+        w[LEFT * CHUNK + l] += 0.0 * off
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
