@@ -121,7 +121,7 @@ class Stability:
         lines = [
             f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
             f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e} per period of "
-            f"{self.period / np.pi:g}π rad of input angle",
+            f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle",
             f"  growth rate {self.growth_rate:+.6g} ± {self.growth_rate_error:.1e} 1/s",
         ]
         if self.resonance is not None:

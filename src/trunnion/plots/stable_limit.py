@@ -60,12 +60,17 @@ def _values(axes: Axes, values: dict[str, float], factor: float, limit: StableLi
     for name, value in values.items():
         if limit.low <= value <= limit.high:
             together.setdefault(round(value * factor, 6), []).append(name)
-    for value, names in together.items():
+    below, step_aside = -np.inf, 0
+    crowded = 0.07 * (limit.high - limit.low) * factor
+    for value, names in sorted(together.items()):
         look: dict[str, Any] = {"color": ACCENT, "lw": 1.2, "ls": (0, (1, 1.5)), "zorder": 5}
         axes.axhline(value, **look)
+        # A label too close above the one below stands to its left.
+        step_aside = (step_aside + 1) % 4 if value - below < crowded else 0
+        below = value
         axes.annotate(
-            f"{', '.join(names)}", (0.995, value), xycoords=("axes fraction", "data"), xytext=(0, 2),
-            textcoords="offset points", ha="right", va="bottom", fontsize=SMALL, color=ACCENT, zorder=6,
+            f"{', '.join(names)}", (0.995 - 0.16 * step_aside, value), xycoords=("axes fraction", "data"),
+            xytext=(0, 2), textcoords="offset points", ha="right", va="bottom", fontsize=SMALL, color=ACCENT, zorder=6,
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
         )  # fmt: skip
 
