@@ -237,6 +237,22 @@ def test_mathieus_chart() -> None:
         assert abs(point.spectral_radius - true.spectral_radius) <= point.error_estimate + true.error_estimate
 
 
+@pytest.mark.parametrize(
+    ("elements", "idle"),
+    [
+        ([tn.HookeJoint(angle=0.0), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0)], "HookeJoint 1.plane"),
+        ([tn.IdealJoint(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0)], "Shaft 2.fork_offset"),
+    ],
+    ids=["the plane of a straight joint", "a fork where no joint is"],
+)
+def test_idle_parameters_that_enter_the_numbers_are_said(elements, idle) -> None:
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0), *elements]
+    )
+    chart = tn.stability_chart(line, ("speed", 0.5, 1.0, 5), (idle, 0.0, 1.0, 4))
+    assert [r for r in chart.remarks if "changes nothing" in r] == [f"{idle} changes nothing in this line"]
+
+
 def test_a_parameter_that_changes_nothing_is_said() -> None:
     line = tn.catalogue("two-shaft-cardan")
     axes = ("speed", 0.5, 1.0, 5), ("Disk 2.load_torque", 0.0, 1.0, 4)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,6 +24,7 @@ from trunnion.equations.linear import require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.patches import Box, Patch, PatchedFunction, build
+from trunnion.numerics.threads import on_threads
 from trunnion.results.chart import ChartPoint, SpotCheck, StabilityChart
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
@@ -141,7 +141,11 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
         raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
     base = float("nan") if swept else operating_speed(assembly.line, speed)
     family = LineFamily(assembly, across, up, base, twisted)
-    idle = [moves_nothing(family.lanes, across, up, True), moves_nothing(family.lanes, across, up, False)]
+
+    def decisive(x: Array, y: Array) -> Array:
+        return family.evaluate(x, y, 1e-12, 1)[0]
+
+    idle = [moves_nothing(decisive, across, up, True), moves_nothing(decisive, across, up, False)]
     remarks = tuple(s for s in (said_x, said_y, *idle) if s)
     return _Task(family, across, up, None if swept else base, assembly.line, remarks)
 
@@ -189,8 +193,7 @@ def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, to
             along = patch.columns(u[columns])
             tasks += [(patch, along, part, columns) for part in _strips(rows, width)]
             left[rows, columns] = False
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(fill_strip, tasks))
+    on_threads(fill_strip, tasks, threads)
     r, c = np.nonzero(left)
     for start in range(0, len(r), 65536):
         here = (r[start : start + 65536], c[start : start + 65536])

@@ -10,7 +10,6 @@ allow (see ``half_period``).
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from trunnion.numerics.chain_tables import LANES, ChainLanes, ChainProgram
 from trunnion.numerics.compiled import chain_kernel
 from trunnion.numerics.half_period import whole_periods
+from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
 MOST_STEPS = 200_000
@@ -62,9 +62,7 @@ def chain_propagator(
     kernel = chain_kernel(tuple(map(int, program.parent)), extra)
 
     def run(first: int, last: int) -> None:
-        kernel.integrate(
-            program, lanes, first, last, begin, length, tolerance, extra, MOST_STEPS, matrix, error, trace
-        )
+        kernel.integrate(program, lanes, first, last, begin, length, tolerance, extra, MOST_STEPS, matrix, error, trace)
 
     _in_pieces(run, count, threads)
     return matrix, error, trace
@@ -98,12 +96,8 @@ def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> Non
         return
     blocks = -(-count // LANES)
     edges = np.unique(np.linspace(0, blocks, 8 * threads + 1).astype(int)) * LANES
-    with ThreadPoolExecutor(threads) as pool:
-        pieces = [
-            pool.submit(run, int(a), min(int(b), count)) for a, b in zip(edges[:-1], edges[1:], strict=True)
-        ]
-        for piece in pieces:
-            piece.result()
+    pieces = [(int(a), min(int(b), count)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    on_threads(lambda piece: run(*piece), pieces, threads)
 
 
 def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:

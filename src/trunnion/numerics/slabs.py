@@ -8,7 +8,6 @@ fraction of a period each, and the nodes of the chart's own patches become produ
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from trunnion.numerics.patches import Box, Grid, PatchedFunction, build
+from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
 Propagate = Callable[[Array, Array, float, float], tuple[Array, Array, Array]]
@@ -84,8 +84,7 @@ def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, toleran
 
 def on_grids(slabs: Slabs, grids: list[Grid], threads: int) -> list[tuple[Array, Array, Array]]:
     """``Slabs.propagators`` of several grids in parallel."""
-    with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(slabs.propagators, grids))
+    return on_threads(slabs.propagators, grids, threads)
 
 
 def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Array, Array]:
