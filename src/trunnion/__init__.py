@@ -16,6 +16,10 @@ from trunnion._version import __version__
 
 if TYPE_CHECKING:
     from trunnion.analyses.bending import bending_speeds
+    from trunnion.analyses.bifurcation_diagram import bifurcation_diagram
+    from trunnion.analyses.certify_chaos import certify_chaos
+    from trunnion.analyses.chaos_zero_one import zero_one_test
+    from trunnion.analyses.harmonic_balance import harmonic_balance
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -23,8 +27,16 @@ if TYPE_CHECKING:
         kinetostatics,
         phase_forks,
     )
+    from trunnion.analyses.lyapunov_map import lyapunov_map, lyapunov_sweep
+    from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum
     from trunnion.analyses.natural_frequencies import natural_frequencies
+    from trunnion.analyses.order_map import order_map
+    from trunnion.analyses.periodic_branch import periodic_branch
+    from trunnion.analyses.periodic_response import periodic_response
+    from trunnion.analyses.poincare_map import poincare_map
     from trunnion.analyses.resonance_speeds import resonance_speeds
+    from trunnion.analyses.run_up import run_up, safe_accelerations
+    from trunnion.analyses.simulate import simulate
     from trunnion.analyses.speed_sweep import speed_sweep, sweep_speeds
     from trunnion.analyses.stability import stability
     from trunnion.analyses.stability_chart import load_chart, stability_chart
@@ -34,6 +46,7 @@ if TYPE_CHECKING:
         Disk,
         DoubleCardanJoint,
         Driveline,
+        Excitation,
         HookeJoint,
         IdealJoint,
         LoadCase,
@@ -52,13 +65,19 @@ if TYPE_CHECKING:
     from trunnion.driveline.cardan_angles import cardan_line
     from trunnion.driveline.layout import combined_angle, layout
     from trunnion.driveline.parameters import Parameter, Term, pack
+    from trunnion.equations.speed_profile import SpeedProfile
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.plots.layout import sketch
     from trunnion.published import catalogue
     from trunnion.reporting import report
     from trunnion.reproduction import reproduce
+    from trunnion.systems.events import Event
     from trunnion.systems.family import PeriodicLinearFamily
+    from trunnion.systems.maps import SectionMap, StroboscopicMap
     from trunnion.systems.periodic_linear import PeriodicLinearSystem
+    from trunnion.systems.reference import reference_system
+    from trunnion.systems.regimes import Regimes, Switch
+    from trunnion.systems.system import System
 
 _HOME = {
     # describe
@@ -70,6 +89,7 @@ _HOME = {
     "TripodJoint": "trunnion.driveline",
     "DoubleCardanJoint": "trunnion.driveline",
     "Ratio": "trunnion.driveline",
+    "Excitation": "trunnion.driveline",
     "Driveline": "trunnion.driveline",
     "Operation": "trunnion.driveline",
     "LoadCase": "trunnion.driveline",
@@ -99,6 +119,7 @@ _HOME = {
     "speed_sweep": "trunnion.analyses.speed_sweep",
     "sweep_speeds": "trunnion.analyses.speed_sweep",
     "bending_speeds": "trunnion.analyses.bending",
+    "harmonic_balance": "trunnion.analyses.harmonic_balance",
     "kinetostatics": "trunnion.analyses.kinetostatics",
     "CrossFriction": "trunnion.analyses.kinetostatics",
     "check_limits": "trunnion.analyses.kinetostatics",
@@ -106,6 +127,29 @@ _HOME = {
     "assembly_sensitivity": "trunnion.analyses.kinetostatics",
     "PeriodicLinearSystem": "trunnion.systems.periodic_linear",
     "PeriodicLinearFamily": "trunnion.systems.family",
+    # nonlinear motion
+    "System": "trunnion.systems.system",
+    "Regimes": "trunnion.systems.regimes",
+    "Switch": "trunnion.systems.regimes",
+    "Event": "trunnion.systems.events",
+    "reference_system": "trunnion.systems.reference",
+    "StroboscopicMap": "trunnion.systems.maps",
+    "SectionMap": "trunnion.systems.maps",
+    "simulate": "trunnion.analyses.simulate",
+    "SpeedProfile": "trunnion.equations.speed_profile",
+    "periodic_response": "trunnion.analyses.periodic_response",
+    "periodic_branch": "trunnion.analyses.periodic_branch",
+    "run_up": "trunnion.analyses.run_up",
+    "safe_accelerations": "trunnion.analyses.run_up",
+    "order_map": "trunnion.analyses.order_map",
+    # chaos
+    "lyapunov_spectrum": "trunnion.analyses.lyapunov_spectrum",
+    "lyapunov_sweep": "trunnion.analyses.lyapunov_map",
+    "lyapunov_map": "trunnion.analyses.lyapunov_map",
+    "poincare_map": "trunnion.analyses.poincare_map",
+    "bifurcation_diagram": "trunnion.analyses.bifurcation_diagram",
+    "zero_one_test": "trunnion.analyses.chaos_zero_one",
+    "certify_chaos": "trunnion.analyses.certify_chaos",
     # hand on
     "report": "trunnion.reporting",
     "reproduce": "trunnion.reproduction",

@@ -20,7 +20,8 @@ ALLOWED = {
     "numerics": set(),
     "systems": {"numerics"},
     "driveline": {"joints", "plots"},  # plots where something draws itself, see test_plots_load_late
-    "published": {"driveline", "systems", "joints"},  # what papers print as matrices is a system
+    # what papers print as matrices or equations is a system, with a compiled right-hand side perhaps
+    "published": {"driveline", "systems", "joints", "numerics"},
     "equations": {"driveline", "joints", "systems", "numerics"},
     "results": {"driveline", "numerics", "plots"},  # a chart keeps the patches behind its pixels
     "analyses": {"plots", *COMPUTE},

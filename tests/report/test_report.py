@@ -50,7 +50,7 @@ inertia = "0.4 kg*m^2"
 load_torque = "100 N*m"
 """
 SECTIONS = (
-    "findings", "driveline", "modes", "speed-frequency", "irregularity", "torque", "stability", "limit",
+    "findings", "driveline", "modes", "speed-frequency", "irregularity", "torque", "stability", "under-load", "limit",
     "bending", "provenance",
 )  # fmt: skip
 
@@ -101,7 +101,7 @@ def test_fetches_nothing(made: Report) -> None:
 
 def test_pictures(made: Report) -> None:
     images = [attrs for tag, attrs in Page(made.html).tags if tag == "img"]
-    assert len(images) == 7
+    assert len(images) == 9
     assert all(str(a["src"]).startswith("data:image/svg+xml;base64,") and a["alt"] for a in images)
 
 
@@ -181,3 +181,18 @@ def test_line_too_slow_for_a_chart(file: Path) -> None:
     made = tn.report(slow)
     assert made.contents.overview.chart is None and made.contents.sweep is not None
     assert "no chart" in Page(made.html).text
+
+
+def test_motion_under_load_is_that_of_the_function(file: Path) -> None:
+    """The section shows the true motion's growth rate and torque; a line without load has no such section."""
+    line = tn.load(file)
+    made = tn.report(line, points=(12, 9))
+    (motion,) = made.contents.loaded
+    expected = tn.periodic_response(line)
+    assert motion.case == "as described"
+    assert motion.response.growth_rate == pytest.approx(expected.growth_rate, rel=1e-9)
+    section = made.html.split('id="under-load"')[1].split("</section>")[0]
+    assert f"{float(f'{expected.torque_peak_to_peak.max():.4g}'):.10g}" in section
+    assert section.count("<img") == 2
+    bare = tn.report(line.replace("pump", load_torque=None), points=(12, 9))
+    assert 'id="under-load"' not in bare.html and bare.contents.loaded == ()

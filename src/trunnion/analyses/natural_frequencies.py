@@ -67,9 +67,7 @@ class NaturalFrequencies:
                 "mode": i + 1,
                 f"frequency [{unit}]": float(w * factor),
                 "damping ratio": float(z),
-                "moves most": "whole line"
-                if self.rigid_body and i == 0
-                else self.names[np.argmax(np.abs(v))],
+                "moves most": "whole line" if self.rigid_body and i == 0 else self.names[np.argmax(np.abs(v))],
             }
             for i, (w, z, v) in enumerate(zip(self.frequency, self.damping_ratio, self.shape.T, strict=True))
         ]

@@ -104,9 +104,7 @@ def overview(
     slowest = lowest_speed(assembly)
     if joints and high > slowest:
         name, angle = joints[0]
-        sweep = stability_chart(
-            assembly, ("speed", low, high, SWEEP_POINTS), (f"{name}.angle", angle, angle, 1)
-        )
+        sweep = stability_chart(assembly, ("speed", low, high, SWEEP_POINTS), (f"{name}.angle", angle, angle, 1))
         across, up = ("speed", low, high, points[0]), (ALL_ANGLES, *angle_range(line), points[1])
         chart = stability_chart(assembly, across, up, progress=progress)
     findings = [

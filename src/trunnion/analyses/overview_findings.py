@@ -80,9 +80,7 @@ def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iter
             f"largest spectral radius {radius[worst]:.6g} at {_speed(float(sweep.x[worst]), unit)}).",
         )
     elif not bands and np.all(verdict == Verdict.MARGINAL):
-        yield Finding(
-            Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} (checked every {step})."
-        )
+        yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} (checked every {step}).")
     yield from _unsettled(sweep, "at its own joint angles")
 
 
@@ -124,9 +122,7 @@ def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
             f"{100 * chart.unstable_share:.2g} % of the chart is unstable.",
         )
     else:
-        yield Finding(
-            Gravity.NOTE, f"With all joints at one angle, nothing in the chart is unstable up to {top:.3g}°."
-        )
+        yield Finding(Gravity.NOTE, f"With all joints at one angle, nothing in the chart is unstable up to {top:.3g}°.")
     yield from _unsettled(chart, "in the chart")
 
 

@@ -161,9 +161,7 @@ def stability(
     """
     if isinstance(line, PeriodicLinearSystem):
         if speed is not None:
-            raise InputError(
-                "belongs to a driveline; this system carries its own rate", key="speed", value=speed
-            )
+            raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
         run = _propagate(line, tolerance)
         return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, rigid_body=False)
@@ -194,9 +192,7 @@ def operating_speed(line: Driveline, speed: float | None) -> float:
     if isinstance(speed, bool) or not isinstance(speed, int | float | np.number):
         raise InputError("must be a number in rad/s", key="speed", value=speed, remedy="write tn.rpm(1500)")
     if not (np.isfinite(speed) and speed > 0):
-        raise InputError(
-            "must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say"
-        )
+        raise InputError("must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say")
     return float(speed)
 
 
@@ -227,9 +223,7 @@ def _judge(
     if rigid_body:
         kept = np.sort(np.argsort(np.abs(values - 1))[2:])
     # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
-    radius, error = (
-        spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
-    )
+    radius, error = spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
     undamped = abs(run.damping_trace) < 1e-13 * system.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
     named = None
@@ -278,9 +272,7 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
             f"Without damping the line is marginal at {at}: disturbances neither grow nor die out.",
         )
     else:
-        yield Finding(
-            Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s."
-        )
+        yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
     response = result.response
     if response is not None and not response.linear:
         worst = int(response.joint_rotation.argmax())

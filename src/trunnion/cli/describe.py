@@ -30,9 +30,11 @@ def catalogue(
         else:
             table(console(), rows)
         return
+    from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import dumps
 
-    text = dumps(published(name))
+    found = published(name)
+    text = dumps(found) if isinstance(found, Driveline) else f"{found}\n"
     entry = next(e for e in entries() if e.name == name)
     if as_json:
         write_json("catalogue", {"name": name, "title": entry.title, "source": entry.source, "toml": text})

@@ -46,6 +46,7 @@ def read_line(file: str, load_case: str | None = None) -> Driveline:
 
 
 def _file_or_catalogue(file: str) -> Driveline:
+    from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import load
     from trunnion.driveline.refusals import nearest
     from trunnion.published import catalogue, entries
@@ -54,7 +55,11 @@ def _file_or_catalogue(file: str) -> Driveline:
     if path.exists() or path.suffix or len(path.parts) != 1:
         return load(path)
     if file in names:
-        return catalogue(file)
+        line = catalogue(file)
+        if not isinstance(line, Driveline):
+            remedy = f"use it with simulate, lyapunov-spectrum, poincare-map, certify-chaos or reproduce {file}"
+            raise InputError("is no driveline but equations of motion", key="FILE", value=file, remedy=remedy)
+        return line
     problem = "is neither a file nor a name of the catalogue"
     raise InputError(problem, key="FILE", value=file, remedy=nearest(file, names))
 

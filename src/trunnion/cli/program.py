@@ -15,6 +15,7 @@ from typer.core import TyperGroup
 from trunnion._version import __version__
 from trunnion.cli import describe, study
 from trunnion.cli.kinetostatics import kinetostatics
+from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.reproduce import reproduce
 from trunnion.errors import InputRemark, TrunnionError
 
@@ -112,6 +113,9 @@ app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)
 app.command("resonance-speeds")(study.resonance_speeds)
 app.command("kinetostatics")(kinetostatics)
+app.command("simulate")(simulate)
+app.command("periodic-response")(periodic_response)
+app.command("run-up")(run_up)
 app.command("reproduce")(reproduce)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)

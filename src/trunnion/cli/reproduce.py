@@ -12,7 +12,7 @@ from trunnion.cli.options import Json
 
 
 def reproduce(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="two-shaft-cardan or three-shaft-cardan.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="two-shaft-cardan, three-shaft-cardan or double-tripod.")],
     folder: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Folder for pictures and page; default: NAME."),

@@ -15,6 +15,7 @@ from trunnion.driveline.elements import (
     Shaft,
     TripodJoint,
 )
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
@@ -28,6 +29,7 @@ __all__ = [
     "DoubleCardanJoint",
     "Driveline",
     "Element",
+    "Excitation",
     "HookeJoint",
     "IdealJoint",
     "LoadCase",

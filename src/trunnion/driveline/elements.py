@@ -23,6 +23,7 @@ from pydantic import (
     model_validator,
 )
 
+from trunnion.driveline.excitation import Excitations
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.quantities import (
     DEGREE,
@@ -36,6 +37,7 @@ from trunnion.driveline.quantities import (
     Kind,
     Length,
     Pressure,
+    QuadraticLoad,
     Quantity,
     Stiffness,
     Torque,
@@ -235,6 +237,11 @@ class Disk(Element):
     outer_diameter, inner_diameter, thickness : [m]; inner_diameter = 0 has no bore.
     density : ρ [kg/m³].
     load_torque : outer torque [N m]; positive resists rotation.
+    viscous_load, quadratic_load : outer torques proportional to the speed [N m s/rad] and to its square
+        [N m s²/rad²]; positive resists rotation.
+    excitation : harmonic torques on the disk, see ``Excitation``.
+
+    The last three enter simulations and periodic responses; linear analyses refuse speed-dependent loads.
     """
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
@@ -245,6 +252,11 @@ class Disk(Element):
     thickness: Length | None = Field(default=None, description="of the disk")
     density: Density | None = Field(default=None, description="of its material; steel 7850 kg/m^3")
     load_torque: Torque = Field(default=0.0, description="outer torque; positive resists rotation")
+    viscous_load: Damping = Field(default=0.0, description="outer torque per speed; positive resists rotation")
+    quadratic_load: QuadraticLoad = Field(
+        default=0.0, description="outer torque per square of the speed; positive resists rotation"
+    )
+    excitation: Excitations = Field(default=(), description="harmonic torques, in time or in the disk's rotation")
 
     @model_validator(mode="before")
     @classmethod

@@ -26,6 +26,7 @@ from typing import Any
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import KINDS, Element, is_name
+from trunnion.driveline.excitation import EXCITATION_KINDS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
@@ -72,7 +73,8 @@ def dumps(line: Driveline) -> str:
     blocks = [_block("", top)]
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
-    blocks += [_block("[[element]]", _element_table(element)) for element in line.elements]
+    for element in line.elements:
+        blocks += _element_blocks(element)
     return "\n".join(blocks)
 
 
@@ -246,12 +248,21 @@ def _located(error: InputError, source: str) -> InputError:
     return InputError(error.problem, element=element, key=key, value=error.value, remedy=error.remedy)
 
 
-def _element_table(element: Element) -> dict[str, Any]:
+def _element_blocks(element: Element) -> list[str]:
     table: dict[str, Any] = {"type": element.kind}
+    blocks = []
     for key, value in element.stated.items():
         kind = element.quantity_of(key)
-        table[key] = value if kind is None else written(value, kind)
-    return table
+        if key == "excitation":
+            for harmonic in value:
+                stated = {
+                    k: written(v, EXCITATION_KINDS[k]) if k in EXCITATION_KINDS else v
+                    for k, v in harmonic.stated.items()
+                }
+                blocks.append(_block("[[element.excitation]]", stated))
+        else:
+            table[key] = value if kind is None else written(value, kind)
+    return [_block("[[element]]", table), *blocks]
 
 
 def _operation_blocks(operation: Operation) -> list[str]:

@@ -7,6 +7,7 @@ those columns, so charts, limits and sensitivities vary an array and nothing is 
 Paths
     "speed"                       the input speed [rad/s]
     "HookeJoint 1.angle"          one number of one element, by its name or its default name
+    "Disk 1.excitation 2 amplitude"   of its second harmonic torque (also frequency, phase)
     "HookeJoint *.angle"          the same number of every element of a kind
     "factor of Shaft *.damping"   multiplies what the line has (1 leaves it as it is)
 """
@@ -14,13 +15,14 @@ Paths
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Element
 from trunnion.errors import InputError
 
 SPEED = "speed"
@@ -39,6 +41,8 @@ UNITS = {
     "fork_offset": "rad",
     "inertia": "kg*m^2",
     "load_torque": "N*m",
+    "viscous_load": "N*m*s/rad",
+    "quadratic_load": "N*m*s^2/rad^2",
     "angle": "rad",
     "plane": "rad",
     "radius": "m",
@@ -179,20 +183,33 @@ def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
     """List every number of ``line`` as a column; column 0 is ``speed`` [rad/s]."""
     labels, values, place = [SPEED], [speed], {(-1, SPEED): 0}
     for i, element in enumerate(line.elements):
-        for key in UNITS:
-            number = getattr(element, key, None)
-            if isinstance(number, float | int) and not isinstance(number, bool):
-                place[i, key] = len(labels)
-                labels.append(f"{line.names[i]}.{key}")
-                values.append(float(number))
+        for key, number in _numbers(element):
+            place[i, key] = len(labels)
+            labels.append(f"{line.names[i]}.{key}")
+            values.append(number)
     for key in ("damping_ratio", "damping_ratio_frequency"):
         number = getattr(line, key)
         if number is not None:
             place[-1, key] = len(labels)
             labels.append(key)
             values.append(float(number))
-    units = tuple(UNITS[label.rpartition(".")[2]] for label in labels)
+    units = tuple(UNITS.get(label.rpartition(".")[2]) or _EXCITATION[label.rpartition(" ")[2]] for label in labels)
     return PackedLine(line, tuple(labels), units, np.array(values), place)
+
+
+_EXCITATION = {"amplitude": "N*m", "frequency": "rad/s", "phase": "rad"}
+
+
+def _numbers(element: Element) -> Iterator[tuple[str, float]]:
+    """Every number of an element by its key."""
+    for key in UNITS:
+        number = getattr(element, key, None)
+        if isinstance(number, float | int) and not isinstance(number, bool):
+            yield key, float(number)
+    for i, harmonic in enumerate(getattr(element, "excitation", ()), start=1):
+        for key in _EXCITATION:
+            if (number := getattr(harmonic, key)) is not None:
+                yield f"excitation {i} {key}", float(number)
 
 
 def default_names(line: Driveline) -> Sequence[str]:

@@ -65,6 +65,7 @@ STIFFNESS = Kind(
     (("MN*m/rad", 1e6, 1e6), ("kN*m/rad", 1e3, 1e3), ("N*m/rad", 1.0, 0.0)),
 )
 DAMPING = Kind("damping", "N*m*s/rad", "3 N*m*s/rad")
+QUADRATIC = Kind("quadratic load", "N*m*s^2/rad^2", "0.02 N*m*s^2/rad^2")
 INERTIA = Kind("inertia", "kg*m^2", "0.4 kg*m^2")
 TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
 LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
@@ -77,6 +78,7 @@ KINDS = (
     FREQUENCY,
     STIFFNESS,
     DAMPING,
+    QUADRATIC,
     INERTIA,
     TORQUE,
     LENGTH,
@@ -250,6 +252,7 @@ Speed = Annotated[float, Quantity(SPEED)]
 Frequency = Annotated[float, Quantity(FREQUENCY)]
 Stiffness = Annotated[float, Quantity(STIFFNESS)]
 Damping = Annotated[float, Quantity(DAMPING)]
+QuadraticLoad = Annotated[float, Quantity(QUADRATIC)]
 Inertia = Annotated[float, Quantity(INERTIA)]
 Torque = Annotated[float, Quantity(TORQUE)]
 Length = Annotated[float, Quantity(LENGTH)]

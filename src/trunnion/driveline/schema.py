@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from trunnion.driveline.elements import KINDS
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
@@ -75,7 +76,12 @@ def json_schema() -> dict[str, Any]:
         },
         "required": ["format", "element"],
         "additionalProperties": False,
-        "$defs": {**definitions, "Operation": operation, "LoadCase": _model(LoadCase)},
+        "$defs": {
+            **definitions,
+            "Operation": operation,
+            "LoadCase": _model(LoadCase),
+            "Excitation": _model(Excitation),
+        },
     }
 
 

@@ -42,6 +42,9 @@ def _numbers(element: Element) -> list[str]:
         kind = element.quantity_of(key)
         if key in drawn or key in ("name", "after"):
             continue
+        if key == "excitation":
+            parts.append(f"excitation of {len(value)} harmonics" if len(value) > 1 else "excitation of one harmonic")
+            continue
         number = shown(value, kind) if kind else value
         if key == "loss_factor_frequency":
             parts[-1] += f" at {number}"

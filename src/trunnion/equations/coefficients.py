@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, Shaft
+from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, Shaft, TripodJoint
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.equations.topology import Link, Topology, topology
@@ -77,9 +77,9 @@ class Assembly:
         return lowest_elastic_frequency(self)
 
 
-def assemble(line: Driveline) -> Assembly:
-    """Pack ``line`` and sort it into stations and compliances."""
-    return Assembly(line, pack(line), topology(line))
+def assemble(line: Driveline, *, tripods: bool = False) -> Assembly:
+    """Pack ``line`` and sort it into stations and compliances; ``tripods`` as in ``topology``."""
+    return Assembly(line, pack(line), topology(line, tripods=tripods))
 
 
 def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
@@ -154,13 +154,13 @@ def static_torque(topo: Topology, load: Array) -> Array:
 
 
 def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
-    """Sum of the planes of constant-velocity joints between a Hooke's joint and the bend before them.
+    """Sum of the planes of constant-velocity joints between a joint and the bend before them.
 
     They pass rotation unchanged but turn the plane that the joint's own is measured from.
     """
     line, total = assembly.line, np.zeros(len(table))
     ratio, i = 1.0, line.parents[joint]
-    while i is not None and not isinstance(line.elements[i], HookeJoint):
+    while i is not None and not isinstance(line.elements[i], HookeJoint | TripodJoint):
         element = line.elements[i]
         if isinstance(element, Ratio):
             ratio *= element.speed_ratio
@@ -195,7 +195,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
         if here.link is Link.SHAFT:
             i = here.element
             shift[:, s] = table[:, column(i, "fork_offset")] + torque[:, compliance_of[i]] / each[i]
-        elif here.link is Link.HOOKE:
+        elif here.link in (Link.HOOKE, Link.TRIPOD):
             shift[:, s] = -table[:, column(here.element, "plane")]
             shift[:, s] -= _planes_in_front(assembly, table, here.element)
     joints = [topo.stations[j].element for j in topo.joints]

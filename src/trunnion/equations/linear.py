@@ -126,6 +126,16 @@ def require_steady_base(assembly: Assembly) -> None:
     fights the joints in front of it: both need their own periodic motion as the base.
     """
     topo = assembly.topology
+    for part, name in zip(assembly.line.elements, assembly.line.names, strict=True):
+        for key in ("viscous_load", "quadratic_load"):
+            if getattr(part, key, 0.0):
+                raise InputError(
+                    "depends on the speed, which the linear equations do not have",
+                    element=name,
+                    key=key,
+                    value=getattr(part, key),
+                    remedy="use tn.periodic_response, or write its mean as load_torque",
+                )
     if topo.free and topo.joints:
         raise InputError(
             "starts free, so it does not turn steadily through bent joints and has no base for stability",

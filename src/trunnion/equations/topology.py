@@ -34,6 +34,11 @@ class Link(IntEnum):
     SHAFT = 1
     HOOKE = 2
     RATIO = 3
+    TRIPOD = 4
+
+
+TIED = (Link.HOOKE, Link.RATIO, Link.TRIPOD)
+"""Links that tie a station rigidly to the one in front of it."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,11 @@ class Topology:
         """Stations behind a HookeJoint, in order."""
         return tuple(i for i, s in enumerate(self.stations) if s.link is Link.HOOKE)
 
+    @property
+    def tripods(self) -> tuple[int, ...]:
+        """Stations behind a TripodJoint, in order."""
+        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.TRIPOD)
+
     def group_of(self, station: int) -> int:
         """The group a station belongs to."""
         return self.stations[station].group
@@ -96,10 +106,11 @@ class Topology:
     def period_turns(self) -> Fraction:
         """Turns of the input after which every joint is back in phase: half a turn for joints at input speed.
 
-        Joint excitation has the frequencies 2 |speed_ratio| per input turn; the base frequency is their
-        greatest common divisor.
+        Hooke's joints excite with the frequency 2 |speed_ratio| per input turn and tripods with 3 |speed_ratio|;
+        the base frequency is their greatest common divisor.
         """
         rates = [abs(2 * self.speed_ratio[j]) for j in self.joints]
+        rates += [abs(3 * self.speed_ratio[j]) for j in self.tripods]
         if not rates:
             return Fraction(1, 2)
         base = rates[0]
@@ -112,15 +123,17 @@ LONGEST_PERIOD = 60
 """Turns of the input beyond which a line counts as having no common period."""
 
 
-def topology(line: Driveline) -> Topology:
+def topology(line: Driveline, *, tripods: bool = False) -> Topology:
     """Sort the elements of ``line`` into stations, groups and compliances.
+
+    ``tripods`` takes TripodJoints as the nonlinear equations do; the linear ones do not have them.
 
     Raises
     ------
     InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
         no inertia at all.
     """
-    return _merge_massless(line, _walk(line))
+    return _merge_massless(line, _walk(line, tripods))
 
 
 def require_period(line: Driveline, topo: Topology) -> Fraction:
@@ -175,7 +188,7 @@ class _Draft:
         return len(self.stations) - 1
 
 
-def _walk(line: Driveline) -> _Draft:
+def _walk(line: Driveline, tripods: bool) -> _Draft:
     draft = _Draft([], [], [], [], [], [], [])
     behind: list[int] = []
     for i, element in enumerate(line.elements):
@@ -196,11 +209,14 @@ def _walk(line: Driveline) -> _Draft:
             here = draft.add(here, Link.HOOKE, i, ratio)
         elif isinstance(element, Ratio):
             here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
+        elif isinstance(element, TripodJoint) and tripods:
+            here = draft.add(here, Link.TRIPOD, i, ratio)
         elif isinstance(element, TripodJoint):
             raise InputError(
-                "is a tripod joint, which the dynamic equations do not have",
+                "is a tripod joint, which the linear equations do not have",
                 element=line.names[i],
-                remedy="write an IdealJoint instead (its speed ratio differs by 3A of tn.kinetostatics only)",
+                remedy="write an IdealJoint instead (its speed ratio differs by 3A of tn.kinetostatics only), or "
+                "use tn.periodic_response and tn.simulate, which have it",
             )
         elif isinstance(element, DoubleCardanJoint) and element.distance_ratio is not None:
             raise InputError(
@@ -253,13 +269,13 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
 
 
 def _bare(draft: _Draft, group: int) -> tuple[str]:
-    joint = any(s.group == group and s.link in (Link.HOOKE, Link.RATIO) for s in draft.stations)
+    joint = any(s.group == group and s.link in TIED for s in draft.stations)
     what = "has no inertia rigidly in front of it" if joint else "ends where there is no inertia"
     return (what,)
 
 
 def _bare_place(line: Driveline, draft: _Draft, group: int) -> dict[str, str]:
-    tied = [s.element for s in draft.stations if s.group == group and s.link in (Link.HOOKE, Link.RATIO)]
+    tied = [s.element for s in draft.stations if s.group == group and s.link in TIED]
     element = line.names[tied[0] if tied else draft.stations[draft.reference[group]].element]
     remedy = (
         f"put a Disk in front of {element} (half the joint's own inertia is a good start)"

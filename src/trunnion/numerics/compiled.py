@@ -45,14 +45,21 @@ def _name(parent: tuple[int, ...], extra: bool) -> tuple[str, tuple[tuple[int, .
 
 
 @cache
-def kernel_file(source: str) -> ModuleType:
+def kernel_file(source: str, *used: str) -> ModuleType:
     """The file of kernels ``source``, which imports nothing of the package, compiled from a cached copy.
 
     Copied rather than imported, so that the folder's name tells which sources the machine code belongs to.
+    It may build on other such files: those in ``used`` are there for it as ``trunnion_kernels.NAME``.
     """
     text = Path(source).read_text(encoding="utf-8")
+    whole = text
+    for other in used:
+        stem = Path(other).stem
+        sys.modules.setdefault("trunnion_kernels", ModuleType("trunnion_kernels"))
+        sys.modules[f"trunnion_kernels.{stem}"] = kernel_file(other)
+        whole += Path(other).read_text(encoding="utf-8")
     versions = f"{numba.__version__} {np.__version__} {scipy.__version__} {sys.version}"
-    digest = hashlib.sha256((text + versions).encode()).hexdigest()[:16]
+    digest = hashlib.sha256((whole + versions).encode()).hexdigest()[:16]
     return _module(Path(source).stem, text, digest)
 
 

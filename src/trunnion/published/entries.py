@@ -4,24 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, overload
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.published.bicardan_elastic import bicardan_elastic
+from trunnion.published.double_tripod import DoubleTripod, double_tripod
 from trunnion.published.three_shaft_cardan import three_shaft_cardan
 from trunnion.published.two_shaft_cardan import two_shaft_cardan
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A published driveline: ``build()`` gives the paper's base case, keyword arguments change it."""
+    """A published driveline: ``build()`` gives the paper's base case, keyword arguments change it.
+
+    ``double-tripod`` builds equations of motion (a ``DoubleTripod``), the others a ``Driveline``.
+    """
 
     name: str
     title: str
     source: str
-    build: Callable[..., Driveline]
+    build: Callable[..., Driveline | DoubleTripod]
 
 
 _ENTRIES = (
@@ -43,6 +47,12 @@ _ENTRIES = (
         "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant III, 2007",
         bicardan_elastic,
     ),
+    Entry(
+        "double-tripod",
+        "double tripod industrial driveshaft: equations of its two outer elements",
+        "Bugaru and Vasile, Applied Sciences 12 (2022) 6182",
+        double_tripod,
+    ),
 )
 
 
@@ -51,7 +61,15 @@ def entries() -> tuple[Entry, ...]:
     return _ENTRIES
 
 
-def catalogue(name: str, **changes: Any) -> Driveline:
+@overload
+def catalogue(name: Literal["double-tripod"], **changes: Any) -> DoubleTripod: ...  # type: ignore[overload-overlap]
+
+
+@overload
+def catalogue(name: str, **changes: Any) -> Driveline: ...
+
+
+def catalogue(name: str, **changes: Any) -> Driveline | DoubleTripod:
     """A published driveline by name; keyword arguments change its numbers (see the entry's builder).
 
     >>> catalogue("two-shaft-cardan", angle=0.2).names[3]

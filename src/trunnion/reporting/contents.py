@@ -16,6 +16,7 @@ from trunnion.analyses.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.analyses.stable_limit import LimitKind, StableLimit, limit_of_chart
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import speed_factor
 
@@ -33,6 +34,7 @@ class Contents:
     sweep: SpeedSweep | None
     limit: StableLimit | None
     bending: tuple[BendingSpeed, ...]
+    loaded: tuple[LoadedMotion, ...]
     findings: tuple[Finding, ...]
     left_out: tuple[str, ...]
 
@@ -58,6 +60,8 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
     limit = _limit(seen, resonance_speeds(assembly)) if jointed else None
     bending = bending_speeds(assembly)
+    loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
+    left_out += without
     assert turn is None or isinstance(turn, Kinetostatics)
     assert sweep is None or isinstance(sweep, SpeedSweep)
     more = [
@@ -65,9 +69,10 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         *(_limit_findings(limit, seen) if limit else []),
         *(_torque_findings(sweep, seen) if sweep else []),
         *(_irregularity_findings(turn) if turn else []),
+        *load_findings(loaded, seen.unit),
     ]
     findings = by_gravity([*seen.findings, *more])
-    return Contents(seen, assembly, turn, sweep, limit, bending, findings, tuple(left_out))
+    return Contents(seen, assembly, turn, sweep, limit, bending, loaded, findings, tuple(left_out))
 
 
 def _speeds(seen: Overview) -> tuple[float, float]:

@@ -16,6 +16,7 @@ from trunnion.reporting import tables
 from trunnion.reporting.contents import Contents, gather
 from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
+from trunnion.reporting.under_load import heaviest
 from trunnion.results.files import written_whole
 from trunnion.results.speeds import show_speed, speed_factor
 
@@ -109,6 +110,7 @@ def _page(contents: Contents, source: Path | None) -> str:
         "joints": tables.joints(seen.line),
         "irregularity": tables.irregularity(contents),
         "torques": tables.torques(contents, unit),
+        "under_load": tables.under_load(contents),
         "bending": tables.bending(contents, unit),
         "stability": _verdict(seen),
         "at_speed": show_speed(seen.stability.speed, unit) if seen.stability else "",
@@ -135,6 +137,7 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
         torque_over_speed,
     )
     from trunnion.plots import stable_limit as limit_plot
+    from trunnion.plots.motion import draw_orders, draw_period
 
     seen, unit = contents.overview, contents.overview.unit
     line, operating = seen.line, seen.operation
@@ -161,6 +164,12 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
     if contents.sweep is not None:
         drawn = torque_over_speed.draw(contents.sweep, unit=unit, operating=operating)
         shown["torque"] = picture(drawn.figure.figure, "Torque amplitude of every shaft over speed")
+    if contents.loaded:
+        motion = heaviest(contents.loaded)
+        drawn = draw_period(motion.response, unit=unit)
+        shown["loaded"] = picture(drawn.figure.figure, f"Torque over one period, {motion.case}")
+        drawn = draw_orders(motion.response)
+        shown["orders"] = picture(drawn.figure.figure, f"Orders of the torque, {motion.case}")
     if seen.chart is not None:
         drawn = stability_chart.draw(seen.chart, unit=unit, operating=operating)
         shown["chart"] = picture(drawn.figure.figure, "Stability chart over speed and joint angle")

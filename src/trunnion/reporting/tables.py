@@ -172,6 +172,38 @@ def torques(contents: Contents, unit: str) -> Table | None:
     return Table(heads, tuple(rows))
 
 
+def under_load(contents: Contents) -> Table | None:
+    """Every case: stability of the true motion and of the two linearisations, and the shaft that swings most."""
+    if not contents.loaded:
+        return None
+    rows = []
+    for motion in contents.loaded:
+        response, linear = motion.response, motion.response.comparison
+        worst = int(response.torque_peak_to_peak.argmax())
+        rates = (
+            (four(linear.zero_twist.growth_rate), four(linear.static_twist.growth_rate))
+            if linear
+            else ("–", "–")
+        )
+        rows.append(
+            (
+                motion.case,
+                str(response.verdict),
+                four(response.growth_rate),
+                *rates,
+                response.shafts[worst],
+                four(float(response.torque_mean[worst])),
+                four(float(response.torque_peak_to_peak[worst])),
+                four(float(linear.linear_torque_peak_to_peak[worst])) if linear else "–",
+            )
+        )
+    heads = (
+        "case", "true motion", "growth rate [1/s]", "about zero twist", "about static twist", "most loaded shaft",
+        "mean torque [N·m]", "peak to peak [N·m]", "linear theory",
+    )  # fmt: skip
+    return Table(heads, tuple(rows))
+
+
 def bending(contents: Contents, unit: str) -> Table:
     """Bending critical speeds of tubes against the highest speed of the range."""
     high = contents.overview.speed_range[1]

@@ -11,6 +11,7 @@ from trunnion.reproduction.result import Reproduction
 PAPERS = {
     "two-shaft-cardan": "trunnion.reproduction.two_shaft_cardan:two_shaft_cardan",
     "three-shaft-cardan": "trunnion.reproduction.three_shaft_cardan:three_shaft_cardan",
+    "double-tripod": "trunnion.reproduction.double_tripod:double_tripod",
 }
 """Catalogue names that have a reproduction, and the function that makes it."""
 
@@ -20,7 +21,7 @@ def reproduce(name: str, *, points: int = 400, progress: Callable[[float], None]
 
     Parameters
     ----------
-    name : of the catalogue: "two-shaft-cardan" or "three-shaft-cardan".
+    name : of the catalogue: "two-shaft-cardan", "three-shaft-cardan" or "double-tripod".
     points : of the charts, along each axis.
     progress : called as progress(share done).
 

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+CHARTS_NOTE = (
+    "Dark is unstable, as in the paper; grey, if anywhere, undecided (the spectral radius is 1 to within its error). "
+    "Formulas name resonance speeds of the straight line."
+)
+
+
 @dataclass(frozen=True)
 class Row:
     """One number: where the paper has it, what it prints, what is computed, and what is to be said."""
@@ -83,6 +89,7 @@ class Reproduction:
     errata: Comparison
     evidence: tuple[PaperFigure, ...]
     conclusions: tuple[Conclusion, ...]
+    figures_note: str = CHARTS_NOTE
 
     def figure(self, number: str | int) -> PaperFigure:
         """A figure by its number in the paper."""

@@ -32,9 +32,7 @@ def place_bearings(chain: Chain, bearings: Bearings) -> dict[int, tuple[float, .
         try:
             positions = tuple(parse(x, LENGTH) for x in entry[1:])
         except InputError as error:
-            raise InputError(
-                error.problem, element=name, key="supports", value=error.value, remedy=remedy
-            ) from None
+            raise InputError(error.problem, element=name, key="supports", value=error.value, remedy=remedy) from None
         m = known[name]
         placed[m] = placed.get(m, ()) + positions
         if len(placed[m]) > 2:
@@ -60,9 +58,7 @@ def place_bearings(chain: Chain, bearings: Bearings) -> dict[int, tuple[float, .
 
 def _within(chain: Chain, m: int, name: str, positions: tuple[float, ...]) -> None:
     member = chain.members[m]
-    last = any(
-        chain.steps[i].parent >= 0 and chain.steps[chain.steps[i].parent].member == m for i in chain.joints
-    )
+    last = any(chain.steps[i].parent >= 0 and chain.steps[chain.steps[i].parent].member == m for i in chain.joints)
     low = -np.inf if member.joint < 0 else 0.0
     high = np.inf if not last else (0.0 if member.joint < 0 else member.length)
     for x in positions:

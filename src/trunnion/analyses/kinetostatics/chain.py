@@ -127,9 +127,7 @@ def member_ratio(chain: Chain, member: int) -> float:
 def period_turns(chain: Chain) -> int:
     """Fewest whole turns of the input after which every joint is back in phase (half a turn of its shaft)."""
     fractions = {
-        n: e.fraction
-        for n, e in zip(chain.line.names, chain.line.elements, strict=True)
-        if isinstance(e, Ratio)
+        n: e.fraction for n, e in zip(chain.line.names, chain.line.elements, strict=True) if isinstance(e, Ratio)
     }
     ratio, period = [Fraction(1)], 1
     for step in chain.steps[1:]:
@@ -198,20 +196,14 @@ class _Draft:
         elif isinstance(element, TripodJoint):
             size = float(tripod.amplitude(element.angle, element.radius / element.length))
             sign = -1.0 if element.spider == "input" else 1.0
-            here = self._joint(
-                Link.TRIPOD, here, name, angle=element.angle, plane=element.plane, amplitude=sign * size
-            )
+            here = self._joint(Link.TRIPOD, here, name, angle=element.angle, plane=element.plane, amplitude=sign * size)
         elif isinstance(element, DoubleCardanJoint):
             first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
-            here = self._joint(
-                Link.HOOKE, here, f"{name}, first cross", angle=float(first), plane=element.plane
-            )
+            here = self._joint(Link.HOOKE, here, f"{name}, first cross", angle=float(first), plane=element.plane)
             self.members[-1].shafts.append(f"{name}, yoke")
             self.members[-1].length = element.yoke_length or 0.0
             # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
-            here = self._joint(
-                Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi
-            )
+            here = self._joint(Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
         elif isinstance(element, Ratio):
             self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
             here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)

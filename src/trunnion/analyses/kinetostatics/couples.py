@@ -65,9 +65,7 @@ def secondary_couples(chain: Chain, motion: Motion, passed: Torques, pin_moment:
             standing += [steady[0], steady[1]]
             rotating += [turned(steady[0], -chi), turned(steady[1], -behind)]
     shape = (len(names), 2, points)
-    return Couples(
-        tuple(names), tuple(member), np.reshape(standing, shape), np.reshape(rotating, shape), heat
-    )
+    return Couples(tuple(names), tuple(member), np.reshape(standing, shape), np.reshape(rotating, shape), heat)
 
 
 def _cross(

@@ -40,9 +40,7 @@ def dataset(r: Kinetostatics) -> xr.Dataset:
         "joint_angle": per("joint", r.joint_angle, "rad", "input angle from the joint's own plane"),
         "joint_torque_in": per("joint", r.joint_torque_in, "N*m", "torque transmitted into the joint"),
         "joint_torque_out": per("joint", r.joint_torque_out, "N*m", "torque transmitted out of the joint"),
-        "secondary_couple": vector(
-            "fork", "standing", r.secondary_couple, "N*m", "couple on the fork, standing frame"
-        ),
+        "secondary_couple": vector("fork", "standing", r.secondary_couple, "N*m", "couple on the fork, standing frame"),
         "secondary_couple_rotating": vector(
             "fork", "rotating", r.secondary_couple_rotating, "N*m", "couple on the fork, rotating frame"
         ),

@@ -94,6 +94,4 @@ def _change(new: dict[int, Array], old: dict[int, Array], speed: float) -> float
     """Largest change [rad] of a twist, or of its rates per radian and radian² of input angle."""
     if not old:
         return np.inf if new else 0.0
-    return max(
-        float(np.max(np.abs(xi[k] - old[i][k]))) / speed**k for i, xi in new.items() for k in range(len(xi))
-    )
+    return max(float(np.max(np.abs(xi[k] - old[i][k]))) / speed**k for i, xi in new.items() for k in range(len(xi)))

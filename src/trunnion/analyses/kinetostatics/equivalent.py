@@ -71,9 +71,7 @@ def matrices(
 
 def departure(product: Array) -> Array:
     """(a − d, b + c) of M, shape (case, 2): zero where the output runs evenly."""
-    return np.stack(
-        [product[..., 0, 0] - product[..., 1, 1], product[..., 0, 1] + product[..., 1, 0]], axis=-1
-    )
+    return np.stack([product[..., 0, 0] - product[..., 1, 1], product[..., 0, 1] + product[..., 1, 0]], axis=-1)
 
 
 def irregularity(product: Array) -> Array:
@@ -84,9 +82,7 @@ def irregularity(product: Array) -> Array:
 
 def least_irregularity(chain: Chain) -> float:
     """What the best phasing of the forks can reach [1]."""
-    rapidities = [
-        -np.log(np.cos(chain.steps[i].angle)) for i in path(chain) if chain.steps[i].link is Link.HOOKE
-    ]
+    rapidities = [-np.log(np.cos(chain.steps[i].angle)) for i in path(chain) if chain.steps[i].link is Link.HOOKE]
     rest = max(0.0, 2 * max(rapidities, default=0.0) - sum(rapidities))
     return float(2 * np.sinh(rest))
 

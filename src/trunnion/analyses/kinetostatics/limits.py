@@ -64,9 +64,7 @@ def check_limits(
     if deviation is not None:
         limit = _limit("deviation", deviation, ANGLE)
         assert limit is not None
-        checks.append(
-            ("lead and lag of the output", result.homokinetic_deviation / DEGREE, limit / DEGREE, " deg")
-        )
+        checks.append(("lead and lag of the output", result.homokinetic_deviation / DEGREE, limit / DEGREE, " deg"))
     if secondary_couple is not None:
         sizes = largest(np.hypot(result.secondary_couple[:, 0], result.secondary_couple[:, 1]))
         limit = _limit("secondary_couple", secondary_couple, TORQUE)

@@ -221,23 +221,17 @@ def _spline_positions(pitches: Array, near: Array) -> Array:
     return np.array(list(product(*each)))
 
 
-def _pitches(
-    train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[str, float | str] | None
-) -> Array:
+def _pitches(train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[str, float | str] | None) -> Array:
     names = [train.steps[i].name for i in free]
     given = dict(pitch) if isinstance(pitch, Mapping) else {n: pitch for n in names if pitch is not None}
     pitches = dict.fromkeys(names, np.inf)
     for name, value in given.items():
         if name not in names:
-            raise InputError(
-                "is not a Shaft between two joints", key="pitch", value=name, remedy=nearest(name, names)
-            )
+            raise InputError("is not a Shaft between two joints", key="pitch", value=name, remedy=nearest(name, names))
         try:
             pitches[name] = parse(value, ANGLE)
         except InputError as error:
             raise InputError(error.problem, key="pitch", value=value, remedy=error.remedy) from None
         if not pitches[name] > 0:
-            raise InputError(
-                "must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines'
-            )
+            raise InputError("must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines')
     return np.array([pitches[n] for n in names])

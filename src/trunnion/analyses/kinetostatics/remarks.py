@@ -12,9 +12,7 @@ NEAR_RESONANCE = 1 / 3
 """Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
 
 
-def remarks(
-    chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, turns: int
-) -> tuple[Finding, ...]:
+def remarks(chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, turns: int) -> tuple[Finding, ...]:
     """Findings about a result, gravest first where it matters."""
     found = []
     if drive.inertia:

@@ -239,8 +239,7 @@ def _columns(result: Kinetostatics) -> list[tuple[str, Array]]:
     ]
     for f, name in enumerate(result.forks):
         columns += [
-            (f"{name} couple {axis} [N*m]", c)
-            for axis, c in zip("uv", result.secondary_couple[f], strict=True)
+            (f"{name} couple {axis} [N*m]", c) for axis, c in zip("uv", result.secondary_couple[f], strict=True)
         ]
     if result.supports:
         for name, force in zip(result.supports.names, result.supports.force, strict=True):

@@ -74,25 +74,15 @@ def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> Assemb
     train = chain(line)
     hooke, shafts = train.of(Link.HOOKE), phased_shafts(train)
     if not hooke:
-        raise InputError(
-            "has no Hooke's joint", element="driveline", remedy="its output is as even as its input"
-        )
-    places = (
-        [("angle", i) for i in hooke]
-        + [("plane", i) for i in hooke[1:]]
-        + [("fork_offset", i) for i in shafts]
-    )
+        raise InputError("has no Hooke's joint", element="driveline", remedy="its output is as even as its input")
+    places = [("angle", i) for i in hooke] + [("plane", i) for i in hooke[1:]] + [("fork_offset", i) for i in shafts]
 
     def spread(signs: Array) -> Array:
         """U for each row of signs (case, place)."""
         change: dict[str, dict[int, Array]] = {"angle": {}, "plane": {}, "fork_offset": {}}
         for k, (key, i) in enumerate(places):
             change[key][i] = getattr(train.steps[i], key) + size * signs[:, k]
-        offsets = (
-            np.stack([change["fork_offset"][i] for i in shafts], axis=1)
-            if shafts
-            else np.empty((len(signs), 0))
-        )
+        offsets = np.stack([change["fork_offset"][i] for i in shafts], axis=1) if shafts else np.empty((len(signs), 0))
         return irregularity_of(train, shafts, offsets, angle=change["angle"], plane=change["plane"])
 
     single = np.eye(len(places))

@@ -94,9 +94,7 @@ class _Statics:
             self.behind[front] = j
         self.bearings = [(m, x) for m in members for x in placed.get(m, ())]
         self.thrusts = [m for m in members if len(placed.get(m, ())) == 2]
-        self.idle = [
-            j for j in self.joints if self._front(j) in self.thrusts and self._back(j) in self.thrusts
-        ]
+        self.idle = [j for j in self.joints if self._front(j) in self.thrusts and self._back(j) in self.thrusts]
         self.columns = 3 * len(self.joints) + 2 * len(self.bearings) + len(self.thrusts)
         self.scale = max([abs(x) for _, x in self.bearings] + [1e-3])
         self.rows: list[Array] = []
@@ -188,11 +186,7 @@ class _Statics:
 
     def _shaft(self, m: int) -> str:
         shafts = self.chain.members[m].shafts
-        return (
-            shafts[0]
-            if shafts
-            else "shaft behind " + self.chain.steps[max(self.chain.members[m].joint, 0)].name
-        )
+        return shafts[0] if shafts else "shaft behind " + self.chain.steps[max(self.chain.members[m].joint, 0)].name
 
     def _couples_in_space(self, couples: Couples, points: int) -> Mapping[int, Array]:
         """Sum of the fork couples on each member, as vectors in space, shape (3, point)."""
@@ -202,9 +196,7 @@ class _Statics:
             if m in total:
                 step = self.chain.steps[joint_of_fork[f]]
                 # an input fork's u and v are turned by the joint's plane against those of its shaft
-                local = (
-                    turned(couples.standing[f], np.asarray(step.plane)) if f % 2 == 0 else couples.standing[f]
-                )
+                local = turned(couples.standing[f], np.asarray(step.plane)) if f % 2 == 0 else couples.standing[f]
                 total[m] += self.frames[m][1:].T @ local
         return total
 

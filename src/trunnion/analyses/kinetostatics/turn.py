@@ -184,9 +184,7 @@ def _lengths(line: Driveline, lengths: Mapping[str, float | str] | None) -> dict
             )
         known[name] = _number(length, LENGTH, f"lengths[{name!r}]")
         if not known[name] > 0:
-            raise InputError(
-                "must be positive", element=name, key="lengths", value=length, remedy="write 0.8 [m]"
-            )
+            raise InputError("must be positive", element=name, key="lengths", value=length, remedy="write 0.8 [m]")
     return known
 
 

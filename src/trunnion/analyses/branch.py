@@ -1,0 +1,283 @@
+"""A branch of periodic motions, whoever computed it: its points, its special points, and where it ends.
+
+Between neighbours the following change sign and are located by bracketing (Doedel, Keller, Kernévez, Int. J.
+Bifurcation and Chaos 1, 1991):
+
+    fold                    dλ/ds
+    period doubling         Π (σ + 1)                       (a multiplier passes −1)
+    Neimark–Sacker          Π_{i<j} (σ_i σ_j − 1)           (a complex pair passes the unit circle)
+    branch point            Π (σ − 1) without a fold        (a multiplier passes +1, as when a symmetry breaks)
+    grazing                 the number of regime changes    (the motion touches a switching surface)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.arclength import Curve, CurvePoint, Ending, locate
+from trunnion.results.outcome import Outcome
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+CLOSE = 1e-9
+"""Size of the last correction of a point, in units of the scales."""
+UNTOLD = 1e-6
+"""A spectral radius nearer to 1 than this is not told from it."""
+
+
+class Problem(Protocol):
+    """What is followed: equations of a curve z = (unknowns, parameter), and what its points tell."""
+
+    @property
+    def scale(self) -> Array:
+        """Size of each unknown and of the parameter that counts as one."""
+
+    @property
+    def size(self) -> int:
+        """Number of states n."""
+
+    @property
+    def label(self) -> str:
+        """Name of the parameter."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the parameter."""
+
+    @property
+    def curves(self) -> tuple[str, ...]:
+        """What is observed."""
+
+    @property
+    def curve_unit(self) -> str:
+        """Its unit."""
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """Residual and Jacobian; NaN where there is none."""
+
+    def start(self, point: CurvePoint) -> Array:
+        """State at t = 0."""
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        """Floquet multipliers by falling modulus; NaN where the motion cannot be computed."""
+
+    def changes(self, point: CurvePoint) -> int:
+        """Changes of regime in a period."""
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        """Peak-to-peak and largest absolute value of the curves, amplitude of the fundamental of the states, period."""
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point where the branch turns or its stability changes.
+
+    kind: "fold", "period doubling", "Neimark–Sacker", "branch point" or "grazing"; parameter: its value; start (n,);
+    multipliers (n,); amplitude (n,) of the fundamental of every state; peak_to_peak (curves,) as in the branch.
+    """
+
+    kind: str
+    parameter: float
+    start: Array
+    multipliers: Complex
+    amplitude: Array
+    peak_to_peak: Array
+
+
+@dataclass(frozen=True)
+class PeriodicBranch:
+    """Periodic motions along a branch.
+
+    parameter (points,); start (points, n); multipliers (points, n); verdict (points,) codes; peak_to_peak (points,
+    curves): of the shaft torques [N m] of a line, or of the states of a system, named by ``curves``; largest: their
+    largest absolute values; amplitude (points, n): of the fundamental of every state; special:
+    folds and other special points in order; outcome: where the branch ended and why.
+    """
+
+    label: str
+    unit: str
+    period: Array
+    parameter: Array
+    start: Array
+    multipliers: Complex
+    verdict: NDArray[np.int8]
+    peak_to_peak: Array
+    largest: Array
+    amplitude: Array
+    curves: tuple[str, ...]
+    curve_unit: str
+    special: tuple[SpecialPoint, ...]
+    outcome: Outcome
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Where the motion is stable, (points,)."""
+        return np.asarray(self.verdict == Verdict.STABLE)
+
+    @property
+    def folds(self) -> tuple[SpecialPoint, ...]:
+        """The folds in order."""
+        return tuple(p for p in self.special if p.kind == "fold")
+
+    def at(self, value: float) -> list[tuple[Array, Verdict]]:
+        """Starts and verdicts of all motions of the branch at a value of the parameter, interpolated linearly."""
+        side = self.parameter - value
+        found = []
+        for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
+            share = 0.0 if side[i] == side[i + 1] else side[i] / (side[i] - side[i + 1])
+            found.append((self.start[i] + share * (self.start[i + 1] - self.start[i]), Verdict(int(self.verdict[i]))))
+        return found
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        from trunnion.results.verdict import flag_attributes
+
+        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=-1)
+        return xr.Dataset(
+            {
+                "parameter": ("point", self.parameter, {"units": self.unit, "long_name": self.label}),
+                "period": ("point", self.period, {"units": "s"}),
+                "peak_to_peak": (("point", "curve"), self.peak_to_peak, {"units": self.curve_unit}),
+                "largest": (("point", "curve"), self.largest, {"units": self.curve_unit}),
+                "multiplier": (("point", "multiplier_number", "part"), parts, {"units": "1"}),
+                "verdict": ("point", self.verdict, flag_attributes()),
+                "special_kind": ("special", np.array([p.kind for p in self.special], dtype=str)),
+                "special_parameter": ("special", np.array([p.parameter for p in self.special]), {"units": self.unit}),
+            },
+            coords={"curve": list(self.curves), "part": ["real", "imaginary"]},
+            attrs={"outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
+        from trunnion.plots.response_curve import draw
+
+        return draw(self, axes, **options)
+
+    def __str__(self) -> str:
+        if not len(self.parameter):
+            return f"no branch over {self.label}: {self.outcome}"
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        counts = f"{int(self.stable.sum())} stable of {len(self.parameter)} points"
+        rows = [f"  {p.kind} at {p.parameter:.9g}{unit}" for p in self.special]
+        low, high = self.parameter.min(), self.parameter.max()
+        head = f"branch of periodic motions over {self.label} from {low:.6g} to {high:.6g}{unit}: {counts}"
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+def with_ending(problem: Problem, curve: Curve) -> Outcome:
+    """The end of a curve as a sentence."""
+    count = len(curve.points)
+    at = f"{problem.label} = {curve.points[-1].parameter:.6g}" if count else "its start"
+    if curve.ending is Ending.BOUND:
+        return Outcome(True, "end", f"followed to {at}")
+    if curve.ending is Ending.CLOSED:
+        return Outcome(True, "closed", "the branch closes on itself")
+    if curve.ending is Ending.POINTS:
+        return Outcome(False, "points", f"stopped after {count} points at {at}; raise most_points or longest_step")
+    return Outcome(
+        False,
+        "lost",
+        f"the branch was lost at {at} after {count} points: no step converges there; loosen the tolerance, or look for "
+        "a switching surface that the motion touches",
+    )
+
+
+def special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, str]]:
+    """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
+    folds = dict(curve.folds)
+    tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
+        ("period doubling", _doubling),
+        ("Neimark–Sacker", _torus),
+        ("branch point", _branching),
+    )
+    points = [(curve.points[0], "")] if curve.points else []
+    for i, (here, there) in enumerate(zip(curve.points[:-1], curve.points[1:], strict=True)):
+        found: list[tuple[CurvePoint, str]] = [(folds[i], "fold")] if i in folds else []
+        if problem.changes(here) != problem.changes(there):
+            before = problem.changes(here)
+            met = _located(problem, here, there, lambda p, n=before: float(problem.changes(p) == n) - 0.5)  # type: ignore[misc]
+            found += [(met, "grazing")] if met is not None else []
+        for kind, test in tests:
+            ends = test(problem.multipliers(here)), test(problem.multipliers(there))
+            if not ends[0] * ends[1] < 0 or (kind == "branch point" and i in folds):
+                continue
+            met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
+            if met is not None and (kind != "Neimark–Sacker" or _on_circle(problem.multipliers(met))):
+                found.append((met, kind))
+        chord = (there.z - here.z) / problem.scale
+        points += sorted(found, key=lambda f: float(chord @ ((f[0].z - here.z) / problem.scale)))
+        points.append((there, ""))
+    return points
+
+
+def _located(
+    problem: Problem, here: CurvePoint, there: CurvePoint, test: Callable[[CurvePoint], float]
+) -> CurvePoint | None:
+    return locate(problem.equations, here, there, test, scale=problem.scale, tolerance=CLOSE)
+
+
+def _doubling(values: Complex) -> float:
+    return float(np.prod(values + 1).real)
+
+
+def _branching(values: Complex) -> float:
+    return float(np.prod(values - 1).real)
+
+
+def _torus(values: Complex) -> float:
+    pairs = [values[i] * values[j] - 1 for i in range(len(values)) for j in range(i)]
+    return float(np.prod(pairs).real)
+
+
+def _on_circle(values: Complex) -> bool:
+    """Whether the pair at product one is complex (a torus is born) and not two real reciprocals."""
+    near = [abs(values[i].imag) for i in range(len(values)) for j in range(i) if abs(values[i] * values[j] - 1) < 1e-5]
+    return any(size > 1e-6 for size in near)
+
+
+def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outcome) -> PeriodicBranch:
+    """The branch from its points and the kinds of the special ones among them."""
+    points, kinds, n = [p for p, _ in walk], [kind for _, kind in walk], problem.size
+    observed = [problem.observed(p) for p in points]
+    multipliers = np.array([problem.multipliers(p) for p in points]).reshape(-1, n)
+    radius = np.abs(multipliers).max(axis=1) if len(points) else np.zeros(0)
+    codes = np.where(
+        radius < 1 - UNTOLD, Verdict.STABLE, np.where(radius > 1 + UNTOLD, Verdict.UNSTABLE, Verdict.UNDECIDED)
+    )
+    special = tuple(
+        SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])
+        for point, kind, values, seen in zip(points, kinds, multipliers, observed, strict=True)
+        if kind
+    )
+    return PeriodicBranch(
+        label=problem.label,
+        unit=problem.unit,
+        period=np.array([o[3] for o in observed]),
+        parameter=np.array([p.parameter for p in points]),
+        start=np.array([problem.start(p) for p in points]).reshape(-1, n),
+        multipliers=multipliers,
+        verdict=codes.astype(np.int8),
+        peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.curves)),
+        largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.curves)),
+        amplitude=np.array([o[2] for o in observed]).reshape(-1, n),
+        curves=problem.curves,
+        curve_unit=problem.curve_unit,
+        special=special,
+        outcome=outcome,
+    )

@@ -1,0 +1,142 @@
+"""The frequency response of a piecewise linear oscillator by continuation of its exact periodic motions.
+
+The curve P(x, x′; ω) = (x, x′), followed by pseudo-arclength with the exact derivative by state and frequency;
+special points as in ``analyses/branch``. It is what the other methods are measured against.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.branch import PeriodicBranch, collect, special_points, with_ending
+from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.errors import InputError
+from trunnion.numerics.arclength import CurvePoint, follow
+from trunnion.numerics.piecewise import Passage, TooManyEventsError, measure, period
+from trunnion.results.outcome import Outcome
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+STEP, LEAST_STEP = 0.1, 1e-9
+
+
+def check_range(low: float, high: float) -> None:
+    """Refuse what is no rising range of positive frequencies.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
+        raise InputError("must be a rising range of positive frequencies", key="low, high", value=[low, high])
+
+
+def piecewise_branch(
+    oscillator: PiecewiseOscillator,
+    low: float,
+    high: float,
+    *,
+    begin: float | None = None,
+    start: ArrayLike | None = None,
+    periods: int = 1,
+    longest_step: float = 0.01,
+    most_points: int = 4000,
+) -> PeriodicBranch:
+    """Exact periodic motions over the frequency from ``low`` to ``high``, stable and unstable.
+
+    Parameters
+    ----------
+    begin : frequency to begin at, ``low`` by default; the branch is followed both ways from it.
+    start : x and x′ at phase zero near the first motion; so isolated branches are reached.
+    periods : forcing periods of the motion; 2 follows a motion of twice the period.
+    longest_step : of the continuation, over the frequency range and over the size of the gap or of the motion.
+
+    Returns
+    -------
+    PeriodicBranch with curves "x" and "v"; where nothing was found at ``begin`` it has no points and says so.
+
+    Raises
+    ------
+    InputError : a range that does not rise, a frequency outside it, an undamped linear resonance.
+    """
+    check_range(low, high)
+    first = low if begin is None else float(begin)
+    if not low <= first <= high:
+        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    orbit = piecewise_orbit(oscillator.but(frequency=first), start, periods=periods)
+    size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
+    problem = _Exact(oscillator, periods, size, (high - low) * longest_step / STEP)
+    if not orbit.outcome.ok:
+        return collect(problem, [], Outcome(False, "not found", f"no motion at ω = {first:g}: {orbit.outcome}"))
+    walks, ends = [], []
+    for direction in (-1.0, 1.0):
+        if first == (low if direction < 0 else high):
+            continue
+        curve = follow(
+            problem.equations, np.append(orbit.start, first), scale=problem.scale, bounds=(low, high),
+            direction=direction, first_step=STEP / 4, largest_step=STEP, smallest_step=LEAST_STEP,
+            most_points=most_points, tolerance=1e-11,
+        )  # fmt: skip
+        walks.append(special_points(problem, curve))
+        ends.append(with_ending(problem, curve))
+    whole = walks[-1] if len(walks) == 1 else [*reversed(walks[0][1:]), *walks[1]]
+    failed = [end for end in ends if not end.ok]
+    return collect(problem, whole, failed[0] if failed else Outcome(True, "followed", "; ".join(map(str, ends))))
+
+
+@dataclass
+class _Exact:
+    """The closing of an orbit as equations of a curve z = (x, x′, ω)."""
+
+    oscillator: PiecewiseOscillator
+    periods: int
+    width: float
+    range: float
+    size: int = 2
+    label: str = "frequency"
+    unit: str = "rad/s"
+    curves: tuple[str, ...] = ("x", "v")
+    curve_unit: str = "1"
+    runs: dict[bytes, Passage] = field(default_factory=dict)
+
+    @property
+    def scale(self) -> Array:
+        return np.array([self.width, self.width * self.oscillator.frequency, self.range])
+
+    def passage(self, z: Array) -> Passage:
+        key = z.tobytes()
+        if key not in self.runs:
+            o = self.oscillator
+            self.runs[key] = period(o.regimes, o.coefficients, float(z[2]), z[:2], self.periods)
+        return self.runs[key]
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        try:
+            if not (z[2] > 0 and np.isfinite(z).all()):
+                raise TooManyEventsError("no motion at such a frequency")
+            run = self.passage(z)
+        except TooManyEventsError:
+            return np.full(2, np.nan), np.full((2, 3), np.nan)
+        over = 1 / self.scale[:2]
+        return (run.state - z[:2]) * over, (run.tangents - np.eye(2, 3)) * over[:, None]
+
+    def start(self, point: CurvePoint) -> Array:
+        return point.z[:2]
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        values = np.linalg.eigvals(self.passage(point.z).tangents[:, :2]).astype(complex)
+        return np.asarray(values[np.argsort(-np.abs(values))])
+
+    def changes(self, point: CurvePoint) -> int:
+        return len(self.passage(point.z).crossings)
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        o, omega = self.oscillator, point.parameter
+        found = measure(o.regimes, o.coefficients, omega, point.z[:2], self.periods)
+        low, high, nan = found["low"], found["high"], np.nan
+        swing, largest = np.array([high - low, nan]), np.array([max(abs(low), abs(high)), nan])
+        return swing, largest, np.array([found["mean"], nan]), self.periods * 2 * np.pi / omega

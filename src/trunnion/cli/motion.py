@@ -1,0 +1,385 @@
+"""The commands about nonlinear motion: simulate, periodic-response, run-up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.options import File, Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.analyses.periodic_orbit import PeriodicOrbit
+    from trunnion.analyses.periodic_response import PeriodicResponse
+    from trunnion.analyses.run_up import RunUp
+    from trunnion.driveline.driveline import Driveline
+    from trunnion.systems.system import System
+
+Output = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more."
+    ),
+]
+Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Parameter of a reference system; repeat it for more."),
+]
+START = Annotated[str | None, typer.Option("--start", metavar="X,Y,…", help="State to start from.")]
+
+
+def simulate(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
+    ],
+    speed: Speed = None,
+    to_speed: Annotated[str | None, typer.Option("--to-speed", help="Speed at the end, reached evenly.")] = None,
+    turns: Annotated[float | None, typer.Option("--turns", help="Turns of the input; default 20.")] = None,
+    duration: Annotated[float | None, typer.Option("--duration", help="Instead of turns [s].")] = None,
+    start: START = None,
+    parameters: Set = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    tolerance: Tolerance = 1e-10,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """A motion in time, of a driveline or of a reference system (duffing, lorenz, …).
+
+    Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
+    """
+    from trunnion.analyses.simulate import simulate as compute
+
+    with output.compile_notice():
+        system = _system(file, parameters)
+        if system is not None:
+            _no_speed(speed or to_speed or load_case)
+            _check(to)
+            seconds = 100.0 if duration is None else duration
+            result: Any = compute(system, seconds, start=_state(start), tolerance=tolerance)
+            written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot())
+        else:
+            line = read_line(file, load_case)
+            unit = read_unit(line, unit)
+            _check(to)
+            profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit), duration)
+            length = None if duration is not None else 20.0 if turns is None else turns
+            result = compute(line, duration, speed=profile, turns=length, start=_state(start), tolerance=tolerance)
+            written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
+    if as_json:
+        output.write_json("simulate", _simulation_json(result, written))
+        return
+    _print(str(result), written)
+
+
+def periodic_response(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
+    ],
+    speed: Speed = None,
+    periods: Annotated[int, typer.Option("--periods", help="Of the excitation in one of the motion.", min=1)] = 1,
+    start: START = None,
+    parameters: Set = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """The true periodic motion, its torques, orders and stability, beside what linear theory says.
+
+    Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
+    """
+    from trunnion.analyses.periodic_response import PeriodicResponse
+    from trunnion.analyses.periodic_response import periodic_response as compute
+
+    with output.compile_notice():
+        system = _system(file, parameters)
+        if system is not None:
+            _no_speed(speed or load_case)
+            result = compute(system, start=_state(start), periods=periods)
+        else:
+            line = read_line(file, load_case)
+            unit = read_unit(line, unit)
+            result = compute(line, read_speed(speed, unit), start=_state(start), periods=periods)
+        _check(to)
+    result.outcome.require()
+    shown = unit or "rad/s"
+    of_line = isinstance(result, PeriodicResponse)
+    written = _written(
+        to, file_stem(file), "periodic-response", result.data,
+        lambda: result.plot(unit=shown) if of_line else result.plot(),
+    )  # fmt: skip
+    if as_json:
+        output.write_json("periodic-response", _response_json(result, written))
+        return
+    if isinstance(result, PeriodicResponse):
+        _print_response(result, shown, written)
+    else:
+        _print(str(result), written)
+
+
+def run_up(
+    file: File,
+    first: Annotated[str | None, typer.Option("--from", help="First speed; default: of the file's range.")] = None,
+    last: Annotated[str | None, typer.Option("--to", help="Last speed; default: of the file's range.")] = None,
+    acceleration: Annotated[
+        str, typer.Option("--acceleration", "-a", help="Per second, as a speed: 100rpm.")
+    ] = "100 rpm",
+    limit: Annotated[str | None, typer.Option("--limit", help='Torque to be kept by every shaft: "2 kN*m".')] = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Passage through resonance at constant acceleration, against the steady response.
+
+    Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
+    """
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    low, high = _range(line, read_speed(first, unit), read_speed(last, unit))
+    rate = read_speed(acceleration, unit)
+    assert rate is not None
+    from trunnion.analyses.run_up import run_up as compute
+    from trunnion.analyses.run_up import safe_accelerations
+    from trunnion.driveline.quantities import TORQUE, parse
+
+    torque = None
+    if limit is not None:
+        try:
+            torque = parse(float(limit) if _is_number(limit) else limit, TORQUE)
+        except InputError as error:
+            raise InputError(error.problem, key="--limit", value=limit, remedy=error.remedy) from None
+    _check(to)
+    with output.compile_notice():
+        result = compute(line, low, high, acceleration=rate)
+        safe = None
+        if torque is not None:
+            tried = (rate / 4, rate * 4)
+            safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9)
+    written = _written(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
+    if as_json:
+        content = _run_up_json(result, written)
+        if safe is not None:
+            content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
+        output.write_json("run-up", content)
+        return
+    _print(result.describe(unit) + (f"\n  {safe}" if safe is not None else ""), written)
+
+
+def _system(name: str, parameters: list[str] | None) -> System | None:
+    """The reference system of that name, with ``--set`` applied; None for a driveline."""
+    from trunnion.systems.reference import SYSTEMS, reference_system
+
+    if name not in SYSTEMS:
+        if parameters:
+            remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
+            raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
+        return None
+    values = {}
+    for text in parameters or ():
+        key, _, value = text.partition("=")
+        if not _is_number(value):
+            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
+        values[key.strip()] = float(value)
+    return reference_system(name, **values)
+
+
+def _no_speed(given: str | None) -> None:
+    if given is not None:
+        raise InputError("belongs to drivelines", key="--speed", value=given, remedy="use --set for a reference system")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _state(text: str | None) -> list[float] | None:
+    if text is None:
+        return None
+    parts = text.split(",")
+    if not all(_is_number(part) for part in parts):
+        raise InputError("is not a list of numbers", key="--start", value=text, remedy='write "0.1,0"')
+    return [float(part) for part in parts]
+
+
+def _course(line: Driveline, first: float | None, last: float | None, duration: float | None) -> Any:
+    """The speed, or a profile to the speed at the end."""
+    from trunnion.analyses.stability import operating_speed
+    from trunnion.equations.speed_profile import SpeedProfile
+
+    if last is None:
+        return first
+    if duration is None:
+        raise InputError("is missing beside --to-speed", key="--duration", remedy="write --duration 10, in seconds")
+    return SpeedProfile([0.0, duration], [operating_speed(line, first), last])
+
+
+def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
+    from trunnion.analyses.overview import speed_range
+    from trunnion.equations.coefficients import assemble
+
+    if first is not None and last is not None:
+        return first, last
+    low, high = speed_range(assemble(line, tripods=True))
+    return first or low, last or high
+
+
+def _check(to: list[Path] | None) -> None:
+    from trunnion.cli.files import check_folder, check_outputs
+
+    if to:
+        check_outputs(to)
+    else:
+        check_folder(DEFAULT_FOLDER)
+
+
+def _written(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
+    """The files asked for, or a picture and the data in the default folder."""
+    from trunnion.results.files import folder_written_whole
+
+    if to:
+        return [_write(path, data, draw) for path in to]
+    with folder_written_whole(DEFAULT_FOLDER) as temporary:
+        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
+        for name in names:
+            _write(name, data, draw)
+    return [DEFAULT_FOLDER / name.name for name in names]
+
+
+def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
+    from trunnion.plots.style import save
+    from trunnion.results.files import written_whole
+
+    ending = path.suffix.removeprefix(".").lower()
+    if ending == "nc":
+        with written_whole(path) as temporary:
+            data.to_netcdf(temporary, engine="h5netcdf")
+    elif ending == "csv":
+        with written_whole(path) as temporary:
+            _write_table(temporary, data)
+    else:
+        save(draw().figure.figure, path)
+    return path
+
+
+def _write_table(path: Path, data: Any) -> None:
+    """What runs along the first dimension of a dataset, a column per shaft or state."""
+    import csv
+
+    axis = next(d for d in ("time", "turn") if d in data.sizes)
+    index = data[axis].values if axis in data.coords else range(data.sizes[axis])
+    columns = {"time [s]" if axis == "time" else axis: index}
+    for name, part in data.variables.items():
+        if not part.dims or part.dims[0] != axis or name == axis:
+            continue
+        unit = part.attrs.get("units", "1")
+        head = str(name) if unit == "1" else f"{name} [{unit}]"
+        if len(part.dims) == 1:
+            columns[head] = part.values
+        else:
+            labels = data[part.dims[1]].values
+            columns |= {f"{label}: {head}": v for label, v in zip(labels, part.values.T, strict=True)}
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(columns)
+        table.writerows(zip(*columns.values(), strict=True))
+
+
+def _print(text: str, written: list[Path]) -> None:
+    from trunnion.cli.report import print_written
+
+    out = output.console()
+    out.print(text, soft_wrap=True)
+    print_written(out, written)
+
+
+def _print_response(result: PeriodicResponse, unit: str, written: list[Path]) -> None:
+    from trunnion.cli.report import print_written
+
+    out = output.console()
+    out.print(result.describe(unit), soft_wrap=True)
+    orders, amplitude = result.order_spectrum()
+    rows = [
+        {"order": float(order), **{f"{s} [N m]": float(a) for s, a in zip(result.shafts, row, strict=True)}}
+        for order, row in zip(orders, amplitude, strict=True)
+        if row.max() > 1e-3 * amplitude[1:].max(initial=0.0)
+    ]
+    output.heading(out, "Orders: torque amplitude by cycles per turn of the input (0 is the mean)")
+    output.table(out, rows)
+    output.heading(out, "Findings")
+    output.findings(out, result.findings_in(unit))
+    print_written(out, written)
+
+
+def _simulation_json(result: Any, written: list[Path]) -> dict[str, Any]:
+    from trunnion.analyses.simulate import LineSimulation
+
+    content = {
+        "outcome": result.outcome.kind,
+        "says": str(result.outcome),
+        "end": result.end,
+        "final_state": result.final,
+        "written": [str(path) for path in written],
+    }
+    if isinstance(result, LineSimulation):
+        content["shafts"] = [
+            {"name": name, "smallest_torque": low, "largest_torque": high}
+            for name, low, high in zip(result.shafts, result.torque.min(axis=0), result.torque.max(axis=0), strict=True)
+        ]
+    return content
+
+
+def _response_json(result: PeriodicResponse | PeriodicOrbit, written: list[Path]) -> dict[str, Any]:
+    from trunnion.analyses.periodic_response import PeriodicResponse
+
+    content: dict[str, Any] = {
+        "verdict": str(result.verdict),
+        "period": result.period,
+        "spectral_radius": result.spectral_radius,
+        "error_estimate": result.error_estimate,
+        "growth_rate": result.growth_rate,
+        "multipliers": list(map(complex, result.multipliers)),
+        "says": str(result.outcome),
+        "written": [str(path) for path in written],
+    }
+    if isinstance(result, PeriodicResponse):
+        orders, amplitude = result.order_spectrum()
+        content |= {
+            "speed": result.speed,
+            "turns": result.turns,
+            "shafts": [
+                {"name": name, "mean_torque": mean, "torque_peak_to_peak": peak}
+                for name, mean, peak in zip(result.shafts, result.torque_mean, result.torque_peak_to_peak, strict=True)
+            ],
+            "orders": orders,
+            "order_amplitude": amplitude,
+            "linear_theory": str(result.comparison or result.no_comparison),
+            "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
+        }
+    return content
+
+
+def _run_up_json(result: RunUp, written: list[Path]) -> dict[str, Any]:
+    return {
+        "outcome": result.outcome.kind,
+        "says": str(result.outcome),
+        "acceleration": result.acceleration,
+        "shafts": [
+            {"name": name, "peak_torque": peak, "peak_speed": at, "largest_steady_torque": steady}
+            for name, peak, at, steady in zip(
+                result.shafts, result.peak_torque, result.peak_speed, result.steady_peak, strict=True
+            )
+        ],
+        "written": [str(path) for path in written],
+    }

@@ -1,0 +1,283 @@
+"""A driveline as a ``System``: its numbers in the order the compiled right-hand side reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.parameters import SPEED, Parameter
+from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
+from trunnion.equations.topology import LONGEST_PERIOD, Link
+from trunnion.errors import InputError
+from trunnion.joints import tripod
+from trunnion.numerics.compiled import kernel_file
+from trunnion.systems.system import System
+from trunnion.systems.user_functions import CFunction
+
+Array = NDArray[np.float64]
+ANGLE_SCALE = 0.01
+"""The deviation [rad] that counts as one in error control."""
+
+
+def kernel() -> ModuleType:
+    """The compiled right-hand side of lines and what observes their motion."""
+    return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
+
+
+@dataclass(frozen=True)
+class Course:
+    """Input speed Ω(t) = speed + acceleration (t − since), the input's angle being ``angle`` at t = since."""
+
+    speed: float
+    acceleration: float = 0.0
+    since: float = 0.0
+    angle: float = 0.0
+
+
+@dataclass(frozen=True)
+class LineMotion:
+    """Twist [rad] and torque [N m] of every shaft, (time, shaft), positive with the twist; and the deviation of
+    every station from its uniform rotation [rad], (time, station)."""
+
+    twist: Array
+    torque: Array
+    rotation: Array
+
+
+@dataclass(frozen=True)
+class LineSystem:
+    """A line prepared for nonlinear analyses.
+
+    ``system`` has the states "rotation of …" (deviations from uniform rotation at the mean speed, forks
+    subtracted) and "rate of …"; its parameters are the line's numbers by their paths, and the speed.
+    """
+
+    assembly: Assembly
+    speed: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the unknown rotations."""
+        return self.assembly.topology.names
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the compliances; massless shafts in series count as one."""
+        names = self.assembly.line.names
+        return tuple(" + ".join(names[i] for i in c.shafts) for c in self.assembly.topology.compliances)
+
+    @cached_property
+    def period_turns(self) -> Fraction | None:
+        """Period of everything that depends on the input's rotation, in turns; None where there is none."""
+        topo = self.assembly.topology
+        rates = [1 / topo.period_turns()] if topo.joints or topo.tripods else []
+        stations = {element: s for s, element in topo.disks}
+        for i, element in enumerate(self.assembly.line.elements):
+            for harmonic in element.excitation if isinstance(element, Disk) else ():
+                if harmonic.order is not None:
+                    rates.append(Fraction(str(harmonic.order)) * abs(topo.speed_ratio[stations[i]]))
+        if not rates:
+            return Fraction(1, 2)
+        base = rates[0]
+        for rate in rates[1:]:
+            while rate:
+                base, rate = rate, base % rate
+        return 1 / base if 1 / base <= LONGEST_PERIOD else None
+
+    @cached_property
+    def system(self) -> System:
+        """The line as a system, its parameters being those of the description."""
+        packed = self.assembly.packed
+        values = dict(zip(packed.labels, map(float, packed.values), strict=True)) | {SPEED: self.speed}
+        n = self.assembly.topology.size
+        compiled = kernel().line
+        return System(
+            name=self.assembly.line.name or "driveline",
+            states=(*(f"rotation of {name}" for name in self.names), *(f"rate of {name}" for name in self.names)),
+            units=("rad",) * n + ("rad/s",) * n,
+            rate=CFunction(compiled.address, compiled),
+            parameters=values,
+            parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
+            period=self._period,
+            start=np.zeros(2 * n),
+            scale=np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n),
+            numbers_of=self._numbers,
+        )
+
+    def _period(self, values: Mapping[str, float]) -> float | None:
+        """The period of everything [s]; None where the excitations have none of usable length in common."""
+        if self.period_turns is None:
+            return None
+        period = 2 * np.pi * float(self.period_turns) / values[SPEED]
+        in_time = [2 * np.pi / values[key] for key in self.time_harmonics]
+        if in_time and not self._turning:
+            period = in_time[0]  # nothing depends on the rotation
+        for other in in_time:
+            ratio = Fraction(period / other).limit_denominator(LONGEST_PERIOD)
+            if not ratio or abs(float(ratio) * other / period - 1) > 1e-12:
+                return None
+            period *= ratio.denominator
+        return period
+
+    @cached_property
+    def time_harmonics(self) -> tuple[str, ...]:
+        """Parameters that are frequencies of torques harmonic in time."""
+        names, elements = self.assembly.line.names, self.assembly.line.elements
+        return tuple(
+            f"{name}.excitation {h} frequency"
+            for name, element in zip(names, elements, strict=True)
+            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1)
+            if harmonic.frequency is not None
+        )
+
+    @property
+    def _turning(self) -> bool:
+        """Whether anything depends on the input's rotation."""
+        topo = self.assembly.topology
+        disks = [e for e in self.assembly.line.elements if isinstance(e, Disk)]
+        return bool(topo.joints or topo.tripods) or any(h.order is not None for d in disks for h in d.excitation)
+
+    def _numbers(self, values: Mapping[str, float]) -> Array:
+        return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))
+
+    def numbers(self, row: Array, course: Course | None = None) -> Array:
+        """What the compiled right-hand side reads, from one row of packed numbers and the input's course."""
+        assembly, topo = self.assembly, self.assembly.topology
+        table = row[None]
+        co = assembly.coefficients(table, statically_twisted=False)
+        course = course or Course(float(row[0]))
+        core = kernel()
+        ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
+        stations = np.zeros((len(topo.stations), core.PER_STATION))
+        phase, joint = np.zeros(len(topo.stations)), 0
+        column = assembly.packed.column
+        for s, station in enumerate(topo.stations):
+            group = station.group
+            out = stations[s]
+            out[core.BEFORE], out[core.LINK] = station.before, station.link
+            out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
+            out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
+            out[core.INERTIA] = co.inertia[0, s]
+            out[core.LOAD] = co.load[0, s] * np.sign(mean[s])
+            before = phase[station.before] if station.before >= 0 else 0.0
+            chi = before + co.shift[0, s]
+            if station.link is Link.SHAFT:
+                phase[s] = chi
+            elif station.link is Link.RATIO:
+                phase[s] = before / ratios[s]
+            elif station.link is Link.HOOKE:
+                beta = co.angle[0, joint]
+                joint += 1
+                out[core.SIZE] = np.tan(beta / 2) ** 2
+                out[core.COSINE], out[core.SQUARE] = np.cos(beta), np.sin(beta) ** 2
+                out[core.PHASE], phase[s] = chi, chi + QUARTER_TURN
+            elif station.link is Link.TRIPOD:
+                i = station.element
+                angle, radius, length = (row[column(i, k)] for k in ("angle", "radius", "length"))
+                driven = getattr(assembly.line.elements[i], "spider", "output") == "output"
+                size = float(tripod.amplitude(angle, radius / length))
+                out[core.SIZE], out[core.PHASE], phase[s] = (size if driven else -size), chi, chi
+        harmonics = []
+        for s, i in topo.disks:
+            stations[s, core.VISCOUS] += row[column(i, "viscous_load")]
+            stations[s, core.QUADRATIC] += row[column(i, "quadratic_load")]
+            element = assembly.line.elements[i]
+            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
+                keys = [column(i, f"excitation {h} {k}") for k in ("amplitude", "frequency", "phase")]
+                amplitude, angle = row[keys[0]], row[keys[2]]
+                frequency = row[keys[1]] if keys[1] >= 0 else 0.0
+                sense = float(np.sign(mean[s]))
+                order = sense * (harmonic.order or 0.0)
+                harmonics.append([s, sense * amplitude, order, frequency, angle])
+        compliances = [
+            [
+                c.near,
+                topo.reference[c.far_group],
+                topo.coordinate[topo.group_of(c.near)],
+                topo.coordinate[c.far_group],
+                co.stiffness[0, e],
+                co.damping[0, e],
+            ]
+            for e, c in enumerate(topo.compliances)
+        ]
+        head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
+        head += [course.angle, course.speed, course.acceleration, course.since]
+        scratch = np.zeros(5 * len(stations) + 7 * topo.size + len(compliances))
+        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics), scratch]
+        return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+
+    def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters)."""
+        t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
+        topo = self.assembly.topology
+        twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
+        rotation = np.empty((len(t), len(topo.stations)))
+        kernel().observe(t, np.ascontiguousarray(x), system.numbers, twist, torque, rotation)
+        return LineMotion(twist, torque, rotation)
+
+    def energy(self, system: System, time: ArrayLike, state: ArrayLike) -> tuple[Array, Array]:
+        """Kinetic and elastic energy [J] along a motion, (time,) each."""
+        t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
+        kinetic, potential = np.empty(len(t)), np.empty(len(t))
+        kernel().energy(t, np.ascontiguousarray(x), system.numbers, kinetic, potential)
+        return kinetic, potential
+
+    def varied(self, parameter: str | Parameter) -> Callable[[float], System]:
+        """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group)."""
+        columns, labels = self.assembly.packed.resolve(parameter), self.assembly.packed.labels
+
+        def at(value: float) -> System:
+            changes = {
+                labels[i]: float(offset + slope * value)
+                for i, slope, offset in zip(columns.index, columns.slope, columns.offset, strict=True)
+            }
+            return self.system.with_parameters(changes)
+
+        return at
+
+    def rest(self) -> Array:
+        """The state (2n,) without twist: every disk where rigid shafts would hold it at t = 0."""
+        return self.rigid(0.0)
+
+    def rigid(self, theta: float) -> Array:
+        """State (2n,) of the line with rigid shafts, the input standing at ``theta`` [rad]."""
+        topo = self.assembly.topology
+        co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False)
+        base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
+        plain = base_motion(topo, _straight(co), np.array([theta]), ratio_values(topo))
+        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
+        d = (base.angle - plain.angle)[0, 0, places]
+        v = (base.speed - plain.speed)[0, 0, places] * self.speed
+        return np.concatenate([d, v])
+
+
+def _straight(coefficients: LineCoefficients) -> LineCoefficients:
+    return replace(coefficients, angle=np.zeros_like(coefficients.angle))
+
+
+def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
+    """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from).
+
+    Raises
+    ------
+    InputError : a second prescribed speed; what ``assemble`` refuses.
+    """
+    assembly = line if isinstance(line, Assembly) else assemble(line, tripods=True)
+    if sum(assembly.topology.prescribed) > 1:
+        raise InputError(
+            "a second prescribed speed has no place in the nonlinear equations",
+            element="driveline",
+            key="ConstantSpeed",
+            remedy="end the line with a Disk",
+        )
+    return LineSystem(assembly, float(speed))

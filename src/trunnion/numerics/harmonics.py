@@ -1,0 +1,85 @@
+"""Fourier series of a period in real form: rows of mean, cosines 1…H, sines 1…H.
+
+    x(t) = a₀ + Σ_k (a_k cos kωt + b_k sin kωt)
+
+A *row* has 2H + 1 numbers in that order; a motion of n states is an array (n, 2H + 1).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def order(row: Array) -> int:
+    """H of a row or of an array of rows."""
+    return (row.shape[-1] - 1) // 2
+
+
+def samples(rows: Array, count: int) -> Array:
+    """Values at ``count`` equidistant times of the period, from t = 0; shape (…, count), count > 2H."""
+    h = order(rows)
+    spectrum = np.zeros((*rows.shape[:-1], count // 2 + 1), dtype=complex)
+    spectrum[..., 0] = rows[..., 0] * count
+    spectrum[..., 1 : h + 1] = (rows[..., 1 : h + 1] - 1j * rows[..., h + 1 :]) * (count / 2)
+    return np.asarray(np.fft.irfft(spectrum, count))
+
+
+def rows_of(values: Array, h: int) -> Array:
+    """The first ``h`` harmonics of equidistant samples (…, count)."""
+    count = values.shape[-1]
+    spectrum = np.fft.rfft(values)[..., : h + 1] / count
+    return np.concatenate([spectrum[..., :1].real, 2 * spectrum[..., 1:].real, -2 * spectrum[..., 1:].imag], axis=-1)
+
+
+def resized(rows: Array, h: int) -> Array:
+    """The same motion with ``h`` harmonics: the rest dropped, or zeros behind."""
+    old = order(rows)
+    kept = min(old, h)
+    out = np.zeros((*rows.shape[:-1], 2 * h + 1))
+    out[..., : kept + 1] = rows[..., : kept + 1]
+    out[..., h + 1 : h + 1 + kept] = rows[..., old + 1 : old + 1 + kept]
+    return out
+
+
+def rate(rows: Array, omega: float) -> Array:
+    """Rows of dx/dt."""
+    h = order(rows)
+    k = omega * np.arange(1, h + 1)
+    return np.concatenate([np.zeros_like(rows[..., :1]), k * rows[..., h + 1 :], -k * rows[..., 1 : h + 1]], axis=-1)
+
+
+def rate_matrix(h: int, omega: float) -> Array:
+    """The matrix that does the same to one row."""
+    return np.ascontiguousarray(rate(np.eye(2 * h + 1), omega).T)
+
+
+def product_matrix(values: Array, h: int) -> Array:
+    """The matrix (…, 2h + 1, 2h + 1) that multiplies a row by g(t), given by samples (…, count ≥ 4h + 1).
+
+    With ĝ_m the complex coefficients of g, the product's are Σ_l ĝ_{k−l} x_l: a Toeplitz matrix of ĝ_{k−l} and,
+    since the coefficients at −l are conjugates, a Hankel one of ĝ_{k+l}.
+    """
+    spectrum = np.fft.rfft(values)[..., : 2 * h + 1] / values.shape[-1]
+    k = np.arange(h + 1)
+    apart = k[:, None] - k[None, :]
+    toeplitz = np.where(apart >= 0, spectrum[..., np.abs(apart)], spectrum[..., np.abs(apart)].conj())
+    hankel = spectrum[..., k[:, None] + k[None, :]]
+    out = np.empty((*values.shape[:-1], 2 * h + 1, 2 * h + 1))
+    both, difference = toeplitz + hankel, toeplitz - hankel
+    out[..., : h + 1, : h + 1] = both.real
+    out[..., : h + 1, h + 1 :] = difference.imag[..., :, 1:]
+    out[..., h + 1 :, : h + 1] = -both.imag[..., 1:, :]
+    out[..., h + 1 :, h + 1 :] = difference.real[..., 1:, 1:]
+    out[..., 0, :] /= 2  # a mean is its coefficient, an amplitude twice that
+    return out
+
+
+def tail(rows: Array, last: int = 2) -> Array:
+    """Size of the last harmonics over that of all but the mean, per row (…,): what the series has not caught."""
+    h = order(rows)
+    size = np.hypot(rows[..., 1 : h + 1], rows[..., h + 1 :])
+    whole = np.sqrt(np.sum(size**2, axis=-1))
+    return np.asarray(size[..., max(h - last, 0) :].max(axis=-1) / np.maximum(whole, 1e-300))

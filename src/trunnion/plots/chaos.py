@@ -1,0 +1,219 @@
+"""Exponents, Poincaré maps, bifurcations and the certificate of a motion as pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.bifurcation_diagram import BifurcationDiagram
+from trunnion.analyses.certify_chaos import ChaosCertificate
+from trunnion.analyses.long_motion import wrapped
+from trunnion.analyses.lyapunov_map import LyapunovMap, LyapunovSweep
+from trunnion.analyses.lyapunov_result import LyapunovSpectrum
+from trunnion.analyses.poincare_map import PoincareMap
+from trunnion.numerics.integration import integrate
+from trunnion.plots.kinetostatics import COLOURS
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+PORTRAIT = 60
+"""Periods of a motion in its portrait."""
+FEW = 6
+"""The smaller number of points of a map, as a share of all: one in so many."""
+SMALLEST_DOTS = 400
+"""Points of a map above which they are drawn as small as can be seen."""
+
+
+def draw_convergence(result: LyapunovSpectrum, axes: Axes | None = None) -> Axes:
+    """Running means of the exponents of every start, with the final intervals at the right."""
+    axes = axes or new_axes(7.2, 4.2)
+    time, means = result.histories
+    for j in range(len(result.exponents)):
+        colour = COLOURS[j % len(COLOURS)]
+        for i, history in enumerate(means):
+            axes.plot(time, history[:, j], color=colour, lw=1.1, label=f"L{j + 1}" if i == 0 else None, alpha=0.8)
+        value, width = result.exponents[j], result.half_width[j]
+        axes.axhspan(value - width, value + width, color=colour, alpha=0.25, lw=0)
+    axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
+    axes.set_xscale("log")
+    _labels(axes, "time averaged over [s]", "exponent [1/s]")
+    if len(time):
+        axes.set_xlim(time[0], time[-1])
+    _legend(axes)
+    return axes
+
+
+def draw_map(
+    result: PoincareMap, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None
+) -> Axes:
+    """Points of a Poincaré map: one state over another, by default the first two that differ along the map."""
+    axes = axes or new_axes(5.2, 4.6)
+    i, j = _pair(result.system, x, y)
+    shown = result.wrapped if points is None else result.wrapped[:points]
+    crowd = len(shown) > SMALLEST_DOTS
+    look: dict[str, Any] = {"marker": ".", "ls": "", "color": COLOURS[0], "ms": 2.0 if crowd else 5.0, "mew": 0}
+    if result.repeat:
+        look |= {"ms": 8.0}
+    axes.plot(shown[:, i], shown[:, j], **look)
+    if result.repeat:
+        _widen(axes, result, i, j)
+    _labels(axes, _named(result.system, i), _named(result.system, j))
+    axes.set_title(f"{len(shown)} points", fontsize=SMALL, color=FAINT, loc="left")
+    return axes
+
+
+def draw_bifurcations(result: BifurcationDiagram, axes: Axes | None = None, *, state: str = "") -> Axes:
+    """One state of the map over the parameter, in a colour for each direction."""
+    axes = axes or new_axes(7.2, 4.4)
+    i = result.system.states.index(state) if state else 0
+    for d, direction in enumerate(result.directions):
+        values = np.repeat(result.values, result.points.shape[2])
+        look: dict[str, Any] = {"marker": ".", "ls": "", "ms": 1.6, "mew": 0, "color": COLOURS[d]}
+        axes.plot(values, result.points[d, :, :, i].ravel(), **look)
+        axes.plot([], [], marker="o", ls="", ms=5, color=COLOURS[d], label=direction)
+    unit = result.system.parameter_units.get(result.parameter, "1")
+    _labels(axes, _with_unit(result.parameter, unit), _named(result.system, i))
+    axes.set_xlim(result.values[0], result.values[-1])
+    _legend(axes)
+    return axes
+
+
+def draw_sweep(result: LyapunovSweep, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
+    """Exponents over one parameter, with their intervals; ``mark`` a value of it."""
+    axes = axes or new_axes(7.2, 4.2)
+    for j in range(result.exponents.shape[1]):
+        value, width, colour = result.exponents[:, j], result.half_width[:, j], COLOURS[j % len(COLOURS)]
+        axes.fill_between(result.values, value - width, value + width, color=colour, alpha=0.25, lw=0)
+        axes.plot(result.values, value, color=colour, lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
+    axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
+    if mark is not None:
+        axes.axvline(mark, color=FAINT, lw=0.8, ls=(0, (1, 2)))
+    unit = result.system.parameter_units.get(result.parameter, "1")
+    _labels(axes, _with_unit(result.parameter, unit), "exponent [1/s]")
+    if len(result.values) > 1:
+        axes.set_xlim(result.values[0], result.values[-1])
+    return axes
+
+
+def draw_lyapunov_map(result: LyapunovMap, axes: Axes | None = None) -> Axes:
+    """The largest exponent in colour: red where positive, blue where negative, white at 0, grey where it failed."""
+    axes = axes or new_axes(7.0, 4.8)
+    from matplotlib.colors import TwoSlopeNorm
+
+    high = max(float(np.nanmax(result.exponent)), 1e-12)
+    low = min(float(np.nanmin(result.exponent)), -1e-12)
+    axes.set_facecolor("#9a9a9a")
+    drawn = axes.pcolormesh(
+        result.x, result.y, result.exponent, cmap="RdBu_r", norm=TwoSlopeNorm(0.0, low, high), shading="nearest",
+        rasterized=True,
+    )  # fmt: skip
+    bar = axes.figure.figure.colorbar(drawn, ax=axes)
+    bar.set_label("largest exponent [1/s]", fontsize=TEXT, color=INK)
+    bar.ax.tick_params(labelsize=SMALL, colors=INK)
+    units = [result.system.parameter_units.get(name, "1") for name in result.parameters]
+    axes.set_xlabel(_with_unit(result.parameters[0], units[0]), fontsize=TEXT, color=INK)
+    axes.set_ylabel(_with_unit(result.parameters[1], units[1]), fontsize=TEXT, color=INK)
+    plain(axes)
+    return axes
+
+
+def draw_certificate(result: ChaosCertificate) -> Figure:
+    """Portrait; exponents over the swept parameter, or their convergence; the map at two numbers of points."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.4, 7.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid: Any = figure.subplots(2, 2)
+    what = str(result.verdict) + (f", {result.kind}" if result.kind else "")
+    figure.suptitle(f"{result.system.name}: {what}", fontsize=TITLE, color=INK, x=0.01, ha="left")
+    _portrait(result, grid[0, 0])
+    if result.sweep is not None:
+        draw_sweep(result.sweep, grid[0, 1], mark=result.system.parameters[result.sweep.parameter])
+        grid[0, 1].legend(fontsize=SMALL, frameon=False, loc="best")
+    else:
+        _convergence_panel(result.spectrum, grid[0, 1])
+    for axes, share in zip(grid[1], (FEW, 1), strict=True):
+        if result.map is None or not len(result.map.points):
+            axes.set_axis_off()
+            axes.text(0.5, 0.5, "no map", ha="center", va="center", fontsize=TEXT, color=FAINT)
+            continue
+        draw_map(result.map, axes, points=max(len(result.map.points) // share, 1))
+    return figure
+
+
+def _convergence_panel(spectrum: LyapunovSpectrum, axes: Axes) -> None:
+    time, means = spectrum.histories
+    for j in range(len(spectrum.exponents)):
+        axes.plot(time, means[0, :, j], color=COLOURS[j % len(COLOURS)], lw=1.2, label=f"L{j + 1}")
+    axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
+    axes.set_xscale("log")
+    _labels(axes, "time averaged over [s]", "exponent [1/s]")
+    axes.legend(fontsize=SMALL, frameon=False, loc="best")
+
+
+def _portrait(result: ChaosCertificate, axes: Axes) -> None:
+    system, spectrum = result.system, result.spectrum
+    i, j = _pair(system, "", "")
+    state = spectrum.runs[0].states[-1] if len(spectrum.runs[0].states) else spectrum.starts[0]
+    state = state if np.all(np.isfinite(state)) and np.all(np.abs(state) < 1e50) else spectrum.starts[0]
+    run = integrate(
+        system.equations, 0.0, PORTRAIT * spectrum.interval, state, regime=system.regime_at(0.0, state), tolerance=1e-8
+    )
+    if run.steps:
+        times = np.linspace(0.0, run.time, 30_000)
+        turning = result.map.angles if result.map is not None else ()
+        path = wrapped(run.at(times), turning)
+        for k in {i, j} & set(turning):  # no line across the page where an angle starts anew
+            path[1:][np.abs(np.diff(path[:, k])) > np.pi] = np.nan
+        axes.plot(path[:, i], path[:, j], color=COLOURS[0], lw=0.5)
+    _labels(axes, _named(system, i), _named(system, j))
+    word = "period" if system.forcing_period is not None else "sample"
+    axes.set_title(f"portrait over {PORTRAIT} {word}s", fontsize=SMALL, color=FAINT, loc="left")
+
+
+def _widen(axes: Axes, result: PoincareMap, i: int, j: int) -> None:
+    """Show a map that repeats at the size of the motion, not of its rounding errors."""
+    for k, limits, change in ((i, axes.get_xlim(), axes.set_xlim), (j, axes.get_ylim(), axes.set_ylim)):
+        size = float(result.size[k])
+        if size > 0 and limits[1] - limits[0] < 0.05 * size:
+            middle = 0.5 * (limits[0] + limits[1])
+            change(middle - 0.5 * size, middle + 0.5 * size)
+
+
+def _pair(system: System, x: str, y: str) -> tuple[int, int]:
+    """Places of two states: those named, or a rotation and its rate, or the first two."""
+    names = system.states
+    half = len(names) // 2 if names[0].startswith("rotation of ") else min(1, len(names) - 1)
+    if "rate" in names:
+        half = names.index("rate")
+    return (names.index(x) if x else 0), (names.index(y) if y else half)
+
+
+def _named(system: System, i: int) -> str:
+    return _with_unit(system.states[i], system.units[i])
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+def _labels(axes: Axes, x: str, y: str) -> None:
+    axes.set_xlabel(x, fontsize=TEXT, color=INK)
+    axes.set_ylabel(y, fontsize=TEXT, color=INK)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    axes.set_axisbelow(True)
+    plain(axes)
+
+
+def _legend(axes: Axes) -> None:
+    axes.figure.figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=6, fontsize=SMALL, frameon=False
+    )

@@ -1,0 +1,170 @@
+"""Motions as pictures: time histories, phase portraits, one period of torque, order spectra."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.periodic_orbit import PeriodicOrbit
+from trunnion.analyses.periodic_response import PeriodicResponse
+from trunnion.analyses.simulate import LineSimulation
+from trunnion.analyses.simulation import Simulation
+from trunnion.plots.kinetostatics import COLOURS, DASHES
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+POINTS = 6000
+"""Points of a curve, about three per pixel of a printed figure."""
+DENSE = 400
+"""Cycles beyond which a history is drawn as its envelope."""
+
+
+def draw_history(result: Simulation, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
+    """States over time; all of them, or those named."""
+    axes = axes or new_axes(7.2, 4.0)
+    names = states or result.system.states
+    low, high = result.time_range
+    times = np.linspace(low, high, POINTS) if len(result.trajectory.coefficients) else result.time
+    values = result.at(times) if len(result.trajectory.coefficients) else result.state
+    for k, name in enumerate(names):
+        i = result.system.states.index(name)
+        unit = result.system.units[i]
+        label = name if unit == "1" else f"{name} [{unit}]"
+        axes.plot(times, values[:, i], label=label, **_look(k))
+    if len(names) == 1:
+        unit = result.system.units[result.system.states.index(names[0])]
+        _labels(axes, "time [s]", names[0] if unit == "1" else f"{names[0]} [{unit}]")
+    else:
+        _labels(axes, "time [s]", "state")
+        _legend(axes)
+    axes.set_xlim(low, high)
+    return axes
+
+
+def draw_portrait(
+    result: Simulation, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0
+) -> Axes:
+    """One state over another, from ``from_time`` on; by default the second over the first."""
+    axes = axes or new_axes(5.2, 4.6)
+    names = result.system.states
+    i, j = names.index(x) if x else 0, names.index(y) if y else min(1, len(names) - 1)
+    low, high = result.time_range
+    times = np.linspace(max(low, from_time), high, 4 * POINTS)
+    values = result.at(times) if len(result.trajectory.coefficients) else result.state
+    axes.plot(values[:, i], values[:, j], color=COLOURS[0], lw=0.7)
+    _labels(axes, _named(names[i], result.system.units[i]), _named(names[j], result.system.units[j]))
+    return axes
+
+
+def draw_orbit(result: PeriodicOrbit, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
+    """A periodic motion in the plane of two states, with its state at the start of the period."""
+    axes = axes or new_axes(5.2, 4.6)
+    names = result.system.states
+    half = len(names) // 2 if names[0].startswith("rotation of ") else min(1, len(names) - 1)
+    i, j = names.index(x) if x else 0, names.index(y) if y else half
+    axes.plot(result.state[:, i], result.state[:, j], color=COLOURS[0], lw=1.6)
+    axes.plot(*result.start[[i, j]], "o", color=COLOURS[1], ms=6, label="start of the period")
+    _labels(axes, _named(names[i], result.system.units[i]), _named(names[j], result.system.units[j]))
+    _legend(axes)
+    return axes
+
+
+def draw_line_history(
+    result: LineSimulation, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "rpm"
+) -> Axes:
+    """Torque of the shafts over time; the envelope where the cycles are too many to tell apart."""
+    axes = axes or new_axes(7.2, 4.2)
+    chosen = [result.shafts.index(s) for s in shafts] or range(len(result.shafts))
+    turns = float(result.profile.angle(result.end)) / (2 * np.pi)
+    torque = result.torque
+    for k, i in enumerate(chosen):
+        look = _look(k)
+        if turns > DENSE:
+            count = max(len(result.time) // 600, 2)
+            whole = len(result.time) // count * count
+            blocks = torque[:whole, i].reshape(-1, count)
+            at = result.time[:whole].reshape(-1, count).mean(axis=1)
+            axes.fill_between(
+                at, blocks.min(axis=1), blocks.max(axis=1), color=look["color"], alpha=0.35, lw=0.8,
+                label=f"{result.shafts[i]} (envelope)",
+            )  # fmt: skip
+        else:
+            axes.plot(result.time, torque[:, i], label=result.shafts[i], **{**look, "lw": 0.9})
+    _labels(axes, "time [s]", "torque [N·m]")
+    axes.set_xlim(result.time[0], result.time[-1])
+    low, high = result.profile.at(np.array([0.0, result.end]))
+    span = show_speed(low, unit) if low == high else f"{show_speed(low, unit)} to {show_speed(high, unit)}"
+    axes.set_title(f"input at {span}", fontsize=SMALL, color=FAINT, loc="left")
+    _legend(axes)
+    return axes
+
+
+def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str = "rpm") -> Axes:
+    """Torque of every shaft over one period, with linear theory where it applies."""
+    axes = axes or new_axes(7.2, 4.2)
+    degrees = 360 * result.turns * np.arange(len(result.time) + 1) / len(result.time)
+    for i, name in enumerate(result.shafts):
+        axes.plot(degrees, np.append(result.torque[:, i], result.torque[0, i]), label=name, **_look(i))
+    linear = result.comparison.static_twist.response if result.comparison else None
+    if linear is not None:
+        repeats = max(int(np.ceil(degrees[-1] / np.rad2deg(linear.tau[-1]) - 1e-9)), 1)
+        tau = np.concatenate([np.rad2deg(linear.tau + k * linear.tau[-1]) for k in range(repeats)])
+        for i in range(len(result.shafts)):
+            axes.plot(
+                tau, np.tile(linear.torque[:, i], repeats), color=COLOURS[i % len(COLOURS)], lw=0.8,
+                ls=(0, (1, 2)), label="linear theory" if i == 0 else None,
+            )  # fmt: skip
+    _labels(axes, "input angle [°]", "torque [N·m]")
+    axes.set_xlim(0, degrees[-1])
+    axes.set_title(
+        f"{result.verdict} periodic motion at {show_speed(result.speed, unit)}", fontsize=SMALL, color=FAINT, loc="left"
+    )
+    _legend(axes)
+    return axes
+
+
+def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: float = 12.0) -> Axes:
+    """Torque amplitude of every order, mean left out, on a logarithmic axis of four decades."""
+    axes = axes or new_axes(7.2, 4.0)
+    orders, amplitude = result.order_spectrum(highest)
+    orders, amplitude = orders[1:], amplitude[1:]
+    count, gap = len(result.shafts), orders[0] if len(orders) else 1.0
+    width = 0.8 * gap / count
+    for i, name in enumerate(result.shafts):
+        place = orders + (i - (count - 1) / 2) * width
+        axes.bar(place, amplitude[:, i], width, label=name, color=COLOURS[i % len(COLOURS)])
+    top = float(amplitude.max()) if amplitude.size else 1.0
+    if top > 0:
+        axes.set_yscale("log")
+        axes.set_ylim(top / 1e4, 2 * top)
+    _labels(axes, "order [cycles per turn of the input]", "torque amplitude [N·m]")
+    _legend(axes)
+    return axes
+
+
+def _named(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+def _look(k: int) -> dict[str, Any]:
+    return {"color": COLOURS[k % len(COLOURS)], "ls": DASHES[k % len(DASHES)], "lw": 1.3}
+
+
+def _labels(axes: Axes, x: str, y: str) -> None:
+    axes.set_xlabel(x, fontsize=TEXT, color=INK)
+    axes.set_ylabel(y, fontsize=TEXT, color=INK)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    plain(axes)
+
+
+def _legend(axes: Axes) -> None:
+    axes.figure.figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False,
+        columnspacing=1.5, handlelength=2.6,
+    )  # fmt: skip

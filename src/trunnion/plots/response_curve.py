@@ -1,0 +1,84 @@
+"""A branch of periodic motions: peak-to-peak over the parameter, stable and unstable, with its jumps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.analyses.branch import PeriodicBranch
+from trunnion.plots.kinetostatics import COLOURS
+from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import speed_factor
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MARKS = {
+    "fold": "o",
+    "period doubling": "s",
+    "Neimark–Sacker": "^",
+    "branch point": "D",
+    "grazing": "x",
+}
+
+
+def draw(
+    result: PeriodicBranch, axes: Axes | None = None, *, curve: str = "", unit: str = "rpm", jumps: bool = True
+) -> Axes:
+    """One curve (the first, or ``curve``): full where stable, dashed where not, special points marked.
+
+    Parameters
+    ----------
+    unit : of a speed on the axis.
+    jumps : draw an arrow from every fold to the stable motion that is left there.
+    """
+    axes = axes or new_axes(7.2, 4.4)
+    i = result.curves.index(curve) if curve else 0
+    by_speed = result.label == "speed"
+    factor = speed_factor(unit) if by_speed else 1.0
+    x, y, stable = result.parameter * factor, result.peak_to_peak[:, i], result.stable
+    # A fold or a doubling belongs to both sides, so that the line has no gap.
+    between = (result.verdict != Verdict.STABLE) & (result.verdict != Verdict.UNSTABLE)
+    axes.plot(x, np.where(stable | between, y, np.nan), color=COLOURS[0], lw=1.7, label="stable")
+    if not stable.all():
+        axes.plot(x, np.where(~stable, y, np.nan), color=COLOURS[1], lw=1.3, ls=(0, (4, 2)), label="unstable")
+    for kind, mark in MARKS.items():
+        points = [p for p in result.special if p.kind == kind]
+        if points:
+            places = [p.parameter * factor for p in points]
+            axes.plot(places, [p.peak_to_peak[i] for p in points], mark, color=INK, ms=6, mfc="none", ls="", label=kind)
+    if jumps:
+        for fold in result.folds:
+            landing = _landing(result, fold.parameter, float(fold.peak_to_peak[i]), i)
+            if landing is not None:
+                at = fold.parameter * factor
+                arrow = {"arrowstyle": "-|>", "color": "#6b6b6b", "lw": 1.0, "shrinkA": 5, "shrinkB": 2}
+                axes.annotate("", (at, landing), (at, float(fold.peak_to_peak[i])), arrowprops=arrow)
+    name = {"rad/s": f"input speed [{unit}]"} if by_speed else {}
+    plainly = result.label if result.unit == "1" else f"{result.label} [{result.unit}]"
+    axes.set_xlabel(name.get(result.unit, plainly), fontsize=TEXT, color=INK)
+    what = f"torque of {result.curves[i]}, peak to peak [N·m]"
+    axes.set_ylabel(
+        what if result.curve_unit == "N*m" else f"{result.curves[i]}, peak to peak", fontsize=TEXT, color=INK
+    )
+    axes.set_ylim(bottom=0)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    plain(axes)
+    axes.figure.figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False
+    )
+    return axes
+
+
+def _landing(result: PeriodicBranch, value: float, left: float, i: int) -> float | None:
+    """The stable motion that a slow passage over a fold jumps to: the nearest other one at that parameter."""
+    side = result.parameter - value
+    found = []
+    for k in np.flatnonzero(side[:-1] * side[1:] < 0):
+        share = side[k] / (side[k] - side[k + 1])
+        level = result.peak_to_peak[k, i] + share * (result.peak_to_peak[k + 1, i] - result.peak_to_peak[k, i])
+        if result.stable[k] and result.stable[k + 1] and abs(level - left) > 0.03 * max(left, level):
+            found.append(float(level))
+    return min(found, key=lambda level: abs(level - left), default=None)

@@ -1,0 +1,50 @@
+"""A passage through resonance: torque envelope against the steady response."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.analyses.run_up import RunUp
+from trunnion.plots.kinetostatics import COLOURS
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str = "rpm") -> Axes:
+    """Largest |torque| of one shaft in every turn (the most loaded one, or ``shaft``) over input speed.
+
+    The steady response is drawn where it was computed: full where the motion is stable, dotted where it is not.
+    """
+    axes = axes or new_axes(7.2, 4.3)
+    i = result.shafts.index(shaft) if shaft else int(np.argmax(result.peak_torque))
+    factor = speed_factor(unit)
+    if result.steady is not None:
+        x, y = result.steady.speed * factor, result.steady.largest[:, i]
+        unstable = result.steady.verdict == Verdict.UNSTABLE
+        axes.plot(x, np.where(unstable, np.nan, y), color=COLOURS[0], lw=1.6, label="steady motion, stable")
+        if unstable.any():
+            hollow: dict[str, Any] = {"color": COLOURS[0], "ms": 3, "mfc": "none"}
+            axes.plot(x, np.where(unstable, y, np.nan), "o", label="steady motion, unstable", **hollow)
+    axes.plot(result.speed * factor, result.largest[:, i], color=COLOURS[1], lw=1.3, label="largest in each turn")
+    axes.plot(
+        result.peak_speed[i] * factor, result.peak_torque[i], "D", color=COLOURS[1], ms=6,
+        label=f"{result.peak_torque[i]:.4g} N·m at {show_speed(result.peak_speed[i], unit)}",
+    )  # fmt: skip
+    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
+    axes.set_ylabel(f"largest torque of {result.shafts[i]} [N·m]", fontsize=TEXT, color=INK)
+    axes.set_ylim(bottom=0)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    low, high = result.simulation.profile.speed
+    words = f"{show_speed(low, unit)} to {show_speed(high, unit)} at {show_speed(result.acceleration, unit)}/s"
+    axes.set_title(words, fontsize=SMALL, color=FAINT, loc="left")
+    plain(axes)
+    axes.figure.figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=2, fontsize=SMALL, frameon=False
+    )
+    return axes

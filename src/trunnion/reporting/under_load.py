@@ -1,0 +1,64 @@
+"""The true periodic motion of a loaded line at its operating speed, case by case, for the report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from trunnion.analyses.periodic_response import PeriodicResponse, periodic_response
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.finding import Finding, Gravity
+
+AS_DESCRIBED = "as described"
+
+
+@dataclass(frozen=True)
+class LoadedMotion:
+    """One case: its name and the periodic response."""
+
+    case: str
+    response: PeriodicResponse
+
+
+def loaded_motions(line: Driveline, speed: float | None) -> tuple[tuple[LoadedMotion, ...], tuple[str, ...]]:
+    """The line as described, if it carries a load, and every load case; and what was left out, in sentences."""
+    operation = line.operation
+    speed = speed if speed is not None else operation.speed if operation else None
+    if speed is None:
+        return (), ()
+    cases = {AS_DESCRIBED: line} if _loaded(line) else {}
+    cases |= {case.name: line.with_load(case.name) for case in (operation.load_cases if operation else ())}
+    found, left_out = [], []
+    for name, loaded in cases.items():
+        try:
+            response = periodic_response(loaded, speed)
+        except (InputError, ComputationError) as error:
+            left_out.append(f"Motion under load ({name}): {error}")
+            continue
+        assert isinstance(response, PeriodicResponse)
+        if response.outcome.ok:
+            found.append(LoadedMotion(name, response))
+        else:
+            left_out.append(f"Motion under load ({name}): {response.outcome}")
+    return tuple(found), tuple(left_out)
+
+
+def load_findings(motions: tuple[LoadedMotion, ...], unit: str) -> list[Finding]:
+    """What the true motions say beyond linear theory, gravest of each case first."""
+    found = []
+    for motion in motions:
+        for finding in motion.response.findings_in(unit):
+            if finding.gravity is not Gravity.NOTE:
+                found.append(Finding(finding.gravity, f"Under load ({motion.case}): {finding.sentence}"))
+    return found
+
+
+def heaviest(motions: tuple[LoadedMotion, ...]) -> LoadedMotion:
+    """The case with the largest torque swing."""
+    return max(motions, key=lambda m: float(m.response.torque_peak_to_peak.max()))
+
+
+def _loaded(line: Driveline) -> bool:
+    disks = [e for e in line.elements if isinstance(e, Disk)]
+    return any(d.load_torque or d.viscous_load or d.quadratic_load or d.excitation for d in disks)

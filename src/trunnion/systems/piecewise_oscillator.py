@@ -1,0 +1,261 @@
+"""One mass on a restoring force that is linear piece by piece: backlash, clutch dampers, stops."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+Damping = Literal["always", "in contact", "never pulling"]
+LAWS = ("always", "in contact", "never pulling")
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """What the exact motion is computed from, all divided by the mass; see ``numerics/piecewise_kernel``.
+
+    pieces (regimes, 3): damping, slope and offset; guards (regimes, most, 3); then (regimes, most): the next
+    regime; side (regimes,): +1 or −1 in contact above or below the gap, 0 in it.
+    """
+
+    pieces: Array
+    guards: Array
+    then: NDArray[np.int64]
+    side: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class PiecewiseOscillator:
+    """m x″ + c x′ + g(x) = B₀ + Σ_k (p_k cos kωt + q_k sin kωt), g continuous and linear between breakpoints, g(0) = 0.
+
+    Parameters
+    ----------
+    breakpoints : rising places where the slope changes, (n,).
+    slopes : of g below, between and above them, (n + 1,), none negative.
+    damping : c; with ``damping_law`` "always", "in contact" (outside the softest piece only) or "never pulling"
+        (there too, and so that a surface never pulls nor more than doubles its push: with τ the elastic force
+        pressed on and d = c x′, τ + min(τ, d), and 0 where τ + d ≤ 0, mirrored below; the law of
+        Modelica.Mechanics.Rotational.Components.ElastoBacklash).
+    mean_force : B₀.
+    force : p₁, the amplitude at the frequency itself.
+    harmonics : further harmonics (k, p_k, q_k).
+    frequency : ω [rad/s].
+    inertia : m.
+
+    Units are the caller's: metre, kilogram, newton, or radian, kg m², N m.
+
+    >>> PiecewiseOscillator.gap(half_gap=0.1, damping=0.05).restoring([0.05, 0.3])
+    array([0. , 0.2])
+
+    Raises
+    ------
+    InputError : breakpoints that do not rise, a negative slope, damping or inertia, an unknown law.
+    """
+
+    breakpoints: tuple[float, ...]
+    slopes: tuple[float, ...]
+    damping: float = 0.0
+    mean_force: float = 0.0
+    force: float = 0.0
+    frequency: float = 1.0
+    inertia: float = field(default=1.0, kw_only=True)
+    damping_law: Damping = field(default="always", kw_only=True)
+    harmonics: tuple[tuple[int, float, float], ...] = field(default=(), kw_only=True)
+    name: str = field(default="piecewise oscillator", kw_only=True)
+
+    def __post_init__(self) -> None:
+        for key in ("breakpoints", "slopes"):
+            object.__setattr__(self, key, tuple(float(v) for v in getattr(self, key)))
+        object.__setattr__(self, "harmonics", tuple((int(k), float(p), float(q)) for k, p, q in self.harmonics))
+        self._check()
+
+    def _check(self) -> None:
+        def refuse(problem: str, key: str, value: object, remedy: str = "") -> None:
+            raise InputError(problem, element=self.name, key=key, value=value, remedy=remedy)
+
+        for key in ("damping", "mean_force", "force", "frequency", "inertia"):
+            if not np.isfinite(getattr(self, key)):
+                refuse("must be a finite number", key, getattr(self, key))
+        if len(self.slopes) != len(self.breakpoints) + 1:
+            refuse(f"must be {len(self.breakpoints) + 1} numbers, one more than breakpoints", "slopes", self.slopes)
+        if not np.all(np.isfinite([*self.breakpoints, *self.slopes])):
+            refuse("must be finite numbers", "breakpoints, slopes", [*self.breakpoints, *self.slopes])
+        if any(b <= a for a, b in zip(self.breakpoints, self.breakpoints[1:], strict=False)):
+            refuse("must rise", "breakpoints", self.breakpoints)
+        if min(self.slopes) < 0:
+            refuse("must not be negative", "slopes", min(self.slopes), "a spring that pushes away is not modelled")
+        if self.damping < 0:
+            refuse("must not be negative", "damping", self.damping, "write 0 for none")
+        for key in ("frequency", "inertia"):
+            if getattr(self, key) <= 0:
+                refuse("must be positive", key, getattr(self, key))
+        if self.damping_law not in LAWS:
+            refuse("is unknown", "damping_law", self.damping_law, f"write one of {', '.join(LAWS)}")
+        if self.damping_law == "never pulling" and not (len(self.breakpoints) == 2 and self.slopes[1] == 0):
+            refuse(
+                "needs a free gap between two contacts",
+                "damping_law", self.damping_law, 'with a force in the gap write "in contact" or "always"',
+            )  # fmt: skip
+        if any(k < 1 for k, _, _ in self.harmonics):
+            refuse("must be orders from 1", "harmonics", [k for k, _, _ in self.harmonics])
+
+    @classmethod
+    def gap(
+        cls,
+        half_gap: float,
+        stiffness: float = 1.0,
+        inside: float = 0.0,
+        damping: float = 0.0,
+        mean_force: float = 0.0,
+        force: float = 0.0,
+        frequency: float = 1.0,
+        **more: Any,
+    ) -> PiecewiseOscillator:
+        """A backlash: slope ``inside`` · ``stiffness`` within ± ``half_gap``, ``stiffness`` outside.
+
+        Raises
+        ------
+        InputError : a negative backlash, a stiffness ratio ``inside`` outside [0, 1].
+        """
+        name = more.get("name", "backlash")
+        if not (np.isfinite(half_gap) and half_gap >= 0):
+            raise InputError(
+                "must not be negative", element=name, key="half_gap", value=half_gap, remedy="write 0 for no backlash"
+            )
+        if not 0 <= inside <= 1:
+            raise InputError(
+                "must lie between 0 and 1", element=name, key="inside", value=inside,
+                remedy="0 is free play, 1 no gap at all",
+            )  # fmt: skip
+        k = float(stiffness)
+        ends, slopes = ((-half_gap, half_gap), (k, inside * k, k)) if half_gap > 0 and inside < 1 else ((), (k,))
+        return cls(ends, slopes, damping, mean_force, force, frequency, **{**more, "name": name})
+
+    def but(self, **changes: Any) -> PiecewiseOscillator:
+        """The same oscillator with some of its numbers changed.
+
+        Raises
+        ------
+        InputError : not one of its fields, or a value out of range.
+        """
+        for key in changes:
+            if key not in self.__dataclass_fields__:
+                known = ", ".join(self.__dataclass_fields__)
+                raise InputError("is not a field", element=self.name, key=key, remedy=f"fields are: {known}")
+        return replace(self, **changes)
+
+    @property
+    def period(self) -> float:
+        """2π/ω [s]."""
+        return 2 * np.pi / self.frequency
+
+    @property
+    def softest(self) -> int:
+        """Number of the piece with the smallest slope, the gap of a backlash (the one nearest to 0 of several)."""
+        ends = [-np.inf, *self.breakpoints, np.inf]
+        distance = [max(ends[i], -ends[i + 1], 0.0) for i in range(len(self.slopes))]
+        return min(range(len(self.slopes)), key=lambda i: (self.slopes[i], distance[i]))
+
+    @cached_property
+    def offsets(self) -> tuple[float, ...]:
+        """d of g = s x + d on every piece."""
+        knots, slopes = np.array(self.breakpoints), np.array(self.slopes)
+        d = np.concatenate([[0.0], np.cumsum(-np.diff(slopes) * knots)])
+        return tuple(float(v) for v in d - d[np.searchsorted(knots, 0.0)])
+
+    @cached_property
+    def coefficients(self) -> NDArray[np.complex128]:
+        """B₀ and p_k − i q_k, all over the mass; the constant first."""
+        highest = max([1, *(k for k, _, _ in self.harmonics)])
+        out = np.zeros(highest + 1, dtype=complex)
+        out[0], out[1] = self.mean_force, self.force
+        for k, p, q in self.harmonics:
+            out[k] += complex(p, -q)
+        return out / self.inertia
+
+    def restoring(self, x: ArrayLike) -> Array:
+        """g(x), any shape."""
+        x = np.asarray(x, dtype=float)
+        piece = np.searchsorted(self.breakpoints, x)
+        return np.asarray(np.array(self.slopes)[piece] * x + np.array(self.offsets)[piece])
+
+    def slope(self, x: ArrayLike) -> Array:
+        """dg/dx, any shape; at a breakpoint that of the piece below."""
+        return np.asarray(np.array(self.slopes)[np.searchsorted(self.breakpoints, np.asarray(x, dtype=float))])
+
+    def equilibrium(self) -> float:
+        """Where g(x) = B₀.
+
+        Raises
+        ------
+        InputError : no spring carries the mean force.
+        """
+        knots = self.breakpoints or (0.0,)
+        force = self.restoring(knots)
+        i = int(np.searchsorted(force, self.mean_force))
+        slope = self.slopes[i] if len(self.breakpoints) else self.slopes[0]
+        if slope > 0:
+            return float((self.mean_force - (self.offsets[i] if self.breakpoints else 0.0)) / slope)
+        if i < len(knots) and force[i] == self.mean_force:
+            return float(np.clip(0.0, knots[max(i - 1, 0)], knots[-1]))
+        raise InputError(
+            "is carried by no spring", element=self.name, key="mean_force", value=self.mean_force,
+            remedy="raise the outermost slope on its side",
+        )  # fmt: skip
+
+    @cached_property
+    def regimes(self) -> Regimes:
+        """The linear regimes and what leads from one to another."""
+        return _surfaces(self) if self.damping_law == "never pulling" else _pieces(self)
+
+
+def _pieces(oscillator: PiecewiseOscillator) -> Regimes:
+    m, gap, count = oscillator.inertia, oscillator.softest, len(oscillator.slopes)
+    side = np.sign(np.arange(count) - gap).astype(np.int64)
+    damped = np.ones(count) if oscillator.damping_law == "always" or count == 1 else np.abs(side)
+    pieces = np.stack([oscillator.damping * damped, oscillator.slopes, oscillator.offsets], axis=1) / m
+    guards, then = np.zeros((count, 2, 3)), np.full((count, 2), -1, dtype=np.int64)
+    for i, knot in enumerate(oscillator.breakpoints):
+        guards[i, 1], then[i, 1] = (-1.0, 0.0, -knot), i + 1
+        guards[i + 1, 0], then[i + 1, 0] = (1.0, 0.0, knot), i
+    return Regimes(np.ascontiguousarray(pieces), guards, then, side)
+
+
+def _surfaces(oscillator: PiecewiseOscillator) -> Regimes:
+    """Gap 0; at each side: pressed no more than doubly, pressed with damping, let go."""
+    m, c = oscillator.inertia, oscillator.damping
+    pieces = np.zeros((7, 3))
+    guards, then = np.zeros((7, 2, 3)), np.full((7, 2), -1, dtype=np.int64)
+    for sign, first in ((1, 1), (-1, 4)):
+        k = oscillator.slopes[2 if sign > 0 else 0]
+        knot = oscillator.breakpoints[1 if sign > 0 else 0]
+        doubly, damped, free = first, first + 1, first + 2
+        pieces[doubly] = 0.0, 2 * k / m, -2 * k * knot / m
+        pieces[damped] = c / m, k / m, -k * knot / m
+        guards[0, 0 if sign > 0 else 1] = -sign, 0.0, -sign * knot
+        then[0, 0 if sign > 0 else 1] = doubly
+        guards[doubly, 0] = -sign * k, sign * c, -sign * k * knot
+        then[doubly, 0] = damped
+        guards[damped, 0] = sign * k, sign * c, sign * k * knot
+        guards[damped, 1] = sign * k, -sign * c, sign * k * knot
+        then[damped] = free, doubly
+        guards[free, 0] = sign, 0.0, sign * knot
+        guards[free, 1] = -sign * k, -sign * c, -sign * k * knot
+        then[free] = 0, damped
+        guards[doubly, 1], then[doubly, 1] = (sign, 0.0, sign * knot), 0
+    return Regimes(pieces, guards, then, np.array([0, 1, 1, 1, -1, -1, -1]))
+
+
+def even_steps(pieces: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Breakpoints and slopes of a symmetric damper from its stages (slope, up to which deflection), innermost first;
+    the last deflection is ignored."""
+    ends = [end for _, end in pieces[:-1]]
+    slopes = [slope for slope, _ in pieces]
+    return tuple([-e for e in reversed(ends)] + ends), tuple([*reversed(slopes[1:]), *slopes])

@@ -1,0 +1,144 @@
+"""Regimes of a non-smooth system: in each the right-hand side is smooth; guards say where it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.errors import InputError
+from trunnion.systems.user_functions import CFunction, guard_function, jump_function
+
+if TYPE_CHECKING:
+    from trunnion.systems.system import System
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class Switch(NamedTuple):
+    """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``."""
+
+    regime: str
+    guard: str
+    direction: int
+    then: str
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """Regimes, the guards between them, and what happens there.
+
+    Parameters
+    ----------
+    names : of the regimes; the right-hand side f(t, x, p, regime) receives their numbers 0, 1, ….
+    guards : names of the switching functions.
+    guard : (t, x, p) or (t, x, p, regime) → one number per guard, smooth wherever it is watched; or a
+        ``CFunction`` of the guards' signature (see ``numerics.integration_kernel``).
+    switches : see ``Switch``.
+    locate : (t, x, p) → number of the regime of a state, for starts.
+    jump : (t, x, p, guard number) → state behind the guard, for impacts; by default the state is continuous.
+
+    >>> gap = Regimes(
+    ...     names=("free", "contact"),
+    ...     guards=("x = 1",),
+    ...     guard=lambda t, x, p: (x[0] - 1.0,),
+    ...     switches=(Switch("free", "x = 1", +1, "contact"), Switch("contact", "x = 1", -1, "free")),
+    ...     locate=lambda t, x, p: int(x[0] > 1.0),
+    ... )
+    """
+
+    names: tuple[str, ...]
+    guards: tuple[str, ...]
+    guard: Callable[..., Any] | CFunction
+    switches: Sequence[Switch]
+    locate: Callable[..., int]
+    jump: Callable[..., Any] | CFunction | None = None
+
+    def __post_init__(self) -> None:
+        for switch in self.switches:
+            for key, value, known in (
+                ("regime", switch.regime, self.names),
+                ("then", switch.then, self.names),
+                ("guard", switch.guard, self.guards),
+                ("direction", switch.direction, (-1, 1)),
+            ):
+                if value not in known:
+                    remedy = f"write one of {', '.join(map(str, known))}"
+                    raise InputError("is unknown", element="Switch", key=key, value=value, remedy=remedy)
+
+    def tables(self) -> tuple[Integers, Integers]:
+        """Transitions and directions (regimes, guards), as the integrator takes them."""
+        shape = (len(self.names), len(self.guards))
+        then, direction = np.full(shape, -1, dtype=np.int64), np.zeros(shape, dtype=np.int64)
+        for switch in self.switches:
+            place = self.names.index(switch.regime), self.guards.index(switch.guard)
+            if then[place] >= 0 and (then[place] != self.names.index(switch.then)):
+                raise InputError(
+                    "leads to two regimes",
+                    element="Switch",
+                    key=switch.guard,
+                    value=switch.regime,
+                    remedy="use two guards",
+                )
+            both = then[place] >= 0 and direction[place] != switch.direction
+            then[place] = self.names.index(switch.then)
+            direction[place] = 2 if both else switch.direction
+        return then, direction
+
+    def compiled(self, system: System) -> tuple[CFunction, CFunction | None, Integers, Integers]:
+        """Guard and jump as C functions, transitions and directions."""
+        names, scale = tuple(system.parameters), tuple(map(float, system.scale))  # type: ignore[arg-type]
+        guard = (
+            self.guard
+            if isinstance(self.guard, CFunction)
+            else _guard(self.guard, len(self.guards), system.size, names, scale, system.compiled)
+        )
+        jump = (
+            self.jump
+            if isinstance(self.jump, CFunction) or self.jump is None
+            else _jump(self.jump, system.size, names, scale, system.compiled)
+        )
+        return (guard, jump, *self.tables())
+
+    def at(self, system: System, time: float, state: Array) -> int:
+        """Number of the regime of ``state``.
+
+        Raises
+        ------
+        InputError : ``locate`` gives no regime there.
+        """
+        from trunnion.systems.user_functions import parameter_tuple
+
+        found = self.locate(time, state, parameter_tuple(tuple(system.parameters))(*system.parameters.values()))
+        if isinstance(found, bool) or int(found) != found or not 0 <= found < len(self.names):
+            raise InputError(
+                f"must give the number of one of {len(self.names)} regimes",
+                element=system.name,
+                key="locate",
+                value=found,
+            )
+        return int(found)
+
+
+@cache
+def _guard(
+    function: Callable[..., Any],
+    guards: int,
+    size: int,
+    names: tuple[str, ...],
+    scale: tuple[float, ...],
+    compiled: bool,
+) -> CFunction:
+    return guard_function(function, guards, size, names, np.array(scale), compiled=compiled)
+
+
+@cache
+def _jump(
+    function: Callable[..., Any], size: int, names: tuple[str, ...], scale: tuple[float, ...], compiled: bool
+) -> CFunction:
+    return jump_function(function, size, names, np.array(scale), compiled=compiled)

@@ -1,0 +1,260 @@
+"""A system of ordinary differential equations, smooth or with regimes, whoever wrote it.
+
+    x′ = f(t, x, p),   p constant,   possibly another f in each of several regimes.
+
+The right-hand side is one C function that reads an array of numbers, so a change of parameters compiles
+nothing. Its signature, for those who bring a compiled one:
+
+    int64 rate(double t, double *y, double *p, int64 k, int64 regime, double *out)
+
+y and out are (1 + k, n): row 0 is the state and its rate, rows 1…k are tangent vectors v and (∂f/∂x) v. The
+return value is 0, or anything else where f cannot be evaluated. f may leave traces in p: every integration works
+on a copy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.errors import InputError
+from trunnion.numerics.integration import Equations, kernel
+from trunnion.systems.regimes import Regimes
+from trunnion.systems.user_functions import CFunction, rate_function
+
+Array = NDArray[np.float64]
+MOST_SHOWN = 8
+"""Parameters that ``print`` shows."""
+Period = float | Callable[[Mapping[str, float]], float | None] | None
+
+
+@dataclass(frozen=True)
+class System:
+    """A system, its parameters, and the names and units of both.
+
+    Parameters
+    ----------
+    name : for titles and messages.
+    states, units : name and unit of each state, (n,).
+    rate : the right-hand side, see the module.
+    parameters : value of each parameter; parameter_units where they have one.
+    period : of the forcing [s]: a number, a function of the parameters, or None for an autonomous system.
+    start : a state to begin with where the caller gives none.
+    scale : the size of each state that counts as one, in which errors are measured; ones by default.
+    exact_tangents : whether (∂f/∂x) v is exact; otherwise a fourth-order difference, good to about 1e-12.
+    regimes : for a non-smooth system.
+    divergence : tr ∂f/∂x where it is one number; otherwise None (it is then computed from the tangents).
+    numbers_of : from the parameters to the array that ``rate`` receives; by default their values in order.
+    function : the Python function behind ``rate``, to ask what went wrong.
+
+    >>> def pendulum(t, state, p):
+    ...     angle, speed = state
+    ...     return speed, -p.damping * speed - np.sin(angle)
+    >>> system = System.from_function(pendulum, ["angle", "speed"], parameters={"damping": 0.1})
+    >>> system.rate_at(0.0, [0.0, 2.0])
+    array([ 2. , -0.2])
+    """
+
+    name: str
+    states: tuple[str, ...]
+    rate: CFunction
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    units: tuple[str, ...] = ()
+    parameter_units: Mapping[str, str] = field(default_factory=dict)
+    period: Period = None
+    start: Array | None = None
+    scale: Array | None = None
+    exact_tangents: bool = True
+    regimes: Regimes | None = None
+    divergence: float | Callable[[Mapping[str, float]], float] | None = None
+    numbers_of: Callable[[Mapping[str, float]], Array] | None = None
+    function: Callable[..., Any] | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.states)
+        if n == 0:
+            raise InputError("has no states", element=self.name, key="states", remedy='write ["x", "v"], say')
+        if not self.units:
+            object.__setattr__(self, "units", ("1",) * n)
+        scale = np.ones(n) if self.scale is None else np.array(self.scale, dtype=float)
+        if scale.shape != (n,) or not np.all(np.isfinite(scale) & (scale > 0)):
+            raise InputError("must be a positive number per state", element=self.name, key="scale", value=self.scale)
+        object.__setattr__(self, "scale", scale)
+        if self.start is not None:
+            object.__setattr__(self, "start", self.checked(self.start, "start"))
+        for key, value in self.parameters.items():
+            if not np.isfinite(value):
+                raise InputError("must be a finite number", element=self.name, key=key, value=value)
+        _ = self.forcing_period
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Callable[..., Any],
+        states: Sequence[str] | int,
+        *,
+        parameters: Mapping[str, float] | None = None,
+        period: Period = None,
+        start: ArrayLike | None = None,
+        jacobian: Callable[..., Any] | None = None,
+        regimes: Regimes | None = None,
+        name: str = "",
+        units: Sequence[str] = (),
+        parameter_units: Mapping[str, str] | None = None,
+        scale: ArrayLike | None = None,
+        divergence: float | None = None,
+        compiled: bool = True,
+    ) -> System:
+        """A system from a Python function f(t, x, p) → n numbers, or f(t, x, p, regime) with regimes.
+
+        Compiled by numba if it can be (some seconds, once); otherwise called back, some hundred times
+        slower: ``compiled`` tells. ``x`` is an array that may be unpacked, ``p`` a named tuple.
+
+        Parameters
+        ----------
+        states : their names, or how many there are.
+        jacobian : (t, x, p) → ∂f/∂x (n, n); without it tangents are differenced.
+        compiled : False spares the seconds of compiling function and regimes, for what is called a few times.
+        """
+        states = _state_names(states)
+        values = {k: float(v) for k, v in (parameters or {}).items()}
+        size = len(states)
+        weight = np.ones(size) if scale is None else np.asarray(scale, dtype=float)
+        if weight.shape != (size,):
+            raise InputError("needs one number per state", element=name or "System", key="scale", value=scale)
+        draft = cls(
+            name=name or getattr(function, "__name__", "system"),
+            states=states,
+            rate=CFunction(0),
+            parameters=values,
+            units=tuple(units),
+            parameter_units=dict(parameter_units or {}),
+            period=period,
+            start=None if start is None else np.asarray(start, dtype=float),
+            scale=weight,
+            exact_tangents=jacobian is not None,
+            regimes=regimes,
+            divergence=divergence,
+            function=function,
+        )
+        # Compiled last, so that a slip of the pen is answered at once.
+        rate = rate_function(function, jacobian, size, tuple(values), weight, compiled=compiled)
+        return replace(draft, rate=rate)
+
+    @property
+    def size(self) -> int:
+        """Number of states n."""
+        return len(self.states)
+
+    @property
+    def compiled(self) -> bool:
+        """False where the right-hand side is called back in the interpreter."""
+        return self.rate.compiled
+
+    @cached_property
+    def forcing_period(self) -> float | None:
+        """The forcing period at these parameters [s]; None for an autonomous system."""
+        value = self.period(self.parameters) if callable(self.period) else self.period
+        if value is not None and not (np.isfinite(value) and value > 0):
+            remedy = "give a positive number or a function of the parameters; leave it out if f has no t"
+            raise InputError("must be positive", element=self.name, key="period", value=float(value), remedy=remedy)
+        return None if value is None else float(value)
+
+    @cached_property
+    def numbers(self) -> Array:
+        """The array that the right-hand side receives."""
+        if self.numbers_of is not None:
+            return np.ascontiguousarray(self.numbers_of(self.parameters), dtype=float)
+        return np.array([*self.parameters.values()], dtype=float)
+
+    @cached_property
+    def equations(self) -> Equations:
+        """What the integrator takes."""
+        assert self.scale is not None
+        plain = (self.rate.address, self.size, self.numbers, self.scale)
+        if self.regimes is None:
+            return Equations(*plain)
+        guard, jump, transitions, directions = self.regimes.compiled(self)
+        return Equations(*plain, guard.address, jump.address if jump else 0, transitions, directions)
+
+    def but(self, **parameters: float) -> System:
+        """The same system with other parameters; nothing is compiled.
+
+        Raises
+        ------
+        InputError : not one of its parameters, or not a finite number.
+        """
+        return self.with_parameters(parameters)
+
+    def with_parameters(self, parameters: Mapping[str, float]) -> System:
+        """As ``but``, for names that are no Python names."""
+        for key in parameters:
+            if key not in self.parameters:
+                known = ", ".join(self.parameters) or "none"
+                raise InputError("is not a parameter", element=self.name, key=key, remedy=f"parameters are: {known}")
+        return replace(self, parameters={**self.parameters, **{k: float(v) for k, v in parameters.items()}})
+
+    def rate_at(self, time: float, state: ArrayLike, regime: int = 0) -> Array:
+        """x′ (n,) at one time and state; NaN where the right-hand side cannot be evaluated."""
+        return self._evaluate(time, self.checked(state)[None], regime)[0]
+
+    def jacobian_times(self, time: float, state: ArrayLike, vector: ArrayLike, regime: int = 0) -> Array:
+        """(∂f/∂x) v (n,) for one vector v (n,), or (k, n) for k of them."""
+        vectors = np.asarray(vector, dtype=float)
+        block = np.vstack([self.checked(state), vectors.reshape(-1, self.size)])
+        return self._evaluate(time, block, regime)[1:].reshape(vectors.shape)
+
+    def jacobian(self, time: float, state: ArrayLike, regime: int = 0) -> Array:
+        """∂f/∂x (n, n)."""
+        return self.jacobian_times(time, state, np.eye(self.size), regime).T
+
+    def regime_at(self, time: float, state: ArrayLike) -> int:
+        """The regime a motion through ``state`` is in; 0 for a smooth system."""
+        return 0 if self.regimes is None else self.regimes.at(self, float(time), self.checked(state))
+
+    def _evaluate(self, time: float, block: Array, regime: int) -> Array:
+        flat, out = np.ascontiguousarray(block).ravel(), np.full(block.size, np.nan)
+        p, count = self.numbers.copy(), len(block) - 1
+        code = kernel().call_rate(self.rate.address, float(time), flat, p, count, int(regime), out)
+        return np.full(block.shape, np.nan) if code else out.reshape(block.shape)
+
+    def checked(self, state: ArrayLike, key: str = "state") -> Array:
+        """``state`` as an array (n,); InputError unless it is n finite numbers."""
+        value = np.asarray(state, dtype=float)
+        if value.shape != (self.size,) or not np.all(np.isfinite(value)):
+            raise InputError(
+                f"must be {self.size} finite numbers ({', '.join(self.states)})",
+                element=self.name,
+                key=key,
+                value=value.tolist(),
+            )
+        return value
+
+    def __repr__(self) -> str:
+        shown = [f"{k} = {v:.6g}" for k, v in self.parameters.items()]
+        values = ", ".join(shown if len(shown) <= MOST_SHOWN else [*shown[:MOST_SHOWN], f"… {len(shown)} in all"])
+        kind = "autonomous" if self.period is None else "forced without a common period"
+        if self.forcing_period is not None:
+            kind = f"forced with period {self.forcing_period:.6g}"
+        speed = "" if self.compiled else "; called back in the interpreter (slow)"
+        tangents = "exact" if self.exact_tangents else "differenced"
+        regimes = f"; regimes {', '.join(self.regimes.names)}" if self.regimes else ""
+        return (
+            f"{self.name}: {self.size} states ({', '.join(self.states)}), {kind}; {values or 'no parameters'}"
+            f"; tangents {tangents}{regimes}{speed}"
+        )
+
+
+def _state_names(states: Sequence[str] | int) -> tuple[str, ...]:
+    if isinstance(states, int) and not isinstance(states, bool):
+        return tuple(f"x{i + 1}" for i in range(states))
+    if isinstance(states, str) or not isinstance(states, Sequence) or not all(isinstance(s, str) for s in states):
+        raise InputError("must be a list of names or how many there are", element="System", key="states", value=states)
+    if len(set(states)) < len(states):
+        raise InputError("names a state twice", element="System", key="states", value=list(states))
+    return tuple(states)

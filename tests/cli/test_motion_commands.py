@@ -1,0 +1,96 @@
+"""The commands simulate, periodic-response and run-up: text, JSON, files and refusals."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+import trunnion as tn
+
+
+def test_simulate_a_line(run, here):
+    result = run("simulate", "line.toml", "--turns", 3, "--speed", "900 rpm")
+    assert result.exit_code == 0, result.stderr
+    assert "motion of test line over 0.2 s (3 turns)" in result.stdout and "Shaft 2: torque" in result.stdout
+    names = {path.name for path in (here / "trunnion-out").iterdir()}
+    assert names == {"line-motion.png", "line-motion.nc"}
+    with xarray.open_dataset(here / "trunnion-out" / "line-motion.nc") as data:
+        expected = tn.simulate(tn.load("line.toml"), speed=tn.rpm(900), turns=3)
+        np.testing.assert_allclose(data["torque"].values, expected.torque, atol=1e-9)
+
+
+def test_simulate_with_rising_speed(run, here):
+    call = ("simulate", "line.toml", "--to-speed", "1800 rpm", "--duration", 0.5)
+    result = run(*call, "-o", "a.csv", "-o", "b.svg", "--json")
+    assert result.exit_code == 0, result.stderr
+    data = json.loads(result.stdout)
+    assert data["outcome"] == "reached" and data["end"] == 0.5 and data["written"] == ["a.csv", "b.svg"]
+    header, *rows = (here / "a.csv").read_text(encoding="utf-8").splitlines()
+    assert header.startswith("time [s],Disk 1: rotation [rad]") and "Shaft 2: torque [N*m]" in header
+    assert header.count(",") == rows[-1].count(",") and float(rows[-1].split(",")[0]) == 0.5
+
+
+def test_reference_systems(run, here):
+    result = run("simulate", "lorenz", "--set", "rho=20", "--duration", 5, "--start", "1,1,1", "--json")
+    expected = tn.simulate(tn.reference_system("lorenz", rho=20.0), 5.0, start=[1, 1, 1])
+    assert json.loads(result.stdout)["final_state"] == pytest.approx(list(expected.final), rel=1e-12)
+    result = run("periodic-response", "duffing", "--start", "2.5,0", "--json")
+    data = json.loads(result.stdout)
+    assert data["verdict"] == "stable" and data["spectral_radius"] == pytest.approx(0.8773057691, abs=1e-9)
+    assert run("periodic-response", "duffing").stdout.startswith("stable periodic motion of duffing")
+
+
+def test_periodic_response(run, here):
+    result = run("periodic-response", "line.toml", "--load-case", "climb")
+    assert result.exit_code == 0, result.stderr
+    assert "stable periodic motion at 1500 rpm, period 0.5 turns" in result.stdout
+    assert "linear theory: growth rate" in result.stdout and "Orders" in result.stdout
+    data = json.loads(run("periodic-response", "line.toml", "--load-case", "climb", "--json").stdout)
+    expected = tn.periodic_response(tn.load("line.toml").with_load("climb"))
+    assert data["shafts"][1]["torque_peak_to_peak"] == pytest.approx(expected.torque_peak_to_peak[1], rel=1e-9)
+    assert data["shafts"][1]["mean_torque"] == pytest.approx(-250.0, abs=1e-6)
+    assert data["orders"][1] == 2.0
+    names = {path.name for path in (here / "trunnion-out").iterdir()}
+    assert names == {"line-periodic-response.png", "line-periodic-response.nc"}
+
+
+def test_run_up(run, here):
+    call = ("run-up", "line.toml", "--from", "300 rpm", "--to", "600 rpm", "--acceleration", "200 rpm")
+    result = run(*call, "--limit", "700 N*m")
+    assert result.exit_code == 0, result.stderr
+    assert "run from 300 rpm to 600 rpm at 200 rpm/s" in result.stdout and "steady torque found" in result.stdout
+    assert "limit" in result.stdout
+    data = json.loads(run(*call, "-o", "a.csv", "-o", "b.png", "-o", "c.nc", "--json").stdout)
+    assert data["shafts"][0]["peak_torque"] < data["shafts"][0]["largest_steady_torque"]
+    assert all((here / name).stat().st_size > 500 for name in ("a.csv", "b.png", "c.nc"))
+
+
+REFUSALS = [
+    (("simulate", "lorenzz"), 2, "neither a file nor a name"),
+    (("simulate", "duffing", "--set", "x"), 2, "NAME=VALUE"),
+    (("simulate", "duffing", "--set", "speed=1"), 2, "parameters are: damping"),
+    (("simulate", "duffing", "--speed", "3"), 2, "belongs to drivelines"),
+    (("simulate", "line.toml", "--set", "a=1"), 2, "belongs to reference systems"),
+    (("simulate", "duffing", "--start", "a,b"), 2, "list of numbers"),
+    (("simulate", "duffing", "--start", "1"), 2, "2 finite numbers"),
+    (("simulate", "line.toml", "--to-speed", "900 rpm"), 2, "--duration"),
+    (("simulate", "line.toml", "--turns", "-1"), 2, "positive time"),
+    (("simulate", "line.toml", "-o", "a.txt"), 2, "no ending that names a format"),
+    (("periodic-response", "lorenz"), 2, "guessed"),
+    (("run-up", "line.toml", "--acceleration", "0 rpm"), 2, "positive"),
+    (("run-up", "line.toml", "--limit", "5 deg"), 2, "not the unit of a torque"),
+    (("run-up", "line.toml", "--limit", "-5"), 2, "positive torque"),
+    (("run-up", "line.toml", "--from", "900 rpm", "--to", "900 rpm"), 2, "also the last speed"),
+    (("run-up", "line.toml", "--acceleration", "0.001 rpm"), 2, "more than 20000 turns"),
+]
+
+
+@pytest.mark.parametrize(("call", "code", "words"), REFUSALS, ids=[" ".join(c) for c, _, _ in REFUSALS])
+def test_refusals(run, here, call, code, words):
+    result = run(*call)
+    assert result.exit_code == code
+    assert words in result.stderr and result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
+    assert not (here / "trunnion-out").exists()

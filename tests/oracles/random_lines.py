@@ -1,0 +1,64 @@
+"""Random lines: every kind of group, shaft and branch that the equations know."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import trunnion as tn
+
+
+def random_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
+    """Shafts, tubes with density, several joints and ratios in one group, disks behind joints, a branch."""
+    rng = np.random.default_rng(seed)
+    elements: list[Any] = [tn.ConstantSpeed(name="drive")]
+    disks: list[str] = []
+
+    def disk() -> tn.Disk:
+        disks.append(f"disk {len(disks) + 1}")
+        load = float(rng.uniform(-20, 60)) if rng.random() < 0.6 else 0.0
+        return tn.Disk(inertia=float(rng.uniform(0.1, 2.0)), load_torque=load, name=disks[-1])
+
+    def shaft(after: str | None = None) -> list[Any]:
+        turned = {"fork_offset": float(rng.uniform(-3, 3)), "after": after}
+        stiffness = float(rng.uniform(500, 3000))
+        kind = rng.integers(4)
+        if kind == 0:
+            tube = {"outer_diameter": 0.03, "inner_diameter": 0.02, "length": 0.7, "shear_modulus": 79.3e9}
+            return [tn.Shaft(**tube, density=7850 * 40.0, loss_factor=0.03, loss_factor_frequency=200.0, **turned)]
+        if kind == 1:
+            first = tn.Shaft(stiffness=stiffness, **turned)
+            return [first, tn.Shaft(stiffness=2 * stiffness, fork_offset=float(rng.uniform(-1, 1)))]
+        return [tn.Shaft(stiffness=stiffness, damping=float(rng.uniform(0, 5)), **turned)]
+
+    def hooke() -> tn.HookeJoint:
+        return tn.HookeJoint(angle=float(rng.uniform(0.1, steepest)), plane=float(rng.uniform(-3, 3)))
+
+    def group() -> list[Any]:
+        found: list[Any] = [disk()]
+        choice = int(rng.integers(9))
+        if choice in (0, 1):
+            found += [hooke()]
+        elif choice == 2:
+            found += [hooke(), hooke()]
+        elif choice == 3:
+            found += [tn.Ratio(teeth_in=10, teeth_out=31), hooke()]
+        elif choice == 4:
+            found += [hooke(), tn.Ratio(ratio=-1.5), disk()]
+        elif choice == 5:
+            found += [hooke(), disk(), hooke()]
+        elif choice == 6:
+            found += [tn.Ratio(ratio=-0.5), disk()]
+        elif choice == 7:
+            found += [tn.IdealJoint(), hooke(), tn.Ratio(teeth_in=3, teeth_out=2), hooke(), disk()]
+        return found
+
+    if rng.random() < 0.2:
+        elements.append(hooke())
+    for _ in range(int(rng.integers(2, 5))):
+        elements += shaft() + group()
+    if rng.random() < 0.6:
+        elements += [*shaft(after=disks[int(rng.integers(len(disks)))]), *group()]
+        elements += [*shaft(), *group()]
+    return tn.Driveline(elements)
