@@ -41,7 +41,7 @@ def simulate(
     speed: Speed = None,
     to_speed: Annotated[str | None, typer.Option("--to-speed", help="Speed at the end, reached evenly.")] = None,
     turns: Annotated[float | None, typer.Option("--turns", help="Turns of the input; default 20.")] = None,
-    duration: Annotated[float | None, typer.Option("--duration", help="Instead of turns [s].")] = None,
+    duration: Annotated[float | None, typer.Option("--duration", metavar="SECONDS", help="Instead of turns.")] = None,
     start: START = None,
     parameters: Set = None,
     unit: Unit = None,

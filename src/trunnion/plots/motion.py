@@ -106,21 +106,28 @@ def draw_line_history(
 
 
 def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str = "rpm") -> Axes:
-    """Torque of every shaft over one period, with linear theory where it applies."""
+    """Torque of every shaft over one period, with linear theory where it applies.
+
+    Where the means are much larger than what varies, torques are drawn about them and the key names them.
+    """
     axes = axes or new_axes(7.2, 4.2)
     degrees = 360 * result.turns * np.arange(len(result.time) + 1) / len(result.time)
+    torque, mean = result.torque, result.torque_mean
+    about = bool(np.abs(mean).max() > 2 * result.torque_peak_to_peak.max())
+    below = mean if about else np.zeros_like(mean)
     for i, name in enumerate(result.shafts):
-        axes.plot(degrees, np.append(result.torque[:, i], result.torque[0, i]), label=name, **_look(i))
+        label = f"{name}, about {mean[i]:.4g} N·m".replace("-", "−") if about else name
+        axes.plot(degrees, np.append(torque[:, i], torque[0, i]) - below[i], label=label, **_look(i))
     linear = result.comparison.static_twist.response if result.comparison else None
     if linear is not None:
         repeats = max(int(np.ceil(degrees[-1] / np.rad2deg(linear.tau[-1]) - 1e-9)), 1)
         tau = np.concatenate([np.rad2deg(linear.tau + k * linear.tau[-1]) for k in range(repeats)])
         for i in range(len(result.shafts)):
             axes.plot(
-                tau, np.tile(linear.torque[:, i], repeats), color=COLOURS[i % len(COLOURS)], lw=0.8,
+                tau, np.tile(linear.torque[:, i], repeats) - below[i], color=COLOURS[i % len(COLOURS)], lw=0.8,
                 ls=(0, (1, 2)), label="linear theory" if i == 0 else None,
             )  # fmt: skip
-    _labels(axes, "input angle [°]", "torque [N·m]")
+    _labels(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
     axes.set_xlim(0, degrees[-1])
     axes.set_title(
         f"{result.verdict} periodic motion at {show_speed(result.speed, unit)}", fontsize=SMALL, color=FAINT, loc="left"
@@ -164,7 +171,10 @@ def _labels(axes: Axes, x: str, y: str) -> None:
 
 
 def _legend(axes: Axes) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    # Four short names stand side by side, or two long ones.
+    columns = min(4, max(1, 100 // (12 + max(map(len, labels), default=0))))
     axes.figure.figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False,
+        handles, labels, loc="outside lower left", ncols=columns, fontsize=SMALL, frameon=False,
         columnspacing=1.5, handlelength=2.6,
     )  # fmt: skip
