@@ -24,5 +24,6 @@ def test_examples_run_in_order() -> None:
     assert "stable periodic motion" in text and "linear theory: growth rate" in text
     assert [p.kind for p in names["branch"].special] == ["period doubling", "period doubling"]
     assert names["orbit"].outcome.ok and names["strobe"].system.compiled
+    assert len(names["series"].branch.folds) == 2 and "harmonic balance with" in text
     assert np.isfinite(names["safe"].slowest), str(names["safe"])
     assert names["passage"].peak_torque[0] < names["passage"].steady_peak[0]
