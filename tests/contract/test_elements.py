@@ -20,8 +20,8 @@ from trunnion.driveline import (
     deg,
     rpm,
 )
-from trunnion.driveline.elements import KINDS
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.kinds import KINDS
 from trunnion.errors import InputRemark
 
 TUBE = {"outer_diameter": "110 mm", "inner_diameter": "100 mm", "length": 1.3, "shear_modulus": "79.3 GPa"}

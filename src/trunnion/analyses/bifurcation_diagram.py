@@ -125,7 +125,7 @@ def bifurcation_diagram(
     """
     system = as_system(subject, speed)
     chosen = values_of(system, parameter, values)
-    whole_number("points", points, 4)
+    whole_number("points", points, 8)
     if not directions or any(d not in DIRECTIONS for d in directions):
         raise InputError("is not a direction", key="directions", value=list(directions), remedy='write "up" or "down"')
     first = first_starts(system, start, 1)[0]

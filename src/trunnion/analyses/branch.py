@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.numerics.arclength import Curve, CurvePoint, Ending, locate
+from trunnion.numerics.arclength import Curve, CurvePoint, Ending, follow, locate
 from trunnion.results.outcome import Outcome
 from trunnion.results.verdict import Verdict
 
@@ -31,12 +31,34 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 CLOSE = 1e-9
 """Size of the last correction of a point, in units of the scales."""
+STEP, LEAST_STEP = 0.1, 1e-8
+"""Largest and smallest step along the branch, in units of the scales."""
 UNTOLD = 1e-6
 """A spectral radius nearer to 1 than this is not told from it."""
 
 
+class Names(Protocol):
+    """Name and unit of the parameter, and of what is observed."""
+
+    @property
+    def label(self) -> str: ...
+
+    @property
+    def unit(self) -> str: ...
+
+    @property
+    def curves(self) -> tuple[str, ...]: ...
+
+    @property
+    def curve_unit(self) -> str: ...
+
+
 class Problem(Protocol):
     """What is followed: equations of a curve z = (unknowns, parameter), and what its points tell."""
+
+    @property
+    def over(self) -> Names:
+        """What the branch lies over."""
 
     @property
     def scale(self) -> Array:
@@ -45,22 +67,6 @@ class Problem(Protocol):
     @property
     def size(self) -> int:
         """Number of states n."""
-
-    @property
-    def label(self) -> str:
-        """Name of the parameter."""
-
-    @property
-    def unit(self) -> str:
-        """Unit of the parameter."""
-
-    @property
-    def curves(self) -> tuple[str, ...]:
-        """What is observed."""
-
-    @property
-    def curve_unit(self) -> str:
-        """Its unit."""
 
     def equations(self, z: Array) -> tuple[Array, Array]:
         """Residual and Jacobian; NaN where there is none."""
@@ -180,10 +186,33 @@ class PeriodicBranch:
     __repr__ = __str__
 
 
-def with_ending(problem: Problem, curve: Curve) -> Outcome:
+def follow_both_ways(
+    problem: Problem, first: Array, low: float, high: float, most_points: int, tolerance: float = CLOSE
+) -> tuple[list[tuple[CurvePoint, str]], Outcome]:
+    """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome."""
+    begin = float(first[-1])
+    curves = [
+        follow(
+            problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction, first_step=STEP,
+            largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points, tolerance=tolerance,
+        )
+        for direction in (-1.0, 1.0)
+        if (begin > low if direction < 0 else begin < high)
+    ]  # fmt: skip
+    outcomes = [_ending(problem, curve) for curve in curves]
+    # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
+    walks = [_special_points(problem, curve) for curve in curves]
+    whole = walks[-1]
+    if len(walks) == 2 and walks[1]:
+        whole = [*reversed(walks[0][1:]), *walks[1]]
+    failed = [outcome for outcome in outcomes if not outcome.ok]
+    return whole, failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
+
+
+def _ending(problem: Problem, curve: Curve) -> Outcome:
     """The end of a curve as a sentence."""
     count = len(curve.points)
-    at = f"{problem.label} = {curve.points[-1].parameter:.6g}" if count else "its start"
+    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}" if count else "its start"
     if curve.ending is Ending.BOUND:
         return Outcome(True, "end", f"followed to {at}")
     if curve.ending is Ending.CLOSED:
@@ -198,7 +227,7 @@ def with_ending(problem: Problem, curve: Curve) -> Outcome:
     )
 
 
-def special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, str]]:
+def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, str]]:
     """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
     folds = dict(curve.folds)
     tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
@@ -266,18 +295,18 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         if kind
     )
     return PeriodicBranch(
-        label=problem.label,
-        unit=problem.unit,
+        label=problem.over.label,
+        unit=problem.over.unit,
         period=np.array([o[3] for o in observed]),
         parameter=np.array([p.parameter for p in points]),
         start=np.array([problem.start(p) for p in points]).reshape(-1, n),
         multipliers=multipliers,
         verdict=codes.astype(np.int8),
-        peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.curves)),
-        largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.curves)),
+        peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.over.curves)),
+        largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.over.curves)),
         amplitude=np.array([o[2] for o in observed]).reshape(-1, n),
-        curves=problem.curves,
-        curve_unit=problem.curve_unit,
+        curves=problem.over.curves,
+        curve_unit=problem.over.curve_unit,
         special=special,
         outcome=outcome,
     )

@@ -169,7 +169,7 @@ def certify_chaos(
         progress=progress,
     )  # fmt: skip
     states = np.concatenate([run.states[-8:] for run in spectrum.runs])
-    running = clocks(system, states) if np.all(np.isfinite(states)) else {}
+    running = clocks(system, states) if len(states) and np.all(np.isfinite(states)) else {}
     witnesses = [_witness(system, spectrum, i, section, points, running) for i in range(len(spectrum.runs))]
     first = witnesses[0]
     same = all((w.verdict, w.kind) == (first.verdict, first.kind) for w in witnesses)
@@ -320,7 +320,7 @@ def _map(
         words = f"every forcing period of {spectrum.interval:.6g} s"
         count = spectrum.transient + len(run.states) - len(kept)
         outcome = Outcome(True, "reached", f"{len(kept)} points after {count} left out")
-        time = spectrum.interval * np.arange(len(kept))
+        time = np.asarray(spectrum.interval * np.arange(len(kept)), dtype=float)
         return PoincareMap(system, kept, time, size, turning, words, count, spectrum.tolerance, outcome)
     if section is None and running:
         every = 2 * np.pi / abs(next(iter(running.values())))

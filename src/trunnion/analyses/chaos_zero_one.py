@@ -68,7 +68,7 @@ def zero_one_test(series: ArrayLike, *, scale: float = 0.0) -> ZeroOne:
     base = walk[:, : len(phi) - most]
     square = np.stack([np.mean(np.abs(walk[:, k : k + base.shape[1]] - base) ** 2, axis=1) for k in n], axis=1)
     swing = phi.mean() ** 2 * (1 - np.cos(np.outer(c, n))) / (1 - np.cos(c))[:, None]
-    found = np.array([_correlation(n, row) for row in square - swing])
+    found = np.array([_correlation(n.astype(float), row) for row in square - swing])
     return ZeroOne(float(np.median(found)), found, len(phi))
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from trunnion.analyses.branch import CLOSE, PeriodicBranch, collect, special_points, with_ending
+from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
 from trunnion.analyses.periodic_orbit import extremes, periodic_orbit
 from trunnion.analyses.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
@@ -26,7 +26,7 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.arclength import CurvePoint, Ending, follow
+from trunnion.numerics.arclength import CurvePoint
 from trunnion.numerics.integration import End, Trajectory, integrate
 from trunnion.numerics.sampled_rates import sampled_rates
 from trunnion.results.outcome import Outcome
@@ -43,7 +43,6 @@ FEWEST, MOST = 8, 256
 TAIL = 1e-6
 SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
 """Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
-STEP, LEAST_STEP = 0.1, 1e-8
 MOST_STEPS = 200_000
 
 
@@ -165,29 +164,15 @@ def _followed(
     over: SystemOver, rows: Array, periods: int, h: int, low: float, high: float, most_points: int
 ) -> HarmonicBalance:
     problem = _Balance(over, periods, h)
-    first = problem.packed(rows, over.begin)
-    walks, outcomes = [], []
-    for direction in (-1.0, 1.0):
-        if over.begin <= low if direction < 0 else over.begin >= high:
-            continue
-        curve = follow(
-            problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction, first_step=STEP,
-            largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points, tolerance=CLOSE,
-        )  # fmt: skip
-        if not curve.points and curve.ending is Ending.STALLED:
-            nothing = f"no motion with {h} harmonics was found near {over.label} = {over.begin:g}; give a start"
-            return _result(problem, [], Outcome(False, "not found", nothing))
-        walks.append(special_points(problem, curve))
-        outcomes.append(with_ending(problem, curve))
-    # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
-    whole = walks[-1] if len(walks) == 1 else [*reversed(walks[0][1:]), *walks[1]]
-    failed = [outcome for outcome in outcomes if not outcome.ok]
-    outcome = failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
+    whole, outcome = follow_both_ways(problem, problem.packed(rows, over.begin), low, high, most_points)
+    if not whole:
+        nothing = f"no motion with {h} harmonics was found near {over.label} = {over.begin:g}; give a start"
+        outcome = Outcome(False, "not found", nothing)
     return _result(problem, whole, outcome)
 
 
 def _result(problem: _Balance, points: list[tuple[CurvePoint, str]], outcome: Outcome) -> HarmonicBalance:
-    rows = np.array([problem.rows(point) for point, _ in points]).reshape(-1, problem.n, 2 * problem.h + 1)
+    rows = np.array([problem.rows(point) for point, _ in points]).reshape(-1, problem.size, 2 * problem.h + 1)
     # The harmonics of a state that hardly moves say nothing, so a tail counts in units of the whole motion.
     tails = np.array([_tail(row) for row in rows])
     defects = np.array([problem.defect(point) for point, _ in points])
@@ -210,28 +195,8 @@ class _Balance:
     runs: dict[bytes, Trajectory | None] = field(default_factory=dict)
 
     @property
-    def n(self) -> int:
-        return self.over.at(self.over.begin).size
-
-    @property
-    def label(self) -> str:
-        return self.over.label
-
-    @property
-    def unit(self) -> str:
-        return self.over.unit
-
-    @property
-    def curves(self) -> tuple[str, ...]:
-        return self.over.curves
-
-    @property
-    def curve_unit(self) -> str:
-        return self.over.curve_unit
-
-    @property
     def size(self) -> int:
-        return self.n
+        return len(self.over.scale) - 1
 
     @property
     def scale(self) -> Array:
@@ -242,7 +207,7 @@ class _Balance:
         return np.append(rows.ravel(), value)
 
     def rows(self, point: CurvePoint) -> Array:
-        return point.z[:-1].reshape(self.n, 2 * self.h + 1)
+        return point.z[:-1].reshape(self.size, 2 * self.h + 1)
 
     def start(self, point: CurvePoint) -> Array:
         rows = self.rows(point)
@@ -250,7 +215,7 @@ class _Balance:
 
     def equations(self, z: Array) -> tuple[Array, Array]:
         """What the balance leaves over one radian, in units of the states' scales, and its derivative."""
-        n, wide, value = self.n, 2 * self.h + 1, float(z[-1])
+        n, wide, value = self.size, 2 * self.h + 1, float(z[-1])
         nothing = np.full(n * wide, np.nan), np.full((n * wide, n * wide + 1), np.nan)
         here = self._left(z[:-1].reshape(n, wide), value, with_slope=True)
         if here is None:
@@ -273,7 +238,7 @@ class _Balance:
             return None
         if system.forcing_period is None or not np.isfinite(rows).all():
             return None
-        n, wide, h = self.n, 2 * self.h + 1, self.h
+        n, wide, h = self.size, 2 * self.h + 1, self.h
         period = self.periods * system.forcing_period
         omega = 2 * np.pi / period
         per_harmonic = SMOOTH_SAMPLES if system.regimes is None else KINKED_SAMPLES
@@ -315,7 +280,7 @@ class _Balance:
         """By falling modulus; NaN where the motion cannot be computed."""
         run = self.closed(point)
         if run is None:
-            return np.full(self.n, np.nan, dtype=complex)
+            return np.full(self.size, np.nan, dtype=complex)
         values = np.linalg.eigvals(run.final[1:]).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values))])
 

@@ -174,7 +174,7 @@ class LyapunovSpectrum:
         ]
         rule = "not checked" if np.isnan(self.divergence) else f"{self.divergence:.10g}, off by {self.sum_error:.1e}"
         rows.append(f"  sum {self.sum:.10g} 1/s (mean divergence: {rule})")
-        if np.isfinite(self.dimension):
+        if np.isfinite(self.dimension) and self.outcome.ok:
             rows.append(f"  Kaplan–Yorke dimension {self.dimension:.4g}")
         return "\n".join([head, *rows, f"  {self.outcome}"])
 

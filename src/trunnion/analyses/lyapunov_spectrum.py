@@ -108,11 +108,12 @@ def lyapunov_spectrum(
             more = total - runs[0].wanted
             found = list(pool.map(_carry_on, motions, runs, repeat(more), repeat(traced)))
             runs = [replace(r, wanted=total) for r in found]
-            late = 0 if asked else total // LEFT_OUT
+            whole = all(r.end is End.REACHED for r in runs)
+            late = 0 if asked or not whole else total // LEFT_OUT
             result = _result(
                 system, states, [_later(r, late) for r in runs], interval, skipped + late, tolerance, count
             )
-            if asked or not all(r.end is End.REACHED for r in runs) or total >= LAST or _known(result, precision):
+            if asked or not whole or total >= LAST or _known(result, precision):
                 break
             tell(total / LAST)
             total = min(LAST, int(total * _more(result, precision)))
@@ -165,7 +166,7 @@ def _motion(system: System, state: Array, count: int, interval: float, tolerance
 
 
 def _begun(early: Samples, count: int) -> Run:
-    return Run(np.empty((0, count)), np.empty(0), early.states[-1:], early.end, 0)
+    return Run(np.empty((0, count)), np.empty(0), early.states[-1:], early.end, 0)  # the first state, if any
 
 
 def _carry_on(motion: Motion, run: Run, samples: int, traced: bool) -> Run:

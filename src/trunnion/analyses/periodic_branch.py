@@ -12,14 +12,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.branch import CLOSE, PeriodicBranch, collect, special_points, with_ending
+from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
 from trunnion.analyses.periodic_orbit import extremes, periodic_orbit
 from trunnion.analyses.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.numerics.arclength import CurvePoint, follow
+from trunnion.numerics.arclength import CurvePoint
 from trunnion.numerics.integration import End, Trajectory, integrate
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
@@ -28,8 +28,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TOLERANCE = 1e-11
 MOST_POINTS = 2000
-STEP, LEAST_STEP = 0.1, 1e-8
-"""Largest and smallest step along the branch, in units of the scales."""
 MOST_INTEGRATION_STEPS = 200_000
 
 
@@ -75,23 +73,7 @@ def periodic_branch(
     orbit = periodic_orbit(over.at(first), start=start, periods=periods, tolerance=tolerance)
     if not orbit.outcome.ok:
         return collect(problem, [], Outcome(False, orbit.outcome.kind, f"at {first:g}: {orbit.outcome.sentence}"))
-    curves = [
-        follow(
-            problem.equations, np.append(orbit.start, first), scale=problem.scale, bounds=(low, high),
-            direction=direction, first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP,
-            most_points=most_points, tolerance=CLOSE,
-        )
-        for direction in (-1.0, 1.0)
-        if (first > low if direction < 0 else first < high)
-    ]  # fmt: skip
-    outcomes = [with_ending(problem, curve) for curve in curves]
-    # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
-    walks = [special_points(problem, curve) for curve in curves]
-    whole = walks[-1]
-    if len(walks) == 2 and walks[1]:
-        whole = [*reversed(walks[0][1:]), *walks[1]]
-    failed = [outcome for outcome in outcomes if not outcome.ok]
-    outcome = failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
+    whole, outcome = follow_both_ways(problem, np.append(orbit.start, first), low, high, most_points)
     return collect(problem, whole, outcome)
 
 
@@ -111,22 +93,6 @@ class _Shooting:
     @property
     def size(self) -> int:
         return len(self.over.scale) - 1
-
-    @property
-    def label(self) -> str:
-        return self.over.label
-
-    @property
-    def unit(self) -> str:
-        return self.over.unit
-
-    @property
-    def curves(self) -> tuple[str, ...]:
-        return self.over.curves
-
-    @property
-    def curve_unit(self) -> str:
-        return self.over.curve_unit
 
     def start(self, point: CurvePoint) -> Array:
         return point.z[:-1]

@@ -11,17 +11,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.branch import PeriodicBranch, collect, special_points, with_ending
+from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
 from trunnion.analyses.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
-from trunnion.numerics.arclength import CurvePoint, follow
+from trunnion.numerics.arclength import CurvePoint
 from trunnion.numerics.piecewise import Passage, TooManyEventsError, measure, period
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-STEP, LEAST_STEP = 0.1, 1e-9
 
 
 def check_range(low: float, high: float) -> None:
@@ -72,20 +71,18 @@ def piecewise_branch(
     problem = _Exact(oscillator, periods, size, (high - low) * longest_step / STEP)
     if not orbit.outcome.ok:
         return collect(problem, [], Outcome(False, "not found", f"no motion at ω = {first:g}: {orbit.outcome}"))
-    walks, ends = [], []
-    for direction in (-1.0, 1.0):
-        if first == (low if direction < 0 else high):
-            continue
-        curve = follow(
-            problem.equations, np.append(orbit.start, first), scale=problem.scale, bounds=(low, high),
-            direction=direction, first_step=STEP / 4, largest_step=STEP, smallest_step=LEAST_STEP,
-            most_points=most_points, tolerance=1e-11,
-        )  # fmt: skip
-        walks.append(special_points(problem, curve))
-        ends.append(with_ending(problem, curve))
-    whole = walks[-1] if len(walks) == 1 else [*reversed(walks[0][1:]), *walks[1]]
-    failed = [end for end in ends if not end.ok]
-    return collect(problem, whole, failed[0] if failed else Outcome(True, "followed", "; ".join(map(str, ends))))
+    whole, outcome = follow_both_ways(problem, np.append(orbit.start, first), low, high, most_points, 1e-11)
+    return collect(problem, whole, outcome)
+
+
+@dataclass(frozen=True)
+class _Frequency:
+    """Name and unit of the parameter and of what is observed; see ``branch.Names``."""
+
+    label: str = "frequency"
+    unit: str = "rad/s"
+    curves: tuple[str, ...] = ("x", "v")
+    curve_unit: str = "1"
 
 
 @dataclass
@@ -97,10 +94,7 @@ class _Exact:
     width: float
     range: float
     size: int = 2
-    label: str = "frequency"
-    unit: str = "rad/s"
-    curves: tuple[str, ...] = ("x", "v")
-    curve_unit: str = "1"
+    over: _Frequency = _Frequency()
     runs: dict[bytes, Passage] = field(default_factory=dict)
 
     @property

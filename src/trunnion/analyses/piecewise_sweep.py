@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
-JUMP = 0.25
-"""A change of the swing by this share of the larger one, between neighbours, is a jump."""
+JUMP, ABRUPT = 0.25, 2.0
+"""A change between neighbours is a jump if it is this share of the larger swing and so many times the changes beside."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,11 @@ class Sweep:
     def jumps(self) -> tuple[tuple[float, float], ...]:
         """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
         swing = self.peak_to_peak
-        pairs = zip(self.frequency[:-1], self.frequency[1:], swing[:-1], swing[1:], strict=True)
-        return tuple((float(f), float(g)) for f, g, a, b in pairs if abs(a - b) > JUMP * max(a, b))
+        change = np.abs(np.diff(swing))
+        around = np.pad(change, 1)
+        usual = np.maximum(around[:-2], around[2:])
+        abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
+        return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in np.flatnonzero(abrupt))
 
     @property
     def data(self) -> xr.Dataset:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+SAME = 1e-9
+"""Time between two crossings, over that between looks, below which they are one."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +168,7 @@ def poincare_map(
         outcome = failure(
             system, motion, 2 * interval, f"after {early.finished + len(settled)} points, time counted from there: "
         )
-    times = interval * np.arange(len(settled))
+    times = np.asarray(interval * np.arange(len(settled)), dtype=float)
     return _result(system, settled, times, words, transient, tolerance, outcome, interval)
 
 
@@ -182,16 +184,20 @@ def _sectioned(
     wanted, have, step = points + transient, 0, 0.0
     outcome = Outcome(True, "reached", f"{points} points after {transient} left out")
     regime, piece = system.regime_at(0.0, x), span / 100
-    since = 0.0
+    since, last = 0.0, -np.inf
     while have < wanted:
         run = integrate(
             system.equations, time, time + piece, x, regime=regime, tolerance=tolerance, watch=watched,
             dense=False, first_step=step, most_steps=10_000_000,
         )  # fmt: skip
         mine = run.event_which == own
-        parts.append(run.event_before[mine])
-        times.append(run.event_time[mine] - time + passed)
-        have += int(mine.sum())
+        met = run.event_time[mine] - time + passed
+        # A crossing that rounding leaves on its near side is met again at once; it counts as one.
+        once = np.diff(met, prepend=last) > SAME * piece
+        parts.append(run.event_before[mine][once])
+        times.append(met[once])
+        last = met[-1] if len(met) else last
+        have += int(once.sum())
         since = 0.0 if mine.any() else since + piece
         if run.end is not End.REACHED:
             outcome = outcome_of(

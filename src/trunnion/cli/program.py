@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, study
+from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.reproduce import reproduce
@@ -116,6 +117,9 @@ app.command("kinetostatics")(kinetostatics)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)
 app.command("run-up")(run_up)
+app.command("lyapunov-spectrum")(lyapunov_spectrum)
+app.command("poincare-map")(poincare_map)
+app.command("certify-chaos")(certify_chaos)
 app.command("reproduce")(reproduce)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)

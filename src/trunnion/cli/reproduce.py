@@ -12,7 +12,10 @@ from trunnion.cli.options import Json
 
 
 def reproduce(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="two-shaft-cardan, three-shaft-cardan or double-tripod.")],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="NAME", help="two-shaft-cardan, three-shaft-cardan, double-tripod or gear-rattle."),
+    ],
     folder: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Folder for pictures and page; default: NAME."),

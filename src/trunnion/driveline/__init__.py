@@ -17,9 +17,11 @@ from trunnion.driveline.elements import (
 )
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
+from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.schema import json_schema
+from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 
 __all__ = [
@@ -30,12 +32,16 @@ __all__ = [
     "Driveline",
     "Element",
     "Excitation",
+    "GearPair",
     "HookeJoint",
     "IdealJoint",
     "LoadCase",
     "Operation",
+    "PiecewiseShaft",
     "Ratio",
     "Shaft",
+    "StiffnessVariation",
+    "TransmissionError",
     "TripodJoint",
     "deg",
     "dump",

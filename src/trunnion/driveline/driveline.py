@@ -11,9 +11,11 @@ from typing import Any, Self
 from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, field_validator, model_validator
 
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Name, Ratio, Shaft
+from trunnion.driveline.gears import GearPair
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.refusals import about, nearest, refuse
+from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.errors import InputError, InputRemark
 
@@ -189,6 +191,9 @@ def _check_ends(line: Driveline, parents: tuple[int | None, ...]) -> None:
             raise InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)
 
 
+_SPRINGS = (Shaft, PiecewiseShaft, GearPair)
+
+
 def _check_damping(line: Driveline) -> None:
     if line.damping_ratio is None:
         if line.damping_ratio_frequency is not None:
@@ -198,8 +203,11 @@ def _check_damping(line: Driveline) -> None:
     if line.damping_ratio_frequency is not None and not line.damping_ratio_frequency > 0:
         raise InputError("must be positive", key="damping_ratio_frequency", remedy='write "50 Hz", say')
     for element, name in zip(line.elements, line.names, strict=True):
-        if isinstance(element, Shaft) and (element.damping or element.loss_factor is not None):
-            key = "damping" if element.damping else "loss_factor"
+        keys = ("damping", "loss_factor", "mesh_damping") if isinstance(element, _SPRINGS) else ()
+        key = next((k for k in keys if getattr(element, k, None)), None)
+        if key is None and isinstance(element, Shaft) and element.loss_factor is not None:
+            key = "loss_factor"
+        if key is not None:
             remedy = "leave out one of the two"
             raise InputError(
                 "stands beside the line's damping_ratio",

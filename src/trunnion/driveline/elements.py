@@ -444,13 +444,6 @@ class Ratio(Element):
         return float(self.fraction)
 
 
-KINDS: dict[str, type[Element]] = {
-    kind.__name__: kind
-    for kind in (ConstantSpeed, Shaft, Disk, HookeJoint, IdealJoint, TripodJoint, DoubleCardanJoint, Ratio)
-}
-"""The elements by the name that ``type`` gives them in a file."""
-
-
 def _with_defaults(data: Any, given: str, **defaults: float) -> Any:
     """Defaults that hold only where `given` is: elsewhere the keys stay unset and are no parameters."""
     if isinstance(data, dict) and data.get(given) is not None:

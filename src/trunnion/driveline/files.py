@@ -25,14 +25,18 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import KINDS, Element, is_name
+from trunnion.driveline.elements import Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
+from trunnion.driveline.gears import MESH_KINDS
+from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
 from trunnion.errors import InputError, InputRemark
 
 FORMAT = 1
+HARMONICS = {"excitation": EXCITATION_KINDS, **MESH_KINDS}
+"""Keys that hold tables of harmonics, and the physical kinds of their quantities."""
 TOP_KEYS = (
     "format",
     "name",
@@ -253,13 +257,13 @@ def _element_blocks(element: Element) -> list[str]:
     blocks = []
     for key, value in element.stated.items():
         kind = element.quantity_of(key)
-        if key == "excitation":
+        if key in HARMONICS:
+            kinds = HARMONICS[key]
             for harmonic in value:
-                stated = {
-                    k: written(v, EXCITATION_KINDS[k]) if k in EXCITATION_KINDS else v
-                    for k, v in harmonic.stated.items()
-                }
-                blocks.append(_block("[[element.excitation]]", stated))
+                stated = {k: written(v, kinds[k]) if k in kinds else v for k, v in harmonic.stated.items()}
+                blocks.append(_block(f"[[element.{key}]]", stated))
+        elif isinstance(value, tuple):
+            table[key] = [v if kind is None else written(v, kind) for v in value]
         else:
             table[key] = value if kind is None else written(value, kind)
     return [_block("[[element]]", table), *blocks]

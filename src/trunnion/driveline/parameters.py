@@ -8,6 +8,7 @@ Paths
     "speed"                       the input speed [rad/s]
     "HookeJoint 1.angle"          one number of one element, by its name or its default name
     "Disk 1.excitation 2 amplitude"   of its second harmonic torque (also frequency, phase)
+    "GearPair 1.transmission_error 1 amplitude", "PiecewiseShaft 1.stiffness 2"   likewise
     "HookeJoint *.angle"          the same number of every element of a kind
     "factor of Shaft *.damping"   multiplies what the line has (1 leaves it as it is)
 """
@@ -48,6 +49,11 @@ UNITS = {
     "radius": "m",
     "distance_ratio": "1",
     "yoke_length": "m",
+    "mesh_stiffness": "N/m",
+    "mesh_damping": "N*s/m",
+    "backlash": "m",
+    "angular_backlash": "rad",
+    "stiffness_ratio": "1",
     "damping_ratio": "1",
     "damping_ratio_frequency": "rad/s",
 }
@@ -193,23 +199,45 @@ def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
             place[-1, key] = len(labels)
             labels.append(key)
             values.append(float(number))
-    units = tuple(UNITS.get(label.rpartition(".")[2]) or _EXCITATION[label.rpartition(" ")[2]] for label in labels)
+    units = tuple(_unit(label.rpartition(".")[2]) for label in labels)
     return PackedLine(line, tuple(labels), units, np.array(values), place)
 
 
-_EXCITATION = {"amplitude": "N*m", "frequency": "rad/s", "phase": "rad"}
+_HARMONICS = {
+    "excitation": {"amplitude": "N*m", "frequency": "rad/s", "phase": "rad"},
+    "transmission_error": {"amplitude": "m", "phase": "rad"},
+    "stiffness_variation": {"share": "1", "phase": "rad"},
+}
+"""Numbers of each harmonic of a list, and their units."""
+_LISTS = {"breakpoints": ("breakpoint", "rad"), "stiffnesses": ("stiffness", "N*m/rad")}
+"""Lists of numbers: what one of them is called, and its unit."""
+
+
+def _unit(key: str) -> str:
+    """Unit of "stiffness", "excitation 2 amplitude", "breakpoint 1"."""
+    if key in UNITS:
+        return UNITS[key]
+    owner, _, rest = key.partition(" ")
+    if owner in _HARMONICS:
+        return _HARMONICS[owner][rest.partition(" ")[2]]
+    return next(unit for name, unit in _LISTS.values() if name == owner)
 
 
 def _numbers(element: Element) -> Iterator[tuple[str, float]]:
     """Every number of an element by its key."""
+    idle = getattr(element, "idle", ())
     for key in UNITS:
-        number = getattr(element, key, None)
+        number = None if key in idle else getattr(element, key, None)
         if isinstance(number, float | int) and not isinstance(number, bool):
             yield key, float(number)
-    for i, harmonic in enumerate(getattr(element, "excitation", ()), start=1):
-        for key in _EXCITATION:
-            if (number := getattr(harmonic, key)) is not None:
-                yield f"excitation {i} {key}", float(number)
+    for name, keys in _HARMONICS.items():
+        for i, harmonic in enumerate(getattr(element, name, ()), start=1):
+            for key in keys:
+                if (number := getattr(harmonic, key)) is not None:
+                    yield f"{name} {i} {key}", float(number)
+    for name, (single, _) in _LISTS.items():
+        for i, number in enumerate(getattr(element, name, ()), start=1):
+            yield f"{single} {i}", float(number)
 
 
 def default_names(line: Driveline) -> Sequence[str]:

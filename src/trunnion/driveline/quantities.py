@@ -66,6 +66,8 @@ STIFFNESS = Kind(
 )
 DAMPING = Kind("damping", "N*m*s/rad", "3 N*m*s/rad")
 QUADRATIC = Kind("quadratic load", "N*m*s^2/rad^2", "0.02 N*m*s^2/rad^2")
+MESH_STIFFNESS = Kind("mesh stiffness", "N/m", "2e8 N/m")
+MESH_DAMPING = Kind("mesh damping", "N*s/m", "500 N*s/m")
 INERTIA = Kind("inertia", "kg*m^2", "0.4 kg*m^2")
 TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
 LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
@@ -79,6 +81,8 @@ KINDS = (
     STIFFNESS,
     DAMPING,
     QUADRATIC,
+    MESH_STIFFNESS,
+    MESH_DAMPING,
     INERTIA,
     TORQUE,
     LENGTH,
@@ -253,6 +257,8 @@ Frequency = Annotated[float, Quantity(FREQUENCY)]
 Stiffness = Annotated[float, Quantity(STIFFNESS)]
 Damping = Annotated[float, Quantity(DAMPING)]
 QuadraticLoad = Annotated[float, Quantity(QUADRATIC)]
+MeshStiffness = Annotated[float, Quantity(MESH_STIFFNESS)]
+MeshDamping = Annotated[float, Quantity(MESH_DAMPING)]
 Inertia = Annotated[float, Quantity(INERTIA)]
 Torque = Annotated[float, Quantity(TORQUE)]
 Length = Annotated[float, Quantity(LENGTH)]

@@ -6,13 +6,16 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from trunnion.driveline.elements import KINDS
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
+from trunnion.driveline.gears import StiffnessVariation, TransmissionError
+from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
 
 _TUBE = ["outer_diameter", "length", "shear_modulus"]
+_TOOTHED = ["teeth_in", "teeth_out", "module"]
+_BASE = ["base_radius_in", "base_radius_out"]
 _SOLID = ["outer_diameter", "thickness", "density"]
 _RULES: dict[str, dict[str, Any]] = {
     "Shaft": {
@@ -30,6 +33,10 @@ _RULES: dict[str, dict[str, Any]] = {
     "Ratio": {
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth_in", "teeth_out"]}],
         "dependentRequired": {"teeth_in": ["teeth_out"], "teeth_out": ["teeth_in"]},
+    },
+    "GearPair": {
+        "oneOf": [{"required": _TOOTHED}, {"required": _BASE}],
+        "dependentRequired": {**dict.fromkeys(_TOOTHED, _TOOTHED), **dict.fromkeys(_BASE, _BASE)},
     },
 }
 """Which keys go together; the classes check the same in words."""
@@ -81,6 +88,8 @@ def json_schema() -> dict[str, Any]:
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Excitation": _model(Excitation),
+            "TransmissionError": _model(TransmissionError),
+            "StiffnessVariation": _model(StiffnessVariation),
         },
     }
 

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, Shaft, TripodJoint
+from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Topology, topology
 
 Array = NDArray[np.float64]
@@ -83,9 +85,12 @@ def assemble(line: Driveline, *, tripods: bool = False) -> Assembly:
 
 
 def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
-    """Torsional stiffness [N m/rad] of one shaft, from its stiffness or its tube geometry."""
+    """Torsional stiffness [N m/rad] of one shaft, from its stiffness or its tube geometry; of a mesh or a shaft with
+    stages, that of its stiffest stage."""
     shaft = assembly.line.elements[element]
     column = assembly.packed.column
+    if has_stages(shaft):
+        return stage_law(shaft, element, column, table).slopes.max(axis=1)
     if isinstance(shaft, Shaft) and shaft.stiffness is None:
         keys = ("outer_diameter", "inner_diameter", "length", "shear_modulus")
         return np.asarray(tube_stiffness(*(table[:, column(element, k)] for k in keys)))
@@ -102,7 +107,7 @@ def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Ar
     if column(element, "loss_factor") >= 0:
         loss = table[:, column(element, "loss_factor")]
         return loss * stiffness / table[:, column(element, "loss_factor_frequency")]
-    return table[:, column(element, "damping")]
+    return spring_damping(assembly.line.elements[element], element, column, table)
 
 
 def _series(stiffness: list[Array], damping: list[Array]) -> tuple[Array, Array]:
@@ -162,7 +167,7 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
     ratio, i = 1.0, line.parents[joint]
     while i is not None and not isinstance(line.elements[i], HookeJoint | TripodJoint):
         element = line.elements[i]
-        if isinstance(element, Ratio):
+        if isinstance(element, Ratio | GearPair):
             ratio *= element.speed_ratio
         elif isinstance(element, IdealJoint | DoubleCardanJoint):
             total += table[:, assembly.packed.column(i, "plane")] / ratio
@@ -173,8 +178,12 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     cases, stations = len(table), len(topo.stations)
-    stiffness = np.empty((cases, len(topo.compliances)))
-    damping = np.empty_like(stiffness)
+    load = np.zeros((cases, stations))
+    for station, element in topo.disks:
+        load[:, station] += table[:, column(element, "load_torque")]
+    static = static_torque(topo, load)
+    torque = static if twisted else np.zeros_like(static)
+    stiffness, damping, twist = np.empty_like(static), np.empty_like(static), np.empty_like(static)
     each: dict[int, Array] = {}
     for e, compliance in enumerate(topo.compliances):
         for i in compliance.shafts:
@@ -185,16 +194,22 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
             for i in compliance.shafts
         ]
         stiffness[:, e], damping[:, e] = _series(k, c)
-    load = np.zeros((cases, stations))
-    for station, element in topo.disks:
-        load[:, station] += table[:, column(element, "load_torque")]
-    torque = static_torque(topo, load) if twisted else np.zeros_like(stiffness)
+        twist[:, e] = torque[:, e] / stiffness[:, e]
+        part = assembly.line.elements[compliance.shafts[0]]
+        if has_stages(part):
+            law = stage_law(part, compliance.shafts[0], column, table)
+            at_rest, stiffness[:, e], damped_there = law.under(static[:, e])
+            damping[:, e] *= damped_there
+            twist[:, e] = at_rest if twisted else 0.0
     shift = np.zeros((cases, stations))
     compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}
     for s, here in enumerate(topo.stations):
         if here.link is Link.SHAFT:
             i = here.element
-            shift[:, s] = table[:, column(i, "fork_offset")] + torque[:, compliance_of[i]] / each[i]
+            e = compliance_of[i]
+            own = twist[:, e] if has_stages(assembly.line.elements[i]) else torque[:, e] / each[i]
+            forks = column(i, "fork_offset")
+            shift[:, s] = own + (table[:, forks] if forks >= 0 else 0.0)
         elif here.link in (Link.HOOKE, Link.TRIPOD):
             shift[:, s] = -table[:, column(here.element, "plane")]
             shift[:, s] -= _planes_in_front(assembly, table, here.element)
@@ -207,7 +222,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
         stiffness=stiffness,
         damping=damping,
         torque=torque,
-        twist=torque / stiffness,
+        twist=twist,
         inertia=_station_inertia(assembly, table),
         load=load,
         angle=angle,

@@ -24,6 +24,8 @@ from trunnion.driveline.elements import (
     Shaft,
     TripodJoint,
 )
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 
 
@@ -141,7 +143,7 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
     turns = topo.period_turns()
     if turns > LONGEST_PERIOD:
         for i, element in enumerate(line.elements):
-            if isinstance(element, Ratio) and element.fraction.limit_denominator(12) != element.fraction:
+            if isinstance(element, Ratio | GearPair) and element.fraction.limit_denominator(12) != element.fraction:
                 raise InputError(
                     f"joints in front of and behind this ratio are back in phase only after {float(turns):g} "
                     "turns of the input",
@@ -153,7 +155,9 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
         raise InputError(
             f"joints are back in phase only after {float(turns):g} turns of the input "
             f"(at most {LONGEST_PERIOD} are followed)",
-            element=next(n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio)),
+            element=next(
+                n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio | GearPair)
+            ),
             key="teeth_in/teeth_out",
             remedy="study the joints on each side of the ratio separately",
         )
@@ -205,6 +209,14 @@ def _walk(line: Driveline, tripods: bool) -> _Draft:
             draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
             if element.density:
                 draft.tube_ends += [(near, i), (here, i)]
+        elif isinstance(element, PiecewiseShaft):
+            near, here = here, draft.add(here, Link.SHAFT, i, ratio)
+            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
+        elif isinstance(element, GearPair):
+            # The output gear where a rigid mesh would hold it, and behind the mesh where it is.
+            near = draft.add(here, Link.RATIO, i, ratio / element.fraction)
+            here = draft.add(near, Link.SHAFT, i, ratio / element.fraction)
+            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
         elif isinstance(element, HookeJoint):
             here = draft.add(here, Link.HOOKE, i, ratio)
         elif isinstance(element, Ratio):
@@ -246,6 +258,7 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         plain = sum(s.group == g for s in draft.stations) == 1
         if not (plain and len(into) == 1 and len(out) == 1):
             raise InputError(*_bare(draft, g), **_bare_place(line, draft, g))
+        _refuse_bare_law(line, (*into[0].shafts, *out[0].shafts))
         compliances.remove(into[0])
         place = compliances.index(out[0])
         compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts)
@@ -266,6 +279,17 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         tuple(draft.speed_ratio),
         tuple(_names(line, draft, coordinate)),
     )
+
+
+def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:
+    """Springs in series become one only where they are linear."""
+    for i in shafts:
+        if isinstance(line.elements[i], PiecewiseShaft | GearPair):
+            where = "in front of it" if i != shafts[0] else "behind it"
+            raise InputError(
+                f"has no inertia {where}", element=line.names[i],
+                remedy=f"put a Disk {where.removesuffix(' it')} {line.names[i]}",
+            )  # fmt: skip
 
 
 def _bare(draft: _Draft, group: int) -> tuple[str]:

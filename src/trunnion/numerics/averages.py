@@ -40,7 +40,9 @@ def average(series: Array, batches: int = BATCHES) -> Average:
 
 
 def pooled(batches: Array, windowed: bool) -> Average:
-    """The average over batches (batches, k), which may come from several series."""
+    """The average over batches (batches, k), which may come from several series; NaN of none."""
+    if not len(batches):
+        return Average(np.full(batches.shape[1:], np.nan), np.full(batches.shape[1:], np.nan), batches, windowed)
     mean = batches.mean(axis=0)
     if len(batches) < 2:
         return Average(mean, np.full(mean.shape, np.inf), batches, windowed)

@@ -166,7 +166,7 @@ def _error(h, y, new, k, n, count, tolerance, weight):
             three += (e3 / allowed) ** 2
         if not np.isfinite(five + three):
             return np.nan
-        if five > 0.0 or three > 0.0:
+        if five + 0.01 * three > 0.0:  # of a state that has decayed to nothing both may underflow
             worst = max(worst, abs(h) * five / np.sqrt((five + 0.01 * three) * n))
     return worst
 

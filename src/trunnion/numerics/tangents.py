@@ -68,10 +68,13 @@ class Motion:
     _clock: Array = field(init=False, repr=False)
     _whole: NDArray[np.int64] = field(init=False, repr=False)
     _block: Array = field(init=False, repr=False)
+    _numbers: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         self._clock = np.array([self.time, 0.0, -np.inf, 0.0])
         self._whole = np.array([self.regime, 0, 0, 0, 0, 0, 1], dtype=np.int64)
+        # A right-hand side may keep its scratch space behind its numbers, so threads must not share them.
+        self._numbers = self.equations.numbers.copy()
         self._block = np.concatenate([np.ravel(self.state), np.ravel(self.frame)]).astype(float)
         count, n = len(self.frame), self.equations.size
         kernel().orthonormalise(self._block[n:].reshape(count, n), self.equations.weight, np.zeros(count))
@@ -86,7 +89,7 @@ class Motion:
             part = slice(done, min(done + CHUNK, samples))
             before = self._block[:n].copy()
             code, finished = kernel().follow(
-                functions, e.numbers, self._block, n, count, e.transitions, e.directions, e.weight, self._clock,
+                functions, self._numbers, self._block, n, count, e.transitions, e.directions, e.weight, self._clock,
                 self._whole, float(self.interval), float(self.wrap), float(self.tolerance), int(self.most_steps),
                 traced, growth[part], states[part], divergence[part],
             )  # fmt: skip

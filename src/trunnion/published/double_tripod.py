@@ -212,7 +212,7 @@ class DoubleTripod:
 
     def midshaft_frequencies(self, count: int = 5) -> Array:
         """ν_k = k c_s/(2L) [Hz] of the midshaft (24), Table 3."""
-        return np.arange(1, count + 1) * WAVE_SPEED / (2 * MIDSHAFT_LENGTH)
+        return np.asarray(np.arange(1, count + 1) * WAVE_SPEED / (2 * MIDSHAFT_LENGTH), dtype=float)
 
     def system(self, which: str = "input", *, phase: str = "given", excitation: float | None = None) -> System:
         """The equations of one element as a ``System``.

@@ -11,21 +11,24 @@ from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.published.bicardan_elastic import bicardan_elastic
 from trunnion.published.double_tripod import DoubleTripod, double_tripod
+from trunnion.published.gear_rattle import gear_rattle
 from trunnion.published.three_shaft_cardan import three_shaft_cardan
 from trunnion.published.two_shaft_cardan import two_shaft_cardan
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 @dataclass(frozen=True)
 class Entry:
     """A published driveline: ``build()`` gives the paper's base case, keyword arguments change it.
 
-    ``double-tripod`` builds equations of motion (a ``DoubleTripod``), the others a ``Driveline``.
+    ``double-tripod`` builds equations of motion (a ``DoubleTripod``), ``gear-rattle`` a ``PiecewiseOscillator``, the
+    others a ``Driveline``.
     """
 
     name: str
     title: str
     source: str
-    build: Callable[..., Driveline | DoubleTripod]
+    build: Callable[..., Driveline | DoubleTripod | PiecewiseOscillator]
 
 
 _ENTRIES = (
@@ -53,6 +56,12 @@ _ENTRIES = (
         "Bugaru and Vasile, Applied Sciences 12 (2022) 6182",
         double_tripod,
     ),
+    Entry(
+        "gear-rattle",
+        "gear pair with backlash as one equation, nondimensional",
+        "M. Rezaee and A. Farshidianfar, multiple scales and averaging for gear rattle (in Persian)",
+        gear_rattle,
+    ),
 )
 
 
@@ -66,10 +75,14 @@ def catalogue(name: Literal["double-tripod"], **changes: Any) -> DoubleTripod: .
 
 
 @overload
+def catalogue(name: Literal["gear-rattle"], **changes: Any) -> PiecewiseOscillator: ...  # type: ignore[overload-overlap]
+
+
+@overload
 def catalogue(name: str, **changes: Any) -> Driveline: ...
 
 
-def catalogue(name: str, **changes: Any) -> Driveline | DoubleTripod:
+def catalogue(name: str, **changes: Any) -> Driveline | DoubleTripod | PiecewiseOscillator:
     """A published driveline by name; keyword arguments change its numbers (see the entry's builder).
 
     >>> catalogue("two-shaft-cardan", angle=0.2).names[3]

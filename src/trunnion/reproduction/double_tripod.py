@@ -138,17 +138,10 @@ def _numbers() -> Comparison:
         omega = shaft.element(element).natural_frequency(WORST_ANGLE)
         rows.append(Row(f"{name}(9°)", printed, f"{omega:.1f} rad/s, {omega / np.pi:.1f} Hz", "2Ω/2π in Hz"))
     frequencies = shaft.midshaft_frequencies()
-    for order, (printed, value) in enumerate(
-        zip((1669.2, 3338.4, 5007.6, 6676.8, 8346.0), frequencies, strict=True), start=1
-    ):
-        rows.append(
-            Row(
-                f"Table 3, ν_{order} [Hz]",
-                f"{printed:g}",
-                f"{value:.2f}",
-                "agrees" if order == 1 else "k times the rounded ν₁",
-            )
-        )
+    table = ("1669.2", "3338.4", "5007.6", "6676.8", "8346")
+    for order, (entry, value) in enumerate(zip(table, frequencies, strict=True), start=1):
+        remark = "agrees" if order == 1 else "k times the rounded ν₁"
+        rows.append(Row(f"Table 3, ν_{order} [Hz]", entry, f"{value:.2f}", remark))
     rows.append(Row("A of the input tripod", "", f"{shaft.element('input').joint_amplitude(WORST_ANGLE):.4g}", "(13)"))
     return Comparison("Frequencies and Table 3", tuple(rows))
 

@@ -12,6 +12,7 @@ PAPERS = {
     "two-shaft-cardan": "trunnion.reproduction.two_shaft_cardan:two_shaft_cardan",
     "three-shaft-cardan": "trunnion.reproduction.three_shaft_cardan:three_shaft_cardan",
     "double-tripod": "trunnion.reproduction.double_tripod:double_tripod",
+    "gear-rattle": "trunnion.reproduction.gear_rattle:gear_rattle",
 }
 """Catalogue names that have a reproduction, and the function that makes it."""
 
@@ -21,7 +22,7 @@ def reproduce(name: str, *, points: int = 400, progress: Callable[[float], None]
 
     Parameters
     ----------
-    name : of the catalogue: "two-shaft-cardan", "three-shaft-cardan" or "double-tripod".
+    name : of the catalogue: "two-shaft-cardan", "three-shaft-cardan", "double-tripod" or "gear-rattle".
     points : of the charts, along each axis.
     progress : called as progress(share done).
 

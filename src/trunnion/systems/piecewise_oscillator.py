@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 Damping = Literal["always", "in contact", "never pulling"]
@@ -210,6 +212,28 @@ class PiecewiseOscillator:
             remedy="raise the outermost slope on its side",
         )  # fmt: skip
 
+    def as_system(self) -> System:
+        """The same backlash as a ``System``, to be simulated or balanced: x and v, parameter ``frequency``.
+
+        Raises
+        ------
+        InputError : not a symmetric gap with damping that always acts and one harmonic of force.
+        """
+        from trunnion.systems.reference import dead_zone_oscillator
+
+        symmetric = len(self.breakpoints) == 2 and self.breakpoints[0] == -self.breakpoints[1]
+        if not symmetric or self.slopes[0] != self.slopes[2] or self.damping_law != "always" or self.harmonics:
+            raise InputError(
+                "is no symmetric gap with damping always on and one harmonic of force", element=self.name,
+                key="as_system", remedy="its exact motion is there for every other piecewise oscillator",
+            )  # fmt: skip
+        m, k = self.inertia, self.slopes[0]
+        return dead_zone_oscillator(
+            damping=self.damping / m, stiffness=k / m, inside=self.slopes[1] / k if k else 0.0,
+            half_gap=self.breakpoints[1], mean_force=self.mean_force / m, force=self.force / m,
+            frequency=self.frequency,
+        )  # fmt: skip
+
     @cached_property
     def regimes(self) -> Regimes:
         """The linear regimes and what leads from one to another."""
@@ -251,11 +275,3 @@ def _surfaces(oscillator: PiecewiseOscillator) -> Regimes:
         then[free] = 0, damped
         guards[doubly, 1], then[doubly, 1] = (sign, 0.0, sign * knot), 0
     return Regimes(pieces, guards, then, np.array([0, 1, 1, 1, -1, -1, -1]))
-
-
-def even_steps(pieces: Sequence[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Breakpoints and slopes of a symmetric damper from its stages (slope, up to which deflection), innermost first;
-    the last deflection is ignored."""
-    ends = [end for _, end in pieces[:-1]]
-    slopes = [slope for slope, _ in pieces]
-    return tuple([-e for e in reversed(ends)] + ends), tuple([*reversed(slopes[1:]), *slopes])

@@ -1,0 +1,261 @@
+"""What the slow amplitude and phase of a nearly harmonic motion do, whichever method gave their rates.
+
+u = x̄ + A cos(ωt − β): A and β change slowly, steady where their rates vanish, and such a state is stable if the
+eigenvalues of the rates' derivative there have negative real parts.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import solve_ivp
+
+from trunnion.errors import InputError
+from trunnion.results.outcome import Outcome
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+POINTS = 1500
+CEILING = 20.0
+"""Largest amplitude looked at, over the largest that damping allows anywhere in the range."""
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """amplitude A, phase lag β [rad], mean x̄, and whether it is stable."""
+
+    amplitude: float
+    phase: float
+    mean: float
+    stable: bool
+
+
+@dataclass(frozen=True)
+class ApproximateResponse:
+    """A frequency response in order along its curve: frequency [rad/s], amplitude (half peak-to-peak), mean, stable.
+
+    A point of NaN parts stretches between which the curve is outside the range.
+    """
+
+    method: str
+    frequency: Array
+    amplitude: Array
+    mean: Array
+    stable: NDArray[np.bool_]
+    note: str
+    outcome: Outcome
+
+    @property
+    def half_peak_to_peak(self) -> Array:
+        """The amplitude: there are no other harmonics."""
+        return self.amplitude
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Frequency and amplitude of the largest stable motion; NaN where there is none."""
+        if not self.stable.any():
+            return float("nan"), float("nan")
+        best = int(np.argmax(np.where(self.stable, self.amplitude, -np.inf)))
+        return float(self.frequency[best]), float(self.amplitude[best])
+
+    @property
+    def folds(self) -> tuple[tuple[float, float], ...]:
+        """(frequency, amplitude) where the curve turns back."""
+        turns = np.flatnonzero(np.diff(self.frequency)[:-1] * np.diff(self.frequency)[1:] < 0) + 1
+        return tuple((float(self.frequency[i]), float(self.amplitude[i])) for i in turns)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset."""
+        import xarray as xr
+
+        names = ("frequency", "amplitude", "mean", "stable")
+        return xr.Dataset(
+            {name: ("point", getattr(self, name)) for name in names},
+            attrs={"method": self.method, "note": self.note, "outcome_sentence": self.outcome.sentence},
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        from trunnion.plots.frequency_response import draw_responses
+
+        return draw_responses({self.method: self}, axes, **options)
+
+    def __str__(self) -> str:
+        at, size = self.peak
+        return (
+            f"frequency response by {self.method}: {int(np.isfinite(self.frequency).sum())} points, {int(self.stable.sum())} stable; largest "
+            f"stable half peak-to-peak {size:.6g} at {at:.6g} rad/s\n  {self.note}\n  {self.outcome}"
+        )
+
+    __repr__ = __str__
+
+
+class SlowFlow(ABC):
+    """Rates of A and β of one oscillator, by one method."""
+
+    method: str
+    note: str
+
+    def __init__(self, oscillator: PiecewiseOscillator) -> None:
+        if oscillator.damping_law != "always":
+            raise InputError(
+                "is averaged only where damping always acts", element=oscillator.name, key="damping_law",
+                value=oscillator.damping_law, remedy="use the exact motion or harmonic balance",
+            )  # fmt: skip
+        if oscillator.harmonics:
+            raise InputError(
+                "are not averaged: one harmonic of force is", element=oscillator.name, key="harmonics",
+                value=oscillator.harmonics, remedy="use the exact motion",
+            )  # fmt: skip
+        if oscillator.force == 0:
+            raise InputError(
+                "is zero: nothing moves", element=oscillator.name, key="force", value=0.0, remedy="give an amplitude"
+            )
+        self.oscillator = oscillator
+
+    @abstractmethod
+    def rates(self, amplitude: float, phase: float, frequency: float) -> tuple[float, float]:
+        """dA/dt and dβ/dt."""
+
+    @abstractmethod
+    def frequencies(self, amplitude: float) -> tuple[float, float] | None:
+        """The lower and the upper frequency at which A is steady; None where no frequency holds it. The first is
+        NaN where only the upper one is positive."""
+
+    def mean(self, amplitude: float) -> float:
+        """x̄ at an amplitude; 0 where a method knows none."""
+        return 0.0
+
+    def steady_phase(self, amplitude: float, frequency: float) -> float:
+        """β in (0, π) at which the amplitude holds: dA/dt has its drive in sin β, dβ/dt in cos β."""
+        quarter = self.rates(amplitude, np.pi / 2, frequency)
+        half = self.rates(amplitude, np.pi, frequency)
+        nought = self.rates(amplitude, 0.0, frequency)
+        # dA/dt = d + s sin β, dβ/dt = e + r cos β.
+        sine = -nought[0] / (quarter[0] - nought[0])
+        drive = (nought[1] - half[1]) / 2
+        cosine = -quarter[1] / drive
+        return float(np.arctan2(sine, cosine))
+
+    def is_stable(self, amplitude: float, phase: float, frequency: float) -> bool:
+        """Eigenvalues of the rates' derivative, by central differences, left of the imaginary axis."""
+        h, k = 1e-6 * amplitude, 1e-6
+        by_a = np.subtract(self.rates(amplitude + h, phase, frequency), self.rates(amplitude - h, phase, frequency))
+        by_b = np.subtract(self.rates(amplitude, phase + k, frequency), self.rates(amplitude, phase - k, frequency))
+        matrix = np.stack([by_a / (2 * h), by_b / (2 * k)], axis=1)
+        return bool(np.trace(matrix) < 0 and np.linalg.det(matrix) > 0)
+
+    def steady(self, frequency: float) -> tuple[SteadyState, ...]:
+        """All steady states at one frequency, by rising amplitude."""
+        curve = self.response(0.98 * frequency, 1.02 * frequency)
+        side = curve.frequency - frequency
+        found = []
+        for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
+            if side[i] == side[i + 1]:
+                continue
+            share = side[i] / (side[i] - side[i + 1])
+            size = float(curve.amplitude[i] + share * (curve.amplitude[i + 1] - curve.amplitude[i]))
+            size = self._polished(size, frequency)
+            phase = self.steady_phase(size, frequency)
+            found.append(SteadyState(size, phase, self.mean(size), self.is_stable(size, phase, frequency)))
+        return tuple(sorted(found, key=lambda s: s.amplitude))
+
+    def _polished(self, amplitude: float, frequency: float) -> float:
+        """Newton's method on the two rates, from the interpolated amplitude."""
+        y = np.array([amplitude, self.steady_phase(amplitude, frequency)])
+        for _ in range(8):
+            r = np.array(self.rates(y[0], y[1], frequency))
+            h, k = 1e-6 * y[0], 1e-6
+            one = np.subtract(self.rates(y[0] + h, y[1], frequency), self.rates(y[0] - h, y[1], frequency)) / (2 * h)
+            two = np.subtract(self.rates(y[0], y[1] + k, frequency), self.rates(y[0], y[1] - k, frequency)) / (2 * k)
+            y = y - np.linalg.solve(np.stack([one, two], axis=1), r)
+        near = bool(np.isfinite(y[0])) and abs(y[0] - amplitude) < 0.05 * amplitude
+        return float(y[0]) if near else amplitude
+
+    def response(self, low: float, high: float, points: int = POINTS) -> ApproximateResponse:
+        """The curve between two frequencies: for every amplitude the one or two frequencies that hold it.
+
+        Raises
+        ------
+        InputError : a range that does not rise; no damping, which leaves the resonance unbounded.
+        """
+        if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
+            raise InputError("must be a rising range of positive frequencies", key="low, high", value=[low, high])
+        o = self.oscillator
+        if o.damping == 0:
+            raise InputError(
+                "leaves the resonant motion unbounded", element=o.name, key="damping", value=0.0,
+                remedy="give some damping",
+            )  # fmt: skip
+        top = abs(o.force) / (o.damping * low)
+        sizes = np.geomspace(1e-6 * top, CEILING * top, points)
+        pairs = [self.frequencies(float(a)) for a in sizes]
+        held = [i for i, pair in enumerate(pairs) if pair is not None]
+        if not held:
+            return ApproximateResponse(
+                self.method, np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool), self.note,
+                Outcome(False, "nothing", "no amplitude is held by any frequency of the range; widen it"),
+            )  # fmt: skip
+        # The tip, where both frequencies meet, belongs to the curve.
+        last = held[-1]
+        if last + 1 < len(sizes):
+            inside, outside = float(sizes[last]), float(sizes[last + 1])
+            for _ in range(60):
+                middle = 0.5 * (inside + outside)
+                inside, outside = (middle, outside) if self.frequencies(middle) is not None else (inside, middle)
+            near = inside * (1 - np.geomspace(0.05, 1e-12, 60))
+            sizes = np.append(sizes[held], near[near > sizes[last]])
+        else:
+            sizes = sizes[held]
+        curve: list[tuple[float, float]] = []
+        for a in sizes:
+            pair = self.frequencies(float(a))
+            if pair is not None and np.isfinite(pair[0]):
+                curve.append((pair[0], float(a)))
+        for a in sizes[::-1]:
+            pair = self.frequencies(float(a))
+            if pair is not None:
+                curve.append((pair[1], float(a)))
+        kept = _parted(np.array(curve), low, high)
+        stable = [bool(np.isfinite(f)) and self.is_stable(a, self.steady_phase(a, f), f) for f, a in kept]
+        return ApproximateResponse(
+            self.method, kept[:, 0], kept[:, 1], np.array([self.mean(a) if a == a else a for a in kept[:, 1]]),
+            np.array(stable, dtype=bool), self.note, Outcome(True, "computed", f"from {low:g} to {high:g} rad/s"),
+        )  # fmt: skip
+
+    def transient(self, frequency: float, amplitude: float, phase: float, times: ArrayLike) -> tuple[Array, Array]:
+        """A and β at rising ``times`` from an amplitude and phase at the first of them.
+
+        Integrated as A cos β and A sin β, which have no trouble where A passes zero.
+        """
+        t = np.asarray(times, dtype=float)
+
+        def rate(_: float, y: Array) -> list[float]:
+            a, b = max(float(np.hypot(*y)), 1e-12), float(np.arctan2(y[1], y[0]))
+            da, db = self.rates(a, b, frequency)
+            return [da * np.cos(b) - a * db * np.sin(b), da * np.sin(b) + a * db * np.cos(b)]
+
+        first = [amplitude * np.cos(phase), amplitude * np.sin(phase)]
+        run = solve_ivp(rate, (t[0], t[-1]), first, t_eval=t, rtol=1e-9, atol=1e-12)
+        return np.hypot(run.y[0], run.y[1]), np.unwrap(np.arctan2(run.y[1], run.y[0]))
+
+
+def _parted(curve: Array, low: float, high: float) -> Array:
+    """The points (frequency, amplitude) inside the range, with one of NaN where others lay between them."""
+    inside = (curve[:, 0] >= low) & (curve[:, 0] <= high)
+    starts = np.flatnonzero(inside & ~np.concatenate([[True], inside[:-1]]))
+    nothing = np.full((1, 2), np.nan)
+    pieces = [piece[keep] for piece, keep in zip(np.split(curve, starts), np.split(inside, starts), strict=True)]
+    pieces = [piece for piece in pieces if len(piece)]
+    if not pieces:
+        return np.zeros((0, 2))
+    return np.vstack([pieces[0], *(np.vstack([nothing, piece]) for piece in pieces[1:])])

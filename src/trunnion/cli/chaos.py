@@ -1,0 +1,274 @@
+"""The commands about long motions: lyapunov-spectrum, poincare-map, certify-chaos."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.motion import START, Output, Set, Tolerance, _check, _print, _state, _write
+from trunnion.cli.options import Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trunnion.systems.events import Event
+    from trunnion.systems.system import System
+
+Subject = Annotated[
+    str,
+    typer.Argument(
+        metavar="FILE",
+        help="Driveline file, name of the catalogue, reference system (ueda, …), or double-tripod[:output].",
+    ),
+]
+Periods = Annotated[int | None, typer.Option("--periods", help="Forcing periods to average over.", min=1)]
+Duration = Annotated[float | None, typer.Option("--duration", help="Instead of periods [s].")]
+Starts = Annotated[int, typer.Option("--starts", help="Motions to follow and compare.", min=1)]
+Transient = Annotated[int | None, typer.Option("--transient", help="Periods to let pass before; default 500.", min=0)]
+Section = Annotated[
+    str | None,
+    typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
+]
+TRIPOD = "double-tripod"
+
+
+def lyapunov_spectrum(
+    file: Subject,
+    periods: Periods = None,
+    duration: Duration = None,
+    speed: Speed = None,
+    start: START = None,
+    starts: Starts = 2,
+    transient: Transient = None,
+    parameters: Set = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    tolerance: Tolerance = 1e-10,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Lyapunov exponents with intervals of confidence, and the sum rule.
+
+    Example: trunnion lyapunov-spectrum ueda --set force=7.5
+    """
+    from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum as compute
+
+    system = _subject(file, parameters, speed, unit, load_case)
+    _check(to)
+    with output.compile_notice():
+        result = compute(
+            system, periods, duration=duration, start=_state(start), starts=starts, transient=transient,
+            tolerance=tolerance,
+        )  # fmt: skip
+    written = _files(to, _stem(file), "exponents", result.data, lambda: result.plot())
+    if not as_json:
+        _print(str(result), written)
+        return
+    content = {
+        "system": system.name,
+        "exponents": result.exponents,
+        "half_width": result.half_width,
+        "sum": result.sum,
+        "divergence": result.divergence,
+        "dimension": result.dimension,
+        "samples": result.samples,
+        "interval": result.interval,
+        "by_start": result.by_start,
+        "outcome": result.outcome.kind,
+        "says": str(result.outcome),
+        "written": [str(path) for path in written],
+    }
+    output.write_json("lyapunov-spectrum", content)
+
+
+def poincare_map(
+    file: Subject,
+    points: Annotated[int, typer.Option("--points", help="Points of the map.", min=1)] = 2000,
+    section: Section = None,
+    every: Annotated[float | None, typer.Option("--every", help="Time between points [s].")] = None,
+    speed: Speed = None,
+    start: START = None,
+    transient: Transient = None,
+    parameters: Set = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    tolerance: Tolerance = 1e-10,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Points of a settled motion, once per forcing period or on a section.
+
+    Example: trunnion poincare-map rossler --section y=0 -o map.png
+    """
+    from trunnion.analyses.poincare_map import poincare_map as compute
+
+    system = _subject(file, parameters, speed, unit, load_case)
+    _check(to)
+    with output.compile_notice():
+        result = compute(
+            system, points, section=_section(section), every=every, start=_state(start),
+            transient=500 if transient is None else transient, tolerance=tolerance,
+        )  # fmt: skip
+    result.outcome.require()
+    written = _files(to, _stem(file), "map", result.data, lambda: result.plot())
+    if not as_json:
+        _print(str(result), written)
+        return
+    content = {
+        "system": system.name,
+        "section": result.section,
+        "points": len(result.points),
+        "repeat": result.repeat,
+        "states": dict(zip(system.states, result.points.T, strict=True)),
+        "outcome": result.outcome.kind,
+        "says": str(result.outcome),
+        "written": [str(path) for path in written],
+    }
+    output.write_json("poincare-map", content)
+
+
+def certify_chaos(
+    file: Subject,
+    periods: Periods = None,
+    duration: Duration = None,
+    section: Section = None,
+    speed: Speed = None,
+    start: START = None,
+    starts: Starts = 2,
+    transient: Transient = None,
+    parameters: Set = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    sweep: Annotated[
+        str | None, typer.Option("--sweep", metavar="NAME:LOW:HIGH:N", help="Exponents over this in the figure.")
+    ] = None,
+    tolerance: Tolerance = 1e-10,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Regular, chaotic, unbounded or undecided, with reasons and one figure.
+
+    Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
+    """
+    from trunnion.analyses.certify_chaos import certify_chaos as compute
+
+    system = _subject(file, parameters, speed, unit, load_case)
+    _check(to)
+    with output.compile_notice():
+        result = compute(
+            system, periods, duration=duration, section=_section(section), start=_state(start), starts=starts,
+            transient=transient, sweep=_sweep(sweep), tolerance=tolerance,
+        )  # fmt: skip
+    written = _files(to, _stem(file), "certificate", result.data, lambda: result.plot())
+    if not as_json:
+        _print(str(result), written)
+        return
+    content = {
+        "system": system.name,
+        "verdict": str(result.verdict),
+        "kind": result.kind,
+        "repeat": result.repeat,
+        "period": result.period,
+        "reasons": list(result.reasons),
+        "criteria": [vars(c) for c in result.criteria],
+        "exponents": result.spectrum.exponents,
+        "half_width": result.spectrum.half_width,
+        "zero_one_test": None if result.zero_one is None else result.zero_one.k,
+        "written": [str(path) for path in written],
+    }
+    output.write_json("certify-chaos", content)
+
+
+def _subject(
+    file: str, parameters: list[str] | None, speed: str | None, unit: str | None, load_case: str | None
+) -> System:
+    """The system that FILE names, with parameters set."""
+    name, _, part = file.partition(":")
+    if name == TRIPOD:
+        from trunnion.published.double_tripod import DoubleTripod
+
+        _only_for_lines(speed, load_case)
+        return _with(DoubleTripod().system(part or "input"), parameters)
+    from trunnion.systems.reference import SYSTEMS
+
+    if file in SYSTEMS:
+        _only_for_lines(speed, load_case)
+        return _with(SYSTEMS[file](), parameters)
+    from trunnion.analyses.chaos_subject import as_system
+
+    line = read_line(file, load_case)
+    return _with(as_system(line, read_speed(speed, read_unit(line, unit))), parameters)
+
+
+def _with(system: System, parameters: list[str] | None) -> System:
+    values = {}
+    for text in parameters or []:
+        key, _, value = text.partition("=")
+        try:
+            values[key.strip()] = float(value)
+        except ValueError:
+            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write damping_ratio=0.01") from None
+    return system.with_parameters(values)
+
+
+def _only_for_lines(speed: str | None, load_case: str | None) -> None:
+    for key, value in (("--speed", speed), ("--load-case", load_case)):
+        if value is not None:
+            raise InputError("belongs to drivelines", key=key, value=value, remedy="use --set for a system")
+
+
+def _section(text: str | None) -> Event | None:
+    if text is None:
+        return None
+    from trunnion.systems.events import Event
+
+    state, _, rest = text.partition("=")
+    level, _, sign = rest.partition(":")
+    try:
+        if sign not in ("", "+", "-"):
+            raise ValueError
+        return Event(state.strip(), float(level), direction=-1 if sign == "-" else 1)
+    except ValueError:
+        raise InputError("is not STATE=LEVEL", key="--section", value=text, remedy='write "z=27" or "z=27:-"') from None
+
+
+def _sweep(text: str | None) -> tuple[str, float, float, int] | bool:
+    if text is None:
+        return True
+    parts = text.rsplit(":", 3)
+    try:
+        return parts[0], float(parts[1]), float(parts[2]), int(parts[3])
+    except (ValueError, IndexError):
+        raise InputError(
+            "is not NAME:LOW:HIGH:N", key="--sweep", value=text, remedy='write "frequency:0.9:1.1:25"'
+        ) from None
+
+
+def _stem(file: str) -> str:
+    return file_stem(file.replace(":", "-"))
+
+
+def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
+    """The files asked for, or a picture and the data in the default folder."""
+    from trunnion.results.files import folder_written_whole
+
+    for path in to or []:
+        if path.suffix.lower() == ".csv":
+            raise InputError(
+                "is not written by this command",
+                key="output",
+                value=str(path),
+                remedy="end it in .png, .pdf, .svg or .nc",
+            )
+    if to:
+        return [_write(path, data, draw) for path in to]
+    with folder_written_whole(DEFAULT_FOLDER) as temporary:
+        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
+        for name in names:
+            _write(name, data, draw)
+    return [DEFAULT_FOLDER / name.name for name in names]

@@ -1,0 +1,273 @@
+"""A pair of gears as it is: elastic, with backlash, with teeth that are not perfect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from math import cos
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from trunnion.driveline.elements import Doubt, Element, Teeth
+from trunnion.driveline.quantities import (
+    ANGLE,
+    DEGREE,
+    LENGTH,
+    RATIO,
+    Angle,
+    Dimensionless,
+    Kind,
+    Length,
+    MeshDamping,
+    MeshStiffness,
+)
+from trunnion.driveline.refusals import refuse
+from trunnion.errors import InputError
+
+DampingLaw = Literal["always", "in contact", "never pulling"]
+LAWS = ("always", "in contact", "never pulling")
+STEEPEST = 45 * DEGREE
+"""Pressure angles are less than this."""
+
+
+class _MeshHarmonic(BaseModel):
+    """A harmonic of the mesh: amplitude · cos(order · mesh phase + phase); the phase grows by a turn per tooth."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = ""
+    example: ClassVar[str] = ""
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element=self.what, example=self.example) from None
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        order = self.order  # type: ignore[attr-defined]
+        if order < 1 or order != int(order):
+            raise InputError("must be a whole number from 1", key="order", value=order, remedy="1 is once per tooth")
+        return self
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults."""
+        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
+
+
+class TransmissionError(_MeshHarmonic):
+    """One harmonic of the transmission error e along the line of action.
+
+    Parameters
+    ----------
+    amplitude : [m].
+    order : cycles per tooth.
+    phase : at zero rotation [rad].
+    """
+
+    what: ClassVar[str] = "transmission_error"
+    example: ClassVar[str] = 'amplitude = "10 um"'
+    amplitude: Length = Field(description="along the line of action")
+    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
+    phase: Angle = Field(default=0.0, description="at zero rotation")
+
+
+class StiffnessVariation(_MeshHarmonic):
+    """One harmonic of the mesh stiffness over its mean.
+
+    Parameters
+    ----------
+    share : amplitude over the mean stiffness.
+    order : cycles per tooth.
+    phase : at zero rotation [rad].
+    """
+
+    what: ClassVar[str] = "stiffness_variation"
+    example: ClassVar[str] = "share = 0.1"
+    share: Dimensionless = Field(description="amplitude over the mean stiffness")
+    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
+    phase: Angle = Field(default=0.0, description="at zero rotation")
+
+
+MESH_KINDS: dict[str, dict[str, Kind]] = {
+    "transmission_error": {"amplitude": LENGTH, "order": RATIO, "phase": ANGLE},
+    "stiffness_variation": {"share": RATIO, "order": RATIO, "phase": ANGLE},
+}
+"""Physical kinds of what varies with the mesh phase."""
+
+
+def _listed(made: type[_MeshHarmonic]) -> Callable[[object], tuple[_MeshHarmonic, ...]]:
+    def check(value: object) -> tuple[_MeshHarmonic, ...]:
+        remedy = f"write {made.what} = [{{ {made.example} }}]"
+        if isinstance(value, str | dict | _MeshHarmonic) or not isinstance(value, Iterable):
+            raise InputError("is not a list of harmonics", value=value, remedy=remedy)
+        found = []
+        for place, item in enumerate(value, start=1):
+            if not isinstance(item, made | dict):
+                raise InputError("is not a harmonic", key=f"{made.what} {place}", value=item, remedy=remedy)
+            try:
+                found.append(made(**item) if isinstance(item, dict) else item)
+            except InputError as error:
+                key = f"{made.what} {place} {error.key}".strip()
+                raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+        return tuple(found)
+
+    return check
+
+
+class GearPair(Element):
+    """Two gears in mesh: elastic along the line of action, with backlash and imperfect teeth.
+
+    The gears' own inertia is a Disk on each side; the rotation of both sides is positive in its own sense, as with a
+    ``Ratio`` of tooth numbers, which it becomes as the mesh stiffness grows. With u = r₁φ₁ − r₂φ₂ − e the mesh pushes
+    with k f(u) + c u′ along the line of action, where f rises with slope 1 outside ± backlash/2 and with
+    ``stiffness_ratio`` inside.
+
+    Parameters
+    ----------
+    teeth_in, teeth_out, module : tooth numbers and module [m], with
+    pressure_angle : [rad], 20° by default; or else
+    base_radius_in, base_radius_out : radii of the base circles [m].
+    mesh_stiffness : k along the line of action [N/m].
+    mesh_damping : c [N s/m].
+    damping_law : "always"; "in contact", not inside the backlash; or "never pulling", in contact and so that the teeth
+        neither pull nor push with more than twice the elastic force.
+    backlash : play along the line of action [m]; or else
+    angular_backlash : play of the output gear with the input gear held [rad].
+    stiffness_ratio : slope within the backlash over that outside, 0 (free play) to 1.
+    transmission_error, stiffness_variation : harmonics in the mesh phase, see ``TransmissionError`` and
+        ``StiffnessVariation``; they take tooth numbers. They follow the mean rotation of the gears.
+
+    Linear analyses take the slope that the static load puts the mesh on, and nothing that varies with the mesh phase.
+    """
+
+    example: ClassVar[str] = 'teeth_in = 25, teeth_out = 40, module = "3 mm" and mesh_stiffness = "2e8 N/m"'
+
+    teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
+    teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
+    module: Length | None = Field(default=None, description="pitch diameter over teeth")
+    pressure_angle: Angle = Field(default=20 * DEGREE, description="of the teeth; 20 deg by default")
+    base_radius_in: Length | None = Field(default=None, description="base circle of the driving gear, instead of teeth")
+    base_radius_out: Length | None = Field(default=None, description="base circle of the driven gear, instead of teeth")
+    mesh_stiffness: MeshStiffness = Field(description="along the line of action")
+    mesh_damping: MeshDamping = Field(default=0.0, description="along the line of action")
+    damping_law: DampingLaw = Field(
+        default="always", description='when it damps: "always", "in contact" or "never pulling"'
+    )
+    backlash: Length = Field(default=0.0, description="play along the line of action")
+    angular_backlash: Angle = Field(default=0.0, description="play of the driven gear instead, the driving one held")
+    stiffness_ratio: Dimensionless = Field(
+        default=0.0, description="slope inside the backlash over that outside; 0: free play, as by default"
+    )
+    transmission_error: Annotated[tuple[TransmissionError, ...], BeforeValidator(_listed(TransmissionError))] = Field(
+        default=(), description="harmonics of the transmission error in the mesh phase"
+    )
+    stiffness_variation: Annotated[tuple[StiffnessVariation, ...], BeforeValidator(_listed(StiffnessVariation))] = (
+        Field(default=(), description="harmonics of the mesh stiffness over its mean")
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _law_in_words(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "damping_law" in data and data["damping_law"] not in LAWS:
+            words = ", ".join(f'"{law}"' for law in LAWS)
+            raise InputError("is unknown", key="damping_law", value=data["damping_law"], remedy=f"write one of {words}")
+        return data
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        self._check_size()
+        self._check_law()
+        phased = "transmission_error" if self.transmission_error else "stiffness_variation"
+        if (self.transmission_error or self.stiffness_variation) and self.teeth_in is None:
+            remedy = "give teeth_in, teeth_out and module instead of base radii"
+            raise InputError("has no mesh phase without tooth numbers", key=phased, remedy=remedy)
+        depth = sum(abs(v.share) for v in self.stiffness_variation)
+        if depth >= 1:
+            remedy = "let the shares add up to less than 1"
+            raise InputError("lets the stiffness vanish", key="stiffness_variation", value=depth, remedy=remedy)
+        return self
+
+    def _check_size(self) -> None:
+        toothed = ("teeth_in", "teeth_out", "module")
+        plain = ("base_radius_in", "base_radius_out")
+        given = [key for key in (*toothed, *plain) if getattr(self, key) is not None]
+        chosen = toothed if any(key in toothed for key in given) else plain
+        other = next((key for key in given if key not in chosen), None)
+        if other is not None:
+            raise InputError(f"stands beside {given[0]}", key=other, remedy=f"write {', '.join(toothed)}, or the radii")
+        missing = next((key for key in chosen if getattr(self, key) is None), None)
+        if missing is not None:
+            missing = missing if given else "teeth_in"
+            raise InputError("is missing", key=missing, remedy=f"write {self.example}")
+        for key in ("module", *plain, "mesh_stiffness"):
+            value = getattr(self, key)
+            if value is not None and not value > 0:
+                raise InputError("must be positive", key=key, value=value, remedy=self._advice(key))
+        if not 0 <= self.pressure_angle < STEEPEST:
+            remedy = 'write "20 deg", say'
+            raise InputError("must lie between 0 and 45 deg", key="pressure_angle", value=self.pressure_angle, remedy=remedy)
+
+    def _check_law(self) -> None:
+        for key in ("backlash", "angular_backlash", "mesh_damping"):
+            value = getattr(self, key)
+            if value < 0:
+                raise InputError("must not be negative", key=key, value=value, remedy="write 0 for none")
+        if self.backlash and self.angular_backlash:
+            raise InputError(
+                "stands beside backlash", key="angular_backlash", value=self.angular_backlash, remedy="leave out one"
+            )
+        if not 0 <= self.stiffness_ratio <= 1:
+            remedy = "0 is free play, 1 no backlash at all"
+            raise InputError("must lie between 0 and 1", key="stiffness_ratio", value=self.stiffness_ratio, remedy=remedy)
+        if self.damping_law == "never pulling" and (self.stiffness_ratio or self.stiffness_variation):
+            key = "stiffness_ratio" if self.stiffness_ratio else "stiffness_variation"
+            remedy = 'write damping_law = "in contact" or "always"'
+            raise InputError("does not go with damping_law = never pulling", key=key, remedy=remedy)
+        if self.damping_law == "never pulling" and not self.total_backlash:
+            raise InputError(
+                "needs a backlash", key="damping_law", value=self.damping_law, remedy='give one, or write "always"'
+            )
+
+    def _advice(self, key: str) -> str:
+        kind = self.quantity_of(key)
+        return f'write for example "{kind.example}"' if kind else ""
+
+    def doubts(self) -> Iterator[Doubt]:
+        if self.stiffness_ratio and not self.total_backlash:
+            yield ("stiffness_ratio", "has no backlash to act in", "give backlash or angular_backlash")
+
+    @property
+    def fraction(self) -> Fraction:
+        """Input speed over output speed, exactly: from the tooth numbers, or the decimals of the radii."""
+        if self.teeth_in is not None and self.teeth_out is not None:
+            return Fraction(self.teeth_out, self.teeth_in)
+        return Fraction(str(self.base_radius_out)) / Fraction(str(self.base_radius_in))
+
+    @property
+    def speed_ratio(self) -> float:
+        """Input speed over output speed."""
+        return float(self.fraction)
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Base radii r₁ and r₂ [m]."""
+        if self.teeth_in is not None and self.teeth_out is not None and self.module is not None:
+            over = self.module * cos(self.pressure_angle) / 2
+            return self.teeth_in * over, self.teeth_out * over
+        assert self.base_radius_in is not None and self.base_radius_out is not None
+        return self.base_radius_in, self.base_radius_out
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Numbers that do nothing here and are no parameters."""
+        if not self.total_backlash:
+            return "backlash", "angular_backlash", "stiffness_ratio"
+        return ("angular_backlash",) if self.backlash else ("backlash",)
+
+    @property
+    def total_backlash(self) -> float:
+        """Play along the line of action [m], however stated."""
+        return self.backlash or self.angular_backlash * self.radii[1]

@@ -1,0 +1,33 @@
+"""All kinds of element by the name that ``type`` gives them in a file."""
+
+from __future__ import annotations
+
+from trunnion.driveline.elements import (
+    ConstantSpeed,
+    Disk,
+    DoubleCardanJoint,
+    Element,
+    HookeJoint,
+    IdealJoint,
+    Ratio,
+    Shaft,
+    TripodJoint,
+)
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.stages import PiecewiseShaft
+
+KINDS: dict[str, type[Element]] = {
+    kind.__name__: kind
+    for kind in (
+        ConstantSpeed,
+        Shaft,
+        PiecewiseShaft,
+        Disk,
+        HookeJoint,
+        IdealJoint,
+        TripodJoint,
+        DoubleCardanJoint,
+        Ratio,
+        GearPair,
+    )
+}

@@ -1,0 +1,91 @@
+"""A shaft whose stiffness changes with its twist: multi-stage clutch dampers, couplings with play, stops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from trunnion.driveline.elements import Element
+from trunnion.driveline.quantities import Angle, Damping, Stiffness
+from trunnion.errors import InputError
+
+LAWS = ("always", "in contact")
+
+
+def _list(value: object) -> object:
+    if isinstance(value, str | dict) or not isinstance(value, Iterable):
+        remedy = 'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say'
+        raise InputError("is not a list of quantities", value=value, remedy=remedy)
+    return tuple(value)
+
+
+class PiecewiseShaft(Element):
+    """A shaft with a torque that rises by stages: slope by slope between breakpoints of its twist, 0 at no twist.
+
+    Parameters
+    ----------
+    breakpoints : twists at which the stiffness changes [rad], rising; the twist is positive when the output leads.
+    stiffnesses : below, between and above them [N m/rad], one more than breakpoints; 0 between is free play.
+    damping : viscous damping [N m s/rad].
+    damping_law : "always", or "in contact": not in the softest stage.
+    fork_offset : as of a ``Shaft``.
+
+    Linear analyses take the stage that the static load puts the shaft in.
+
+    >>> clutch = PiecewiseShaft.symmetric([(20.0, "4 deg"), (300.0, "12 deg"), (2000.0, None)])
+    >>> clutch.stiffnesses
+    (2000.0, 300.0, 20.0, 300.0, 2000.0)
+    """
+
+    example: ClassVar[str] = 'breakpoints = ["-4 deg", "4 deg"] and stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"]'
+
+    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(_list)] = Field(
+        description="twists at which the stiffness changes, rising"
+    )
+    stiffnesses: Annotated[tuple[Stiffness, ...], BeforeValidator(_list)] = Field(
+        description="below, between and above the breakpoints"
+    )
+    damping: Damping = Field(default=0.0, description="viscous damping")
+    damping_law: Literal["always", "in contact"] = Field(
+        default="always", description='when it damps: "always", or "in contact", not in the softest stage'
+    )
+    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+
+    @classmethod
+    def symmetric(cls, stages: Iterable[tuple[Any, Any]], **more: Any) -> PiecewiseShaft:
+        """The same in both directions, from its stages (stiffness, up to which twist), innermost first.
+
+        The twist of the last stage is ignored.
+        """
+        found = list(stages)
+        ends = cls(stiffnesses=[1.0] * len(found), breakpoints=[end for _, end in found[:-1]]).breakpoints
+        slopes = [slope for slope, _ in found]
+        both = [-e for e in reversed(ends)] + list(ends)
+        return cls(breakpoints=both, stiffnesses=[*reversed(slopes[1:]), *slopes], **more)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _law_in_words(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "damping_law" in data and data["damping_law"] not in LAWS:
+            remedy = 'write "always" or "in contact"'
+            raise InputError("is unknown", key="damping_law", value=data["damping_law"], remedy=remedy)
+        return data
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if not self.breakpoints:
+            raise InputError("is empty", key="breakpoints", value=[], remedy="write a Shaft instead")
+        if len(self.stiffnesses) != len(self.breakpoints) + 1:
+            problem = f"must be {len(self.breakpoints) + 1} quantities, one more than breakpoints"
+            raise InputError(problem, key="stiffnesses", value=list(self.stiffnesses))
+        if any(b <= a for a, b in zip(self.breakpoints, self.breakpoints[1:], strict=False)):
+            raise InputError("must rise", key="breakpoints", value=list(self.breakpoints))
+        if min(self.stiffnesses) < 0:
+            raise InputError("must not be negative", key="stiffnesses", value=min(self.stiffnesses))
+        if not max(self.stiffnesses) > 0:
+            raise InputError("are all zero", key="stiffnesses", remedy="leave the shaft out, or give a stage stiffness")
+        if self.damping < 0:
+            raise InputError("must not be negative", key="damping", value=self.damping, remedy="write 0 for none")
+        return self

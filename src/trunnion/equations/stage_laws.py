@@ -1,0 +1,120 @@
+"""Springs that are linear stage by stage, gear meshes and shafts with stages, as laws of torque over twist.
+
+A mesh of stiffness k and base radii r₁, r₂ acts like a shaft behind the rigid pair, from where a rigid mesh would hold
+the output gear to where it is: u = −r₂q, so its stiffness is k r₂², its damping c r₂² and its play ± backlash/2r₂.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.elements import Element
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+Column = Callable[[int, str], int]
+
+
+@dataclass(frozen=True)
+class StageLaw:
+    """Per case: knots (case, n) rising twists [rad]; slopes (case, n + 1) [N m/rad]; the torque at no twist is 0.
+
+    ``softest_damped`` is False where the softest stage does not damp.
+    """
+
+    name: str
+    knots: Array
+    slopes: Array
+    softest_damped: bool
+
+    @property
+    def offsets(self) -> Array:
+        """Torque = slope · twist + offset on every stage, (case, n + 1)."""
+        jumps = -np.diff(self.slopes, axis=1) * self.knots
+        running = np.concatenate([np.zeros((len(self.slopes), 1)), np.cumsum(jumps, axis=1)], axis=1)
+        middle = np.sum(self.knots < 0, axis=1)
+        return np.asarray(running - np.take_along_axis(running, middle[:, None], axis=1))
+
+    def under(self, torque: Array) -> tuple[Array, Array, Array]:
+        """Twist, slope and whether there is damping (1 or 0) under a steady ``torque`` [N m], (case,) each.
+
+        Raises
+        ------
+        InputError : no stage carries the torque, or the shaft is free there.
+        """
+        offsets = self.offsets
+        at_knots = self.slopes[:, :-1] * self.knots + offsets[:, :-1]
+        # Without torque: the stage that twist 0 is in, even where its slope is 0.
+        stage = np.where(torque == 0, np.sum(self.knots < 0, axis=1), np.sum(at_knots < torque[:, None], axis=1))
+        slope = np.take_along_axis(self.slopes, stage[:, None], axis=1)[:, 0]
+        offset = np.take_along_axis(offsets, stage[:, None], axis=1)[:, 0]
+        if np.any(slope == 0):
+            free = torque[slope == 0][0] == 0
+            raise InputError(
+                "turns freely within its play without load, so linear equations have no stiffness for it"
+                if free
+                else f"has no stage that carries its load of {float(torque[slope == 0][0]):g} N·m",
+                element=self.name,
+                remedy="give the disks load_torque, a slope inside the play, or use tn.periodic_response and "
+                "tn.simulate" if free else "raise its outermost stiffness",
+            )  # fmt: skip
+        damped = np.ones(len(stage)) if self.softest_damped else (stage != np.argmin(self.slopes, axis=1)).astype(float)
+        return (torque - offset) / slope, slope, damped
+
+
+def has_stages(element: Element) -> bool:
+    """Whether the element's spring follows a law of stages."""
+    return isinstance(element, PiecewiseShaft | GearPair)
+
+
+def stage_law(element: Element, place: int, column: Column, table: Array) -> StageLaw:
+    """The law of one element for every row of ``table`` (case, columns).
+
+    Raises
+    ------
+    InputError : breakpoints that do not rise, a slope or a backlash out of range, where parameters were varied.
+    """
+    name = element.name or f"{element.kind} (element {place + 1})"
+    if isinstance(element, PiecewiseShaft):
+        knots = np.stack(
+            [table[:, column(place, f"breakpoint {j + 1}")] for j in range(len(element.breakpoints))], axis=1
+        )
+        slopes = np.stack(
+            [table[:, column(place, f"stiffness {j + 1}")] for j in range(len(element.stiffnesses))], axis=1
+        )
+        if np.any(np.diff(knots, axis=1) <= 0):
+            raise InputError("must rise", element=name, key="breakpoints", value=knots[0].tolist())
+        if np.any(slopes < 0):
+            raise InputError("must not be negative", element=name, key="stiffnesses", value=float(slopes.min()))
+        return StageLaw(name, knots, slopes, element.damping_law == "always")
+    assert isinstance(element, GearPair)
+    out = element.radii[1]
+    k = table[:, column(place, "mesh_stiffness")] * out**2
+    if not element.total_backlash:
+        return StageLaw(name, np.zeros((len(table), 0)), k[:, None], True)
+    if element.backlash:
+        half = table[:, column(place, "backlash")] / (2 * out)
+    else:
+        half = table[:, column(place, "angular_backlash")] / 2
+    inside = table[:, column(place, "stiffness_ratio")]
+    if np.any(half <= 0):
+        remedy = "leave it out for none"
+        raise InputError("must be positive", element=name, key="backlash", value=float(2 * half.min()), remedy=remedy)
+    if np.any((inside < 0) | (inside > 1)):
+        raise InputError("must lie between 0 and 1", element=name, key="stiffness_ratio", value=float(inside[0]))
+    return StageLaw(
+        name, np.stack([-half, half], axis=1), np.stack([k, inside * k, k], axis=1), element.damping_law == "always"
+    )
+
+
+def spring_damping(element: Element, place: int, column: Column, table: Array) -> Array:
+    """Damping [N m s/rad] of a shaft or a mesh, as a law of twist rate."""
+    if isinstance(element, GearPair):
+        return np.asarray(table[:, column(place, "mesh_damping")] * element.radii[1] ** 2)
+    return np.asarray(table[:, column(place, "damping")])
