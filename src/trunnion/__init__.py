@@ -15,11 +15,15 @@ from typing import TYPE_CHECKING, Any
 from trunnion._version import __version__
 
 if TYPE_CHECKING:
+    from trunnion.analyses.averaging import averaging
     from trunnion.analyses.bending import bending_speeds
     from trunnion.analyses.bifurcation_diagram import bifurcation_diagram
     from trunnion.analyses.certify_chaos import certify_chaos
     from trunnion.analyses.chaos_zero_one import zero_one_test
+    from trunnion.analyses.describing_function import DescribingFunction
+    from trunnion.analyses.frequency_response import compare_responses, frequency_response
     from trunnion.analyses.harmonic_balance import harmonic_balance
+    from trunnion.analyses.harmonic_balance_springs import balance_springs
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -29,10 +33,14 @@ if TYPE_CHECKING:
     )
     from trunnion.analyses.lyapunov_map import lyapunov_map, lyapunov_sweep
     from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum
+    from trunnion.analyses.multiple_scales import multiple_scales
     from trunnion.analyses.natural_frequencies import natural_frequencies
     from trunnion.analyses.order_map import order_map
     from trunnion.analyses.periodic_branch import periodic_branch
     from trunnion.analyses.periodic_response import periodic_response
+    from trunnion.analyses.piecewise_branch import piecewise_branch
+    from trunnion.analyses.piecewise_orbit import piecewise_orbit
+    from trunnion.analyses.piecewise_sweep import basins, rattle_index, sweep
     from trunnion.analyses.poincare_map import poincare_map
     from trunnion.analyses.resonance_speeds import resonance_speeds
     from trunnion.analyses.run_up import run_up, safe_accelerations
@@ -47,12 +55,16 @@ if TYPE_CHECKING:
         DoubleCardanJoint,
         Driveline,
         Excitation,
+        GearPair,
         HookeJoint,
         IdealJoint,
         LoadCase,
         Operation,
+        PiecewiseShaft,
         Ratio,
         Shaft,
+        StiffnessVariation,
+        TransmissionError,
         TripodJoint,
         deg,
         dump,
@@ -65,6 +77,7 @@ if TYPE_CHECKING:
     from trunnion.driveline.cardan_angles import cardan_line
     from trunnion.driveline.layout import combined_angle, layout
     from trunnion.driveline.parameters import Parameter, Term, pack
+    from trunnion.equations.exact_oscillator import exact_oscillator
     from trunnion.equations.speed_profile import SpeedProfile
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.plots.layout import sketch
@@ -73,10 +86,13 @@ if TYPE_CHECKING:
     from trunnion.reproduction import reproduce
     from trunnion.systems.events import Event
     from trunnion.systems.family import PeriodicLinearFamily
+    from trunnion.systems.gear_pair import base_radius, gear_pair
     from trunnion.systems.maps import SectionMap, StroboscopicMap
     from trunnion.systems.periodic_linear import PeriodicLinearSystem
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.reference import reference_system
     from trunnion.systems.regimes import Regimes, Switch
+    from trunnion.systems.second_order import SecondOrder, Spring, backlash_spring, cubic_spring
     from trunnion.systems.system import System
 
 _HOME = {
@@ -89,6 +105,10 @@ _HOME = {
     "TripodJoint": "trunnion.driveline",
     "DoubleCardanJoint": "trunnion.driveline",
     "Ratio": "trunnion.driveline",
+    "GearPair": "trunnion.driveline",
+    "TransmissionError": "trunnion.driveline",
+    "StiffnessVariation": "trunnion.driveline",
+    "PiecewiseShaft": "trunnion.driveline",
     "Excitation": "trunnion.driveline",
     "Driveline": "trunnion.driveline",
     "Operation": "trunnion.driveline",
@@ -150,6 +170,26 @@ _HOME = {
     "bifurcation_diagram": "trunnion.analyses.bifurcation_diagram",
     "zero_one_test": "trunnion.analyses.chaos_zero_one",
     "certify_chaos": "trunnion.analyses.certify_chaos",
+    # backlash
+    "PiecewiseOscillator": "trunnion.systems.piecewise_oscillator",
+    "SecondOrder": "trunnion.systems.second_order",
+    "Spring": "trunnion.systems.second_order",
+    "backlash_spring": "trunnion.systems.second_order",
+    "cubic_spring": "trunnion.systems.second_order",
+    "balance_springs": "trunnion.analyses.harmonic_balance_springs",
+    "gear_pair": "trunnion.systems.gear_pair",
+    "exact_oscillator": "trunnion.equations.exact_oscillator",
+    "base_radius": "trunnion.systems.gear_pair",
+    "frequency_response": "trunnion.analyses.frequency_response",
+    "compare_responses": "trunnion.analyses.frequency_response",
+    "piecewise_orbit": "trunnion.analyses.piecewise_orbit",
+    "piecewise_branch": "trunnion.analyses.piecewise_branch",
+    "sweep": "trunnion.analyses.piecewise_sweep",
+    "basins": "trunnion.analyses.piecewise_sweep",
+    "rattle_index": "trunnion.analyses.piecewise_sweep",
+    "multiple_scales": "trunnion.analyses.multiple_scales",
+    "averaging": "trunnion.analyses.averaging",
+    "DescribingFunction": "trunnion.analyses.describing_function",
     # hand on
     "report": "trunnion.reporting",
     "reproduce": "trunnion.reproduction",

@@ -180,7 +180,7 @@ def test_bad_element_and_phase() -> None:
 
 @pytest.fixture(scope="module")
 def made() -> Reproduction:
-    return tn.reproduce("double-tripod", points=50)
+    return tn.reproduce("double-tripod", points=60)
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from known_motions import DEAD_ZONE_FOLDS, DEAD_ZONE_GRAZING, DUFFING_FOLDS, DUFFING_LOWER, DUFFING_UPPER
-from lines import two_shafts
+from jointed_lines import two_shafts
 
 import trunnion as tn
 from trunnion.results.verdict import Verdict

@@ -13,7 +13,7 @@ from known_motions import (
     DUFFING_UPPER,
     DUFFING_UPPER_LARGEST,
 )
-from lines import two_shafts
+from jointed_lines import two_shafts
 
 import trunnion as tn
 from trunnion.errors import InputError

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from lines import three_shafts, two_shafts
+from jointed_lines import three_shafts, two_shafts
 from oracles.random_lines import random_line
 
 import trunnion as tn

@@ -15,7 +15,7 @@ from known_motions import (
     DUFFING_UPPER,
     DUFFING_UPPER_LARGEST,
 )
-from lines import three_shafts, two_shafts
+from jointed_lines import three_shafts, two_shafts
 
 import trunnion as tn
 from trunnion.results.verdict import Verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from lines import two_shafts
+from jointed_lines import two_shafts
 
 import trunnion as tn
 from trunnion.analyses.order_map import times_at_angles

@@ -11,8 +11,8 @@ from known_motions import DEAD_ZONE_FOLDS, DUFFING_FOLDS
 
 import trunnion as tn
 from trunnion.analyses.frequency_response import compare_responses, frequency_response
-from trunnion.analyses.piecewise_orbit import piecewise_orbit
 from trunnion.analyses.harmonic_balance import harmonic_balance
+from trunnion.analyses.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -119,7 +119,8 @@ def test_pictures_draw_what_is_there() -> None:
         (gear_pair(), {"harmonic": 3}, "harmonic"),
         (tn.reference_system("duffing"), {"method": "averaging"}, "is no method for this"),
         (tn.reference_system("lorenz"), {}, "name the one that is the frequency"),
-        (gear_pair().but(damping_law="in contact"), {"method": "harmonic balance"}, "is no symmetric gap"),
+        (gear_pair().but(damping_law="in contact"), {"method": "harmonic balance"}, "is no spring and no constant"),
+        (gear_pair(), {"method": "harmonic balance", "harmonics": 0}, "must be 1 or more"),
     ],
 )
 def test_refusals(system: Any, change: dict[str, Any], words: str) -> None:

@@ -30,8 +30,11 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 @pytest.mark.parametrize(
-    ("c", "s"), [(0.0, 0.0), (0.3, 0.0), (40.0, 0.0), (0.1, 1.0), (2.0, 1.0), (2.0 + 1e-9, 1.0), (60.0, 1.0), (0.0, 4.0),
-                 (0.2, 1e-9), (1e-9, 1e-9)]
+    ("c", "s"),
+    [
+        (0.0, 0.0), (0.3, 0.0), (40.0, 0.0), (0.1, 1.0), (2.0, 1.0), (2.0 + 1e-9, 1.0), (60.0, 1.0), (0.0, 4.0),
+        (0.2, 1e-9), (1e-9, 1e-9),
+    ],
 )  # fmt: skip
 @pytest.mark.parametrize("t", [1e-6, 0.3, 1.0, 7.0])
 def test_one_piece_is_its_matrix_exponential(c: float, s: float, t: float) -> None:
@@ -75,6 +78,7 @@ def test_damping_in_contact_only_against_scipy() -> None:
         ends = [1.0, -1.0] if side == 0 else [side]
         events = []
         for b in ends:
+
             def event(t: float, y: Any, side: float, b: float = b) -> float:
                 return y[0] - b
 
@@ -149,6 +153,9 @@ def test_dead_zone_branch_folds_and_grazing() -> None:
     grazing = [p.parameter for p in branch.special if p.kind == "grazing"]
     assert grazing == pytest.approx(DEAD_ZONE_GRAZING, abs=6e-9)
     assert branch.outcome.ok
+    point = int(np.argmin(np.abs(branch.parameter - 0.65)))
+    there = piecewise_orbit(dead_zone(float(branch.parameter[point])), branch.start[point])
+    assert branch.amplitude[point, 0] == pytest.approx(abs(there.harmonics(1)[1]), abs=1e-9)
     unstable = branch.at(0.6)[1]
     assert unstable[1] is Verdict.UNSTABLE
 
@@ -170,6 +177,14 @@ def test_subharmonic_after_the_flip() -> None:
     assert np.abs(move(o.regimes, o.coefficients, 0.43, double.start, 0.0, o.period).state - double.start).max() > 1e-3
     if simple.outcome.ok:
         assert simple.verdict is Verdict.UNSTABLE and abs(simple.multipliers[0] + 1) < 0.9
+
+
+def test_a_closed_branch_is_walked_once() -> None:
+    double = piecewise_orbit(gear_pair(0.05, 0.43), periods=2)
+    loop = piecewise_branch(gear_pair(0.05), 0.38, 0.49, begin=0.43, start=double.start, periods=2)
+    assert str(loop.outcome) == "the branch closes on itself"
+    turns = [p.parameter for p in loop.special if p.kind == "fold"]
+    assert min(turns) == pytest.approx(0.408230137, abs=1e-6) and max(turns) < 0.4633
 
 
 def test_no_gap_is_the_linear_oscillator() -> None:

@@ -191,14 +191,19 @@ def follow_both_ways(
 ) -> tuple[list[tuple[CurvePoint, str]], Outcome]:
     """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome."""
     begin = float(first[-1])
-    curves = [
-        follow(
-            problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction, first_step=STEP,
-            largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points, tolerance=tolerance,
-        )
-        for direction in (-1.0, 1.0)
-        if (begin > low if direction < 0 else begin < high)
-    ]  # fmt: skip
+    curves: list[Curve] = []
+    for direction in (-1.0, 1.0):
+        if begin <= low if direction < 0 else begin >= high:
+            continue
+        curves.append(
+            follow(
+                problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
+                first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
+                tolerance=tolerance,
+            )
+        )  # fmt: skip
+        if curves[-1].ending is Ending.CLOSED:
+            break  # the other way is the same way round
     outcomes = [_ending(problem, curve) for curve in curves]
     # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
     walks = [_special_points(problem, curve) for curve in curves]

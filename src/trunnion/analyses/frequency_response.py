@@ -1,11 +1,11 @@
 """The frequency response of an oscillator by a method of choice, or by several to see which to trust.
 
-    exact                 continuation of the exact piecewise motion; the reference of the others
-    harmonic balance      Fourier series, followed by continuation; any system, any number of unknowns
-    describing function   averaging of the exact piecewise force with its mean: one harmonic
-    averaging             first order about a cubic fit
-    multiple scales       first order about a cubic fit
-    sweep up, sweep down  settled motion step by step, as a bench would find it
+exact                 continuation of the exact piecewise motion; the reference of the others
+harmonic balance      Fourier series, followed by continuation; any system, any number of unknowns
+describing function   averaging of the exact piecewise force with its mean: one harmonic
+averaging             first order about a cubic fit
+multiple scales       first order about a cubic fit
+sweep up, sweep down  settled motion step by step, as a bench would find it
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from trunnion.analyses.averaging import averaging
 from trunnion.analyses.branch import PeriodicBranch
 from trunnion.analyses.describing_function import DescribingFunction
 from trunnion.analyses.harmonic_balance import harmonic_balance
+from trunnion.analyses.harmonic_balance_springs import balance_springs
 from trunnion.analyses.multiple_scales import multiple_scales
 from trunnion.analyses.periodic_branch import periodic_branch
 from trunnion.analyses.piecewise_branch import piecewise_branch
@@ -33,6 +34,7 @@ from trunnion.errors import InputError
 from trunnion.results.outcome import Outcome
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.systems.second_order import SecondOrder
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
@@ -50,7 +52,7 @@ METHODS = (
     "sweep down",
 )
 OF_SYSTEMS = ("harmonic balance", "shooting")
-BALANCED = 40
+BALANCED = 20
 """Harmonics of a piecewise oscillator where none are asked for: folds to 1e-7."""
 SWEPT = 101
 
@@ -163,13 +165,15 @@ class ResponseComparison:
     def __str__(self) -> str:
         rows = self.table()
         widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-        return "\n".join("  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows)
+        return "\n".join(
+            "  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows
+        )
 
     __repr__ = __str__
 
 
 def frequency_response(
-    system: PiecewiseOscillator | System | Driveline,
+    system: PiecewiseOscillator | SecondOrder | System | Driveline,
     low: float,
     high: float,
     *,
@@ -181,8 +185,8 @@ def frequency_response(
 
     Parameters
     ----------
-    system : a piecewise oscillator; or a system forced at its parameter ``frequency``, or a driveline over its input
-        speed, of which the first curve is taken.
+    system : a piecewise oscillator; a ``SecondOrder`` system, by harmonic balance; a system forced at its parameter
+        ``frequency``; or a driveline over its input speed. Of the last three the first curve is taken.
     low, high : [rad/s].
     method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
         "shooting" for the others.
@@ -195,8 +199,9 @@ def frequency_response(
     ------
     InputError : an unknown method or option, or what the method itself refuses.
     """
-    piecewise = isinstance(system, PiecewiseOscillator)
-    known = METHODS if piecewise else OF_SYSTEMS
+    known: tuple[str, ...] = METHODS if isinstance(system, PiecewiseOscillator) else OF_SYSTEMS
+    if isinstance(system, SecondOrder):
+        known = OF_SYSTEMS[:1]
     chosen = method or known[0]
     if chosen not in known:
         raise InputError("is no method for this", key="method", value=chosen, remedy=nearest(chosen, list(known)))
@@ -204,6 +209,8 @@ def frequency_response(
     try:
         if isinstance(system, PiecewiseOscillator):
             result = _of_oscillator(system, low, high, chosen, options)
+        elif isinstance(system, SecondOrder):
+            result = balance_springs(system, low, high, **options)
         else:
             result = _of_system(system, low, high, chosen, parameter, options)
     except TypeError as error:
@@ -233,7 +240,7 @@ def _of_oscillator(o: PiecewiseOscillator, low: float, high: float, method: str,
     if method == "exact":
         return piecewise_branch(o, low, high, **options)
     if method == "harmonic balance":
-        return harmonic_balance(o.as_system(), "frequency", low, high, **{"harmonics": BALANCED, **options})
+        return balance_springs(SecondOrder.of_piecewise(o), low, high, **{"harmonics": BALANCED, **options})
     if method == "describing function":
         return DescribingFunction(o, **options).response(low, high)
     if method in ("averaging", "multiple scales"):
@@ -272,7 +279,9 @@ def _gathered(method: str, result: Any, seconds: float) -> FrequencyResponse:
     branch: PeriodicBranch = getattr(result, "branch", result)
     between = np.array([p.parameter for p in branch.special])
     # A point where the stability changes belongs to both sides: it is drawn with the stable one.
-    stable = (branch.verdict == Verdict.STABLE) | np.isin(branch.parameter, between) & (branch.verdict != Verdict.UNSTABLE)
+    stable = (branch.verdict == Verdict.STABLE) | np.isin(branch.parameter, between) & (
+        branch.verdict != Verdict.UNSTABLE
+    )
     marks = tuple((p.kind, p.parameter, float(p.peak_to_peak[0]) / 2) for p in branch.special)
     half = branch.peak_to_peak[:, 0] / 2
     return FrequencyResponse(method, branch.parameter, half, stable, marks, branch.outcome, seconds, result)

@@ -3,7 +3,7 @@
 In the paper's letters, ü + (c/I)u̇ + λ₁u + λ₂u³ = B₀ + B₁ cos ωt with t* = t/T, u* = u/U and
 
     λ₁T² = 1                 (13, printed with λ₁²)       λ₂T²U² = ε          (14)
-    μ = cT/(2εI)             (15, ε lost in print)        ω* = ωT = 1 + εσ    (16, 34)
+    μ = cT/(2εI)             (15)                         ω* = ωT = 1 + εσ    (16, 34)
     εB₀* = B₀T²/U            (17)                         εB₁* = B₁T²/U       (18)
 
 becomes (19); with u* = A e^{iT₀} + cc the terms that would grow vanish if

@@ -133,4 +133,6 @@ class _Exact:
         found = measure(o.regimes, o.coefficients, omega, point.z[:2], self.periods)
         low, high, nan = found["low"], found["high"], np.nan
         swing, largest = np.array([high - low, nan]), np.array([max(abs(low), abs(high)), nan])
-        return swing, largest, np.array([found["mean"], nan]), self.periods * 2 * np.pi / omega
+        # At the forcing frequency, of a subharmonic motion too.
+        fundamental = float(np.hypot(found["real"], found["imaginary"]))
+        return swing, largest, fundamental * np.array([1.0, omega]), self.periods * 2 * np.pi / omega

@@ -106,8 +106,8 @@ class PiecewiseOrbit:
         if not self.outcome.ok:
             return f"no periodic motion of {self.oscillator.name}: {self.outcome}"
         return (
-            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {self.oscillator.frequency:.6g} rad/s over "
-            f"{self.periods} forcing period{'s' if self.periods > 1 else ''}: {MEANING[self.verdict]}\n"
+            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {self.oscillator.frequency:.6g} rad/s "
+            f"over {self.periods} forcing period{'s' if self.periods > 1 else ''}: {MEANING[self.verdict]}\n"
             f"  x = {self.mean:.6g} with {self.peak_to_peak:.6g} peak to peak; contact {self.contact}, "
             f"{self.impacts:g} impacts per period; {self.clearance:.2g} from grazing\n"
             f"  multipliers {self.multipliers[0]:.8g}, {self.multipliers[1]:.8g}; {self.outcome}"

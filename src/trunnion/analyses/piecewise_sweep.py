@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 JUMP, ABRUPT = 0.25, 2.0
-"""A change between neighbours is a jump if it is this share of the larger swing and so many times the changes beside."""
+"""A change between neighbours is a jump if it is this share of the larger swing and that many times those beside."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,8 @@ class Sweep:
         return (
             f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
             f"{self.frequency[0]:.6g} to {self.frequency[-1]:.6g} rad/s, {rough} without a motion of one period\n"
-            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {self.frequency[best]:.6g}; jumps: {jumps}\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {self.frequency[best]:.6g}; "
+            f"jumps: {jumps}\n"
             f"  contact: {kinds}; {self.outcome}"
         )
 
@@ -217,9 +218,7 @@ class Basins:
     __repr__ = __str__
 
 
-def basins(
-    oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST
-) -> Basins:
+def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
     """Basins of attraction at the oscillator's own frequency, from all pairs of ``position`` and ``velocity``.
 
     Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.

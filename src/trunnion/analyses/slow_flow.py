@@ -92,8 +92,9 @@ class ApproximateResponse:
     def __str__(self) -> str:
         at, size = self.peak
         return (
-            f"frequency response by {self.method}: {int(np.isfinite(self.frequency).sum())} points, {int(self.stable.sum())} stable; largest "
-            f"stable half peak-to-peak {size:.6g} at {at:.6g} rad/s\n  {self.note}\n  {self.outcome}"
+            f"frequency response by {self.method}: {int(np.isfinite(self.frequency).sum())} points, "
+            f"{int(self.stable.sum())} stable; largest stable half peak-to-peak {size:.6g} at {at:.6g} rad/s\n"
+            f"  {self.note}\n  {self.outcome}"
         )
 
     __repr__ = __str__

@@ -57,8 +57,8 @@ def _file_or_catalogue(file: str) -> Driveline:
     if file in names:
         line = catalogue(file)
         if not isinstance(line, Driveline):
-            commands = {"gear-rattle": "frequency-response, sweep"}
-            remedy = f"use it with {commands.get(file, 'lyapunov-spectrum, poincare-map, certify-chaos')} or reproduce {file}"
+            rattle, chaos = "frequency-response, sweep", "lyapunov-spectrum, poincare-map, certify-chaos"
+            remedy = f"use it with {rattle if file == 'gear-rattle' else chaos} or reproduce {file}"
             raise InputError("is no driveline but equations of motion", key="FILE", value=file, remedy=remedy)
         return line
     problem = "is neither a file nor a name of the catalogue"

@@ -17,6 +17,7 @@ from trunnion.cli import describe, study
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.motion import periodic_response, run_up, simulate
+from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
 from trunnion.errors import InputRemark, TrunnionError
 
@@ -117,6 +118,8 @@ app.command("kinetostatics")(kinetostatics)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)
 app.command("run-up")(run_up)
+app.command("frequency-response")(frequency_response)
+app.command("sweep")(sweep)
 app.command("lyapunov-spectrum")(lyapunov_spectrum)
 app.command("poincare-map")(poincare_map)
 app.command("certify-chaos")(certify_chaos)

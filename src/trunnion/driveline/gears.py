@@ -37,6 +37,8 @@ class _MeshHarmonic(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
     what: ClassVar[str] = ""
     example: ClassVar[str] = ""
+    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
+    phase: Angle = Field(default=0.0, description="at zero rotation")
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -46,9 +48,9 @@ class _MeshHarmonic(BaseModel):
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
-        order = self.order  # type: ignore[attr-defined]
-        if order < 1 or order != int(order):
-            raise InputError("must be a whole number from 1", key="order", value=order, remedy="1 is once per tooth")
+        if self.order < 1 or self.order != int(self.order):
+            remedy = "1 is once per tooth"
+            raise InputError("must be a whole number from 1", key="order", value=self.order, remedy=remedy)
         return self
 
     @property
@@ -70,8 +72,6 @@ class TransmissionError(_MeshHarmonic):
     what: ClassVar[str] = "transmission_error"
     example: ClassVar[str] = 'amplitude = "10 um"'
     amplitude: Length = Field(description="along the line of action")
-    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
-    phase: Angle = Field(default=0.0, description="at zero rotation")
 
 
 class StiffnessVariation(_MeshHarmonic):
@@ -87,8 +87,6 @@ class StiffnessVariation(_MeshHarmonic):
     what: ClassVar[str] = "stiffness_variation"
     example: ClassVar[str] = "share = 0.1"
     share: Dimensionless = Field(description="amplitude over the mean stiffness")
-    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
-    phase: Angle = Field(default=0.0, description="at zero rotation")
 
 
 MESH_KINDS: dict[str, dict[str, Kind]] = {
@@ -208,7 +206,9 @@ class GearPair(Element):
                 raise InputError("must be positive", key=key, value=value, remedy=self._advice(key))
         if not 0 <= self.pressure_angle < STEEPEST:
             remedy = 'write "20 deg", say'
-            raise InputError("must lie between 0 and 45 deg", key="pressure_angle", value=self.pressure_angle, remedy=remedy)
+            raise InputError(
+                "must lie between 0 and 45 deg", key="pressure_angle", value=self.pressure_angle, remedy=remedy
+            )
 
     def _check_law(self) -> None:
         for key in ("backlash", "angular_backlash", "mesh_damping"):
@@ -221,7 +221,9 @@ class GearPair(Element):
             )
         if not 0 <= self.stiffness_ratio <= 1:
             remedy = "0 is free play, 1 no backlash at all"
-            raise InputError("must lie between 0 and 1", key="stiffness_ratio", value=self.stiffness_ratio, remedy=remedy)
+            raise InputError(
+                "must lie between 0 and 1", key="stiffness_ratio", value=self.stiffness_ratio, remedy=remedy
+            )
         if self.damping_law == "never pulling" and (self.stiffness_ratio or self.stiffness_variation):
             key = "stiffness_ratio" if self.stiffness_ratio else "stiffness_variation"
             remedy = 'write damping_law = "in contact" or "always"'

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Element
-from trunnion.driveline.quantities import Angle, Damping, Stiffness
+from trunnion.driveline.quantities import ANGLE, Angle, Damping, Stiffness, parse
 from trunnion.errors import InputError
 
 LAWS = ("always", "in contact")
@@ -60,10 +60,12 @@ class PiecewiseShaft(Element):
         The twist of the last stage is ignored.
         """
         found = list(stages)
-        ends = cls(stiffnesses=[1.0] * len(found), breakpoints=[end for _, end in found[:-1]]).breakpoints
-        slopes = [slope for slope, _ in found]
-        both = [-e for e in reversed(ends)] + list(ends)
-        return cls(breakpoints=both, stiffnesses=[*reversed(slopes[1:]), *slopes], **more)
+        if len(found) < 2:
+            raise InputError("must be two stages or more", key="stages", value=found, remedy="write a Shaft instead")
+        ends = tuple(parse(end, ANGLE) for _, end in found[:-1])
+        slopes = tuple(slope for slope, _ in found)
+        both = (*(-e for e in reversed(ends)), *ends)
+        return cls(breakpoints=both, stiffnesses=(*reversed(slopes[1:]), *slopes), **more)
 
     @model_validator(mode="before")
     @classmethod

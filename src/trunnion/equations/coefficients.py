@@ -60,14 +60,22 @@ class Assembly:
         return table
 
     def coefficients(
-        self, table: Array, *, statically_twisted: bool = True, damped: bool = True
+        self, table: Array, *, statically_twisted: bool = True, damped: bool = True, free_play: bool = False
     ) -> LineCoefficients:
         """Evaluate the line's coefficients for each row of ``table`` (cases, columns).
 
         ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the
-        line is taken at zero twist and zero torque. ``damped=False`` leaves all damping out.
+        line is taken at zero twist and zero torque. ``damped=False`` leaves all damping out. ``free_play=True``
+        leaves a spring in its free play without stiffness, which is otherwise refused.
         """
-        return _coefficients(self, np.atleast_2d(table), statically_twisted, damped)
+        return _coefficients(self, np.atleast_2d(table), statically_twisted, damped, free_play)
+
+    def common_damping(self, table: Array, stiffness: Array) -> Array:
+        """Damping (case,) of a spring under the line's one damping ratio: 2ζk/ω."""
+        column = self.packed.column
+        given = column(-1, "damping_ratio_frequency")
+        reference = table[:, given] if given >= 0 else self.damping_reference
+        return np.asarray(2 * table[:, column(-1, "damping_ratio")] * stiffness / reference)
 
     @cached_property
     def damping_reference(self) -> float:
@@ -90,7 +98,7 @@ def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
     shaft = assembly.line.elements[element]
     column = assembly.packed.column
     if has_stages(shaft):
-        return stage_law(shaft, element, column, table).slopes.max(axis=1)
+        return stage_law(assembly.line, element, column, table).slopes.max(axis=1)
     if isinstance(shaft, Shaft) and shaft.stiffness is None:
         keys = ("outer_diameter", "inner_diameter", "length", "shear_modulus")
         return np.asarray(tube_stiffness(*(table[:, column(element, k)] for k in keys)))
@@ -100,10 +108,7 @@ def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
 def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
     column = assembly.packed.column
     if assembly.line.damping_ratio is not None:
-        ratio = table[:, column(-1, "damping_ratio")]
-        given = column(-1, "damping_ratio_frequency")
-        reference = table[:, given] if given >= 0 else assembly.damping_reference
-        return 2 * ratio * stiffness / reference
+        return assembly.common_damping(table, stiffness)
     if column(element, "loss_factor") >= 0:
         loss = table[:, column(element, "loss_factor")]
         return loss * stiffness / table[:, column(element, "loss_factor_frequency")]
@@ -175,7 +180,7 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
     return total
 
 
-def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool) -> LineCoefficients:
+def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     cases, stations = len(table), len(topo.stations)
     load = np.zeros((cases, stations))
@@ -195,10 +200,10 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool)
         ]
         stiffness[:, e], damping[:, e] = _series(k, c)
         twist[:, e] = torque[:, e] / stiffness[:, e]
-        part = assembly.line.elements[compliance.shafts[0]]
-        if has_stages(part):
-            law = stage_law(part, compliance.shafts[0], column, table)
-            at_rest, stiffness[:, e], damped_there = law.under(static[:, e])
+        first = compliance.shafts[0]
+        if has_stages(assembly.line.elements[first]):
+            law = stage_law(assembly.line, first, column, table)
+            at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
             damping[:, e] *= damped_there
             twist[:, e] = at_rest if twisted else 0.0
     shift = np.zeros((cases, stations))

@@ -26,17 +26,23 @@ from numba import carray, cfunc, njit, types
 
 _POINTER = types.CPointer(types.float64)
 _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER)
+_GUARD = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER, _POINTER)
 
 # The head of the numbers.
-UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE = range(9)
-HEAD = 9
+UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE, LAWS = range(10)
+HEAD = 10
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 INERTIA, LOAD, VISCOUS, QUADRATIC = range(10, 14)
 PER_STATION = 14
 # Per compliance.
 NEAR, FAR, NEAR_COORDINATE, FAR_COORDINATE, STIFFNESS, DAMPING = range(6)
-PER_COMPLIANCE = 6
+LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
+PER_COMPLIANCE = 11
+# A spring with stages has its law at p[LAW], else LAW is 0: per stage damping, slope, offset and two guards (a, e, h)
+# with a q + e q′ − h > 0 while the stage lasts; then ERRORS and WAVES mesh harmonics of amplitude, cycles per turn of
+# the input and phase: those of e, over the output radius, and of the stiffness.
+PER_STAGE, PER_WAVE = 9, 3
 # Per harmonic torque; order 0 means in time.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
@@ -81,6 +87,44 @@ def walk(theta, omega, d_rate, p, count, place, d, v, r, r1, r2):
         r2[s] = eta * r2[b] + 3 * slope * r[b] * r1[b] + curvature * r[b] * r[b] * r[b]
 
 
+@njit(cache=True, nogil=True)
+def mesh_error(p, q, theta, omega, alpha):
+    """Transmission error of compliance at p[q:] as an angle, its rate and its acceleration."""
+    at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE
+    e, rate, acceleration = 0.0, 0.0, 0.0
+    for i in range(int(p[q + ERRORS])):
+        size, cycles, phase = p[at + 3 * i], p[at + 3 * i + 1], p[at + 3 * i + 2]
+        c, s = size * math.cos(cycles * theta + phase), size * math.sin(cycles * theta + phase)
+        e += c
+        rate -= s * cycles * omega
+        acceleration -= c * (cycles * omega) ** 2 + s * cycles * alpha
+    return e, rate, acceleration
+
+
+@njit(cache=True, nogil=True)
+def mesh_wave(p, q, theta):
+    """Mesh stiffness over its mean."""
+    at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE + int(p[q + ERRORS]) * PER_WAVE
+    wave = 1.0
+    for i in range(int(p[q + WAVES])):
+        wave += p[at + 3 * i] * math.cos(p[at + 3 * i + 1] * theta + p[at + 3 * i + 2])
+    return wave
+
+
+@njit(cache=True, nogil=True)
+def stage_at(p, q, twist, rate):
+    """The stage whose guards are all positive, or nearest to it."""
+    best, depth = 0, -math.inf
+    for stage in range(int(p[q + STAGES])):
+        least = math.inf
+        for j in range(2):
+            g = int(p[q + LAW]) + stage * PER_STAGE + 3 + 3 * j
+            least = min(least, p[g] * twist + p[g + 1] * rate - p[g + 2])
+        if least > depth:
+            best, depth = stage, least
+    return best
+
+
 @cfunc(_RATE, cache=True)
 def line(t, y_, p_, k, regime, out_):
     """Rates of the unknowns and of k tangent vectors."""
@@ -88,8 +132,8 @@ def line(t, y_, p_, k, regime, out_):
     n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
     compliance = HEAD + count * PER_STATION
     harmonic = compliance + joined * PER_COMPLIANCE
-    scratch = harmonic + shaken * PER_HARMONIC
-    p = carray(p_, (scratch + 5 * count + 7 * n + joined,))
+    scratch = harmonic + shaken * PER_HARMONIC + int(head[LAWS])
+    p = carray(p_, (scratch + 5 * count + 7 * n + 3 * joined,))
     wide = 2 * n
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
     since = t - p[SINCE]
@@ -101,7 +145,8 @@ def line(t, y_, p_, k, regime, out_):
     rest = space[5 * count :]
     inertia, half_slope, half_bend = rest[:n], rest[n : 2 * n], rest[2 * n : 3 * n]
     torque, by_angle, by_rate = rest[3 * n : 4 * n], rest[4 * n : 5 * n], rest[5 * n : 6 * n]
-    acceleration, shaft = rest[6 * n : 7 * n], rest[7 * n :]
+    acceleration, shaft = rest[6 * n : 7 * n], rest[7 * n : 7 * n + joined]
+    stiff, damp = rest[7 * n + joined : 7 * n + 2 * joined], rest[7 * n + 2 * joined :]
     rest[: 6 * n] = 0.0
     walk(theta, omega, y, p, count, HEAD, d, v, r, r1, r2)
     for s in range(count):
@@ -138,7 +183,16 @@ def line(t, y_, p_, k, regime, out_):
     for e in range(joined):
         q = compliance + e * PER_COMPLIANCE
         near, far = int(p[q + NEAR]), int(p[q + FAR])
-        shaft[e] = p[q + STIFFNESS] * (d[far] - d[near]) + p[q + DAMPING] * (v[far] - v[near])
+        stiff[e], damp[e] = p[q + STIFFNESS], p[q + DAMPING]
+        if p[q + LAW] == 0.0:
+            shaft[e] = stiff[e] * (d[far] - d[near]) + damp[e] * (v[far] - v[near])
+        else:
+            stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
+            error, rate, _ = mesh_error(p, q, theta, omega, alpha)
+            wave = mesh_wave(p, q, theta)
+            damp[e], stiff[e] = p[stage], wave * p[stage + 1]
+            shaft[e] = stiff[e] * (d[far] - d[near] + error) + wave * p[stage + 2]
+            shaft[e] += damp[e] * (v[far] - v[near] + rate)
         i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
         if j >= 0:
             torque[j] -= shaft[e]
@@ -170,7 +224,7 @@ def line(t, y_, p_, k, regime, out_):
                 reference = int(p[HEAD + near * PER_STATION + REFERENCE])
                 twist -= r[near] * w[i]
                 rate -= r1[near] * v[reference] * w[i] + r[near] * w[n + i]
-            change = p[q + STIFFNESS] * twist + p[q + DAMPING] * rate
+            change = stiff[e] * twist + damp[e] * rate
             if j >= 0:
                 o[n + j] -= change
             if i >= 0:
@@ -180,9 +234,79 @@ def line(t, y_, p_, k, regime, out_):
     return 0
 
 
+@cfunc(_GUARD, cache=True)
+def line_guards(t, x_, p_, regime, sloped, g_, slope_):
+    """Two switching functions per spring with stages, and their gradients by x and t."""
+    head = carray(p_, (HEAD,))
+    n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
+    compliance = HEAD + count * PER_STATION
+    scratch = compliance + joined * PER_COMPLIANCE + shaken * PER_HARMONIC + int(head[LAWS])
+    p = carray(p_, (scratch + 5 * count,))
+    x, g = carray(x_, (2 * n,)), carray(g_, (2 * joined,))
+    wide = 2 * n + 1
+    slope = carray(slope_, (2 * joined * wide,))
+    since = t - p[SINCE]
+    omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
+    theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
+    space = p[scratch:]
+    d, v = space[:count], space[count : 2 * count]
+    r, r1, r2 = space[2 * count : 3 * count], space[3 * count : 4 * count], space[4 * count :]
+    walk(theta, omega, x, p, count, HEAD, d, v, r, r1, r2)
+    m = 0
+    for e in range(joined):
+        q = compliance + e * PER_COMPLIANCE
+        if p[q + STAGES] < 2.0:
+            continue
+        near, far = int(p[q + NEAR]), int(p[q + FAR])
+        i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+        error, error_rate, error_acceleration = mesh_error(p, q, theta, omega, alpha)
+        twist, rate = d[far] - d[near] + error, v[far] - v[near] + error_rate
+        stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
+        for side in range(2):
+            at = stage + 3 + 3 * side
+            by_twist, by_rate = p[at], p[at + 1]
+            g[m] = by_twist * twist + by_rate * rate - p[at + 2]
+            if sloped != 0:
+                row = slope[m * wide : (m + 1) * wide]
+                row[:] = 0.0
+                reference = int(p[HEAD + near * PER_STATION + REFERENCE])
+                turning = p[HEAD + reference * PER_STATION + MEAN] * omega
+                if j >= 0:
+                    row[j] += by_twist
+                    row[n + j] += by_rate
+                if i >= 0:
+                    row[i] -= by_twist * r[near] + by_rate * r1[near] * v[reference]
+                    row[n + i] -= by_rate * r[near]
+                drift = p[HEAD + near * PER_STATION + MEAN] * omega - r[near] * turning
+                growth = p[HEAD + far * PER_STATION + MEAN] * alpha - r1[near] * turning * v[reference]
+                growth -= r[near] * p[HEAD + reference * PER_STATION + MEAN] * alpha
+                row[2 * n] = by_twist * (drift + error_rate) + by_rate * (growth + error_acceleration)
+            m += 1
+    return 0
+
+
+@njit(cache=True, nogil=True)
+def locate(t, x, p):
+    """The regime of a state: the stages of all springs in one number."""
+    twist, torque = np.empty((1, int(p[COMPLIANCES]))), np.empty((1, int(p[COMPLIANCES])))
+    rotation, stages = np.empty((1, int(p[STATIONS]))), np.zeros((1, int(p[COMPLIANCES])), dtype=np.int64)
+    look(np.array([t]), x.reshape(1, -1), p, twist, torque, rotation, stages)
+    compliance, regime = HEAD + int(p[STATIONS]) * PER_STATION, 0
+    for e in range(int(p[COMPLIANCES])):
+        if p[compliance + e * PER_COMPLIANCE + STAGES] > 0.0:
+            regime += stages[0, e] * int(p[compliance + e * PER_COMPLIANCE + STRIDE])
+    return regime
+
+
 @njit(cache=True, nogil=True)
 def observe(times, states, p, twist, torque, rotation):
     """Twist and torque (m, compliances) and deviation of every station (m, stations) along a motion."""
+    look(times, states, p, twist, torque, rotation, np.zeros(twist.shape, dtype=np.int64))
+
+
+@njit(cache=True, nogil=True)
+def look(times, states, p, twist, torque, rotation, stages):
+    """As ``observe``, and the stage of every spring (m, compliances), as its twist and rate tell."""
     count, joined = int(p[STATIONS]), int(p[COMPLIANCES])
     compliance = HEAD + count * PER_STATION
     v, r, r1, r2 = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
@@ -195,12 +319,22 @@ def observe(times, states, p, twist, torque, rotation):
             q = compliance + e * PER_COMPLIANCE
             near, far = int(p[q + NEAR]), int(p[q + FAR])
             twist[m, e] = rotation[m, far] - rotation[m, near]
-            torque[m, e] = p[q + STIFFNESS] * twist[m, e] + p[q + DAMPING] * (v[far] - v[near])
+            rate = v[far] - v[near]
+            if p[q + LAW] == 0.0:
+                torque[m, e] = p[q + STIFFNESS] * twist[m, e] + p[q + DAMPING] * rate
+                continue
+            error, error_rate, _ = mesh_error(p, q, theta, omega, p[ALPHA])
+            wave = mesh_wave(p, q, theta)
+            twist[m, e] += error
+            rate += error_rate
+            stages[m, e] = stage_at(p, q, twist[m, e], rate)
+            at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
+            torque[m, e] = wave * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
 
 
 @njit(cache=True, nogil=True)
 def energy(times, states, p, kinetic, potential):
-    """Kinetic and elastic energy (m,) along a motion."""
+    """Kinetic and elastic energy (m,) along a motion, that of springs with stages left out."""
     count, joined = int(p[STATIONS]), int(p[COMPLIANCES])
     compliance = HEAD + count * PER_STATION
     d, v = np.empty(count), np.empty(count)
@@ -216,4 +350,5 @@ def energy(times, states, p, kinetic, potential):
         for e in range(joined):
             q = compliance + e * PER_COMPLIANCE
             twist = d[int(p[q + FAR])] - d[int(p[q + NEAR])]
-            potential[m] += 0.5 * p[q + STIFFNESS] * twist * twist
+            if p[q + LAW] == 0.0:
+                potential[m] += 0.5 * p[q + STIFFNESS] * twist * twist

@@ -17,6 +17,8 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
+from trunnion.equations.line_regimes import line_regimes, mesh_rates, staged_springs
+from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link
 from trunnion.errors import InputError
 from trunnion.joints import tripod
@@ -86,6 +88,7 @@ class LineSystem:
             for harmonic in element.excitation if isinstance(element, Disk) else ():
                 if harmonic.order is not None:
                     rates.append(Fraction(str(harmonic.order)) * abs(topo.speed_ratio[stations[i]]))
+        rates += mesh_rates(self.assembly)
         if not rates:
             return Fraction(1, 2)
         base = rates[0]
@@ -112,6 +115,7 @@ class LineSystem:
             start=np.zeros(2 * n),
             scale=np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n),
             numbers_of=self._numbers,
+            regimes=line_regimes(self.assembly, kernel()),
         )
 
     def _period(self, values: Mapping[str, float]) -> float | None:
@@ -145,7 +149,8 @@ class LineSystem:
         """Whether anything depends on the input's rotation."""
         topo = self.assembly.topology
         disks = [e for e in self.assembly.line.elements if isinstance(e, Disk)]
-        return bool(topo.joints or topo.tripods) or any(h.order is not None for d in disks for h in d.excitation)
+        shaken = any(h.order is not None for d in disks for h in d.excitation)
+        return bool(topo.joints or topo.tripods or mesh_rates(self.assembly)) or shaken
 
     def _numbers(self, values: Mapping[str, float]) -> Array:
         return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))
@@ -154,7 +159,7 @@ class LineSystem:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course."""
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
-        co = assembly.coefficients(table, statically_twisted=False)
+        co = assembly.coefficients(table, statically_twisted=False, free_play=True)
         course = course or Course(float(row[0]))
         core = kernel()
         ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
@@ -199,21 +204,23 @@ class LineSystem:
                 sense = float(np.sign(mean[s]))
                 order = sense * (harmonic.order or 0.0)
                 harmonics.append([s, sense * amplitude, order, frequency, angle])
-        compliances = [
-            [
-                c.near,
-                topo.reference[c.far_group],
-                topo.coordinate[topo.group_of(c.near)],
-                topo.coordinate[c.far_group],
-                co.stiffness[0, e],
-                co.damping[0, e],
-            ]
-            for e, c in enumerate(topo.compliances)
-        ]
+        laws = staged_springs(assembly, row)
+        begin = core.HEAD + stations.size + len(topo.compliances) * core.PER_COMPLIANCE
+        begin += len(harmonics) * core.PER_HARMONIC
+        compliances = []
+        for e, c in enumerate(topo.compliances):
+            ends = [c.near, topo.reference[c.far_group]]
+            ends += [topo.coordinate[topo.group_of(c.near)], topo.coordinate[c.far_group]]
+            law = [0.0] * 5
+            if e in laws:
+                law = [begin, laws[e].stride, laws[e].stages, len(laws[e].error), len(laws[e].wave)]
+                begin += laws[e].numbers.size
+            compliances.append([*ends, co.stiffness[0, e], co.damping[0, e], *law])
         head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
-        head += [course.angle, course.speed, course.acceleration, course.since]
-        scratch = np.zeros(5 * len(stations) + 7 * topo.size + len(compliances))
-        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics), scratch]
+        law_numbers = np.concatenate([law.numbers for law in laws.values()] or [np.zeros(0)])
+        head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size]
+        scratch = np.zeros(5 * len(stations) + 7 * topo.size + 3 * len(compliances))
+        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics), law_numbers, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
 
     def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
@@ -230,6 +237,12 @@ class LineSystem:
         t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
         kinetic, potential = np.empty(len(t)), np.empty(len(t))
         kernel().energy(t, np.ascontiguousarray(x), system.numbers, kinetic, potential)
+        packed, line = self.assembly.packed, self.assembly.line
+        table = np.array([[system.parameters[label] for label in packed.labels]])
+        for e, compliance in enumerate(self.assembly.topology.compliances):
+            if has_stages(line.elements[compliance.shafts[0]]):
+                law = stage_law(line, compliance.shafts[0], packed.column, table)
+                potential += law.energy(self.observe(system, t, x).twist[:, e])
         return kinetic, potential
 
     def varied(self, parameter: str | Parameter) -> Callable[[float], System]:
@@ -252,7 +265,9 @@ class LineSystem:
     def rigid(self, theta: float) -> Array:
         """State (2n,) of the line with rigid shafts, the input standing at ``theta`` [rad]."""
         topo = self.assembly.topology
-        co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False)
+        co = self.assembly.coefficients(
+            self.assembly.table(1, self.speed), statically_twisted=False, free_play=True
+        )
         base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
         plain = base_motion(topo, _straight(co), np.array([theta]), ratio_values(topo))
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]

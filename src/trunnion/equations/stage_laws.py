@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
@@ -41,12 +42,14 @@ class StageLaw:
         middle = np.sum(self.knots < 0, axis=1)
         return np.asarray(running - np.take_along_axis(running, middle[:, None], axis=1))
 
-    def under(self, torque: Array) -> tuple[Array, Array, Array]:
+    def under(self, torque: Array, *, free: bool = False) -> tuple[Array, Array, Array]:
         """Twist, slope and whether there is damping (1 or 0) under a steady ``torque`` [N m], (case,) each.
+
+        ``free`` leaves a spring in its free play with slope 0 and no twist.
 
         Raises
         ------
-        InputError : no stage carries the torque, or the shaft is free there.
+        InputError : no stage carries the torque, or the spring is free there.
         """
         offsets = self.offsets
         at_knots = self.slopes[:, :-1] * self.knots + offsets[:, :-1]
@@ -54,18 +57,33 @@ class StageLaw:
         stage = np.where(torque == 0, np.sum(self.knots < 0, axis=1), np.sum(at_knots < torque[:, None], axis=1))
         slope = np.take_along_axis(self.slopes, stage[:, None], axis=1)[:, 0]
         offset = np.take_along_axis(offsets, stage[:, None], axis=1)[:, 0]
-        if np.any(slope == 0):
-            free = torque[slope == 0][0] == 0
-            raise InputError(
-                "turns freely within its play without load, so linear equations have no stiffness for it"
-                if free
-                else f"has no stage that carries its load of {float(torque[slope == 0][0]):g} N·m",
-                element=self.name,
-                remedy="give the disks load_torque, a slope inside the play, or use tn.periodic_response and "
-                "tn.simulate" if free else "raise its outermost stiffness",
-            )  # fmt: skip
+        if np.any(slope == 0) and not free:
+            raise self._in_play(float(torque[slope == 0][0]))
         damped = np.ones(len(stage)) if self.softest_damped else (stage != np.argmin(self.slopes, axis=1)).astype(float)
-        return (torque - offset) / slope, slope, damped
+        return np.where(slope > 0, torque - offset, 0.0) / np.where(slope > 0, slope, 1.0), slope, damped
+
+    def energy(self, twist: Array) -> Array:
+        """Elastic energy [J] at ``twist`` (times,), of the first case."""
+        knots, slopes, offsets = self.knots[0], self.slopes[0], self.offsets[0]
+        ends = np.concatenate([[-np.inf], knots, [np.inf]])
+        total = np.zeros_like(twist)
+        for low, high, slope, offset in zip(ends, ends[1:], slopes, offsets, strict=False):
+            a, b = np.clip(0.0, low, high), np.clip(twist, low, high)
+            total += slope * (b**2 - a**2) / 2 + offset * (b - a)
+        return total
+
+    def _in_play(self, torque: float) -> InputError:
+        if torque == 0:
+            return InputError(
+                "turns freely within its play without load, so linear equations have no stiffness for it",
+                element=self.name,
+                remedy="give the disks load_torque, or a slope inside the play; tn.periodic_response and tn.simulate "
+                "take it as it is",
+            )
+        return InputError(
+            f"has no stage that carries its load of {torque:g} N·m", element=self.name,
+            remedy="raise its outermost stiffness",
+        )  # fmt: skip
 
 
 def has_stages(element: Element) -> bool:
@@ -73,14 +91,14 @@ def has_stages(element: Element) -> bool:
     return isinstance(element, PiecewiseShaft | GearPair)
 
 
-def stage_law(element: Element, place: int, column: Column, table: Array) -> StageLaw:
-    """The law of one element for every row of ``table`` (case, columns).
+def stage_law(line: Driveline, place: int, column: Column, table: Array) -> StageLaw:
+    """The law of the element at ``place`` for every row of ``table`` (case, columns).
 
     Raises
     ------
     InputError : breakpoints that do not rise, a slope or a backlash out of range, where parameters were varied.
     """
-    name = element.name or f"{element.kind} (element {place + 1})"
+    element, name = line.elements[place], line.names[place]
     if isinstance(element, PiecewiseShaft):
         knots = np.stack(
             [table[:, column(place, f"breakpoint {j + 1}")] for j in range(len(element.breakpoints))], axis=1

@@ -62,12 +62,16 @@ def product_matrix(values: Array, h: int) -> Array:
     With ĝ_m the complex coefficients of g, the product's are Σ_l ĝ_{k−l} x_l: a Toeplitz matrix of ĝ_{k−l} and,
     since the coefficients at −l are conjugates, a Hankel one of ĝ_{k+l}.
     """
-    spectrum = np.fft.rfft(values)[..., : 2 * h + 1] / values.shape[-1]
+    return product_matrix_of(np.fft.rfft(values)[..., : 2 * h + 1] / values.shape[-1], h)
+
+
+def product_matrix_of(spectrum: NDArray[np.complex128], h: int) -> Array:
+    """The same from ĝ_m, m = 0 … 2h, shape (…, 2h + 1)."""
     k = np.arange(h + 1)
     apart = k[:, None] - k[None, :]
     toeplitz = np.where(apart >= 0, spectrum[..., np.abs(apart)], spectrum[..., np.abs(apart)].conj())
     hankel = spectrum[..., k[:, None] + k[None, :]]
-    out = np.empty((*values.shape[:-1], 2 * h + 1, 2 * h + 1))
+    out = np.empty((*spectrum.shape[:-1], 2 * h + 1, 2 * h + 1))
     both, difference = toeplitz + hankel, toeplitz - hankel
     out[..., : h + 1, : h + 1] = both.real
     out[..., : h + 1, h + 1 :] = difference.imag[..., :, 1:]
@@ -75,6 +79,17 @@ def product_matrix(values: Array, h: int) -> Array:
     out[..., h + 1 :, h + 1 :] = difference.real[..., 1:, 1:]
     out[..., 0, :] /= 2  # a mean is its coefficient, an amplitude twice that
     return out
+
+
+def spectrum_of_steps(ends: Array, values: Array, highest: int) -> NDArray[np.complex128]:
+    """Complex coefficients 0 … ``highest`` of a function of phase that is constant between ``ends``.
+
+    ends (pieces + 1,): rising phases [rad], the last 2π after the first; values (…, pieces).
+    """
+    m = np.arange(1, highest + 1)[:, None]
+    turns = np.exp(-1j * m * ends)
+    parts = np.concatenate([np.diff(ends)[None], (turns[:, :-1] - turns[:, 1:]) / (1j * m)]) / (2 * np.pi)
+    return np.asarray(values @ parts.T)
 
 
 def tail(rows: Array, last: int = 2) -> Array:

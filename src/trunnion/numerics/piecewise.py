@@ -17,7 +17,21 @@ from trunnion.numerics.compiled import kernel_file
 Array = NDArray[np.float64]
 MOST_EVENTS = 4096
 """Rows of the record of one call."""
-COLUMNS = ("low", "high", "mean", "impacts", "energy", "impulse", "contact", "settled", "periods", "x", "v")
+COLUMNS = (
+    "low",
+    "high",
+    "mean",
+    "impacts",
+    "energy",
+    "impulse",
+    "contact",
+    "settled",
+    "periods",
+    "real",
+    "imaginary",
+    "x",
+    "v",
+)
 
 
 class Tables(Protocol):
@@ -92,12 +106,13 @@ def move(
     record = np.empty((MOST_EVENTS, k.RECORDED))
     last, events, ended = k.advance(
         float(start), float(end), x, first, float(frequency), force, tables.pieces, tables.guards, tables.then,
-        w, record, int(extrema), np.zeros(1),
+        w, record, int(extrema), np.zeros(3),
     )  # fmt: skip
     if ended != k.DONE:
         raise TooManyEventsError(
             f"the motion crosses from piece to piece more than {MOST_EVENTS} times between t = {start:g} and {end:g} s "
-            f"(the last at {record[max(events - 1, 0), 0]:g} s, x = {x[0]:g}); ask for less time at once or raise damping"
+            f"(the last at {record[max(events - 1, 0), 0]:g} s, x = {x[0]:g}); "
+            "ask for less time at once or raise damping"
         )
     return Passage(x, first, int(last), w, record[:events].copy())
 
@@ -114,9 +129,7 @@ def states(
     out = np.empty((len(times), 2))
     out[0] = state
     for i in range(1, len(times)):
-        passage = move(
-            tables, force, frequency, out[i - 1], times[i - 1], times[i], regime=regime, tangents=False
-        )
+        passage = move(tables, force, frequency, out[i - 1], times[i - 1], times[i], regime=regime, tangents=False)
         out[i], regime = passage.state, passage.regime
     return out
 

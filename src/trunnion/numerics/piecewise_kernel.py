@@ -103,6 +103,13 @@ def forced_by_frequency(t, omega, response, slope):
 
 
 @njit(cache=True, error_model="numpy")
+def turned(x, v, a, omega, t):
+    """x e^{−iωt} and its two derivatives."""
+    turn, w = complex(math.cos(omega * t), -math.sin(omega * t)), 1j * omega
+    return x * turn, (v - w * x) * turn, (a - 2 * w * v + w * w * x) * turn
+
+
+@njit(cache=True, error_model="numpy")
 def regime_at(x, v, guards, then):
     """The regime whose guards are all positive at (x, x′), or nearest to it."""
     best, depth = 0, -np.inf
@@ -122,7 +129,8 @@ def advance(t, end, state, regime, omega, force, pieces, guards, then, tangents,
 
     pieces (regimes, 3): c, s, d; guards (regimes, most, 3): a, e, h; then (regimes, most): the next regime or −1.
     force (harmonics + 1,) complex: F₀ and p_k − i q_k. record (rows, 4) receives the events; measure > 0 also
-    records extrema and adds ∫x dt to sums[0]. Returns regime, number of events and how it ended.
+    records extrema and adds ∫x dt, ∫x cos ωt dt and −∫x sin ωt dt to sums. Returns regime, number of events and
+    how it ended.
     """
     events, n = 0, len(force)
     response, slope = np.zeros(n, dtype=np.complex128), np.zeros(n, dtype=np.complex128)
@@ -155,6 +163,12 @@ def advance(t, end, state, regime, omega, force, pieces, guards, then, tangents,
             if measure and steps > 0:
                 h = tau - last_tau
                 sums[0] += h * (0.5 * (x + last_x) + h * ((last_v - v) / 10 + h * (a + last_a) / 120))
+                # ∫x e^{−iωt} by the same rule, from both derivatives of the product.
+                q0, q1, q2 = turned(last_x, last_v, last_a, omega, t + last_tau)
+                r0, r1, r2 = turned(x, v, a, omega, t + tau)
+                part = h * (0.5 * (r0 + q0) + h * ((q1 - r1) / 10 + h * (r2 + q2) / 120))
+                sums[1] += part.real
+                sums[2] += part.imag
             last_tau, last_x, last_v, last_a = tau, x, v, a
             step = longest - tau
             if step <= 0:
@@ -237,9 +251,9 @@ def forced_total(t, omega, force):
     return total
 
 
-ROW = 11
+ROW = 13
 """Columns of a measured motion: smallest and largest x, mean, impacts, Σ½v² and Σ|v| of them, contact (1 upper,
-2 lower, 3 both), settled (1) or not, periods run, x and x′ at phase zero."""
+2 lower, 3 both), settled (1) or not, periods run, fundamental Re and Im (x = Re c e^{iωt}), x and x′ at phase zero."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -247,7 +261,7 @@ def measure(state, regime, periods, omega, force, pieces, guards, then, side, re
     """What a motion does in ``periods`` periods from phase zero; fills ``row`` (ROW,) but for its columns 7, 8."""
     length = 2 * math.pi / omega
     none = np.zeros((2, 0))
-    sums = np.zeros(1)
+    sums = np.zeros(3)
     low, high, impacts, energy, impulse, touched = state[0], state[0], 0, 0.0, 0.0, 0
     ended = DONE
     for _ in range(periods):
@@ -275,7 +289,8 @@ def measure(state, regime, periods, omega, force, pieces, guards, then, side, re
             break
     row[0], row[1], row[2] = low, high, sums[0] / (periods * length)
     row[3], row[4], row[5], row[6] = impacts / periods, energy / periods, impulse / periods, touched
-    row[9], row[10] = state[0], state[1]
+    row[9], row[10] = 2 * sums[1] / (periods * length), 2 * sums[2] / (periods * length)
+    row[11], row[12] = state[0], state[1]
     return regime, ended
 
 
@@ -284,11 +299,13 @@ def settle(state, regime, least, most, tolerance, omega, force, pieces, guards, 
     """Run at least ``least`` and at most ``most`` periods, until x and x′ at phase zero change by no more than
     ``tolerance`` (of |x| + |x′| + tolerance) three times running. Returns regime, periods run, settled, ended."""
     length = 2 * math.pi / omega
-    none, sums = np.zeros((2, 0)), np.zeros(1)
+    none, sums = np.zeros((2, 0)), np.zeros(3)
     calm = 0
     for count in range(1, most + 1):
         x, v = state[0], state[1]
-        regime, _, ended = advance(0.0, length, state, regime, omega, force, pieces, guards, then, none, record, 0, sums)
+        regime, _, ended = advance(
+            0.0, length, state, regime, omega, force, pieces, guards, then, none, record, 0, sums
+        )
         if ended != DONE:
             return regime, count, 0, ended
         if abs(state[0]) + abs(state[1]) > 1e12:
@@ -314,7 +331,16 @@ def sweep(state, omegas, least, most, tolerance, measured, force, pieces, guards
         rows[i, 7], rows[i, 8] = settled, count
         if ended == DONE:
             regime, ended = measure(
-                state, regime, 1 if settled else measured, omegas[i], force, pieces, guards, then, side, record,
+                state,
+                regime,
+                1 if settled else measured,
+                omegas[i],
+                force,
+                pieces,
+                guards,
+                then,
+                side,
+                record,
                 rows[i],
             )
         if ended != DONE:

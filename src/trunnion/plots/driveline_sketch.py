@@ -14,7 +14,9 @@ import numpy as np
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio, Shaft
+from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import DEGREE
+from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL
 
 if TYPE_CHECKING:
@@ -26,8 +28,9 @@ SLANT = 38 * DEGREE
 """Slope of the names."""
 STEEPEST = 30 * DEGREE
 """Larger bends are drawn as this."""
-LENGTH = {"Shaft": 1.25, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9}
+LENGTH = {"Shaft": 1.25, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9, "PiecewiseShaft": 1.25}
 JOINT_LENGTH = 0.9
+SHAFTS = (Shaft, PiecewiseShaft)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
@@ -141,6 +144,18 @@ def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
     _box(axes, place, 0.17 if tube else 0.08, fc=TUBE if tube else SOLID)
 
 
+def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A shaft with a spring in a window, as a clutch disc has them."""
+    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
+    middle, along, across = (place.start + place.end) / 2, _along(place.direction), _across(place.direction)
+    window = _Place(
+        place.element, place.name, middle - 0.4 * along, middle + 0.4 * along, place.direction, place.behind, place.row
+    )
+    _box(axes, window, 0.26, fc="white")
+    turns = np.linspace(-0.36, 0.36, 10)[:, None] * along
+    axes.plot(*(middle + turns + np.tile([0.14, -0.14], 5)[:, None] * across).T, color=INK, lw=1.1, zorder=4)
+
+
 def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Height by the logarithm of the inertia: drivelines span decades."""
     disk = place.element
@@ -159,7 +174,7 @@ def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
     from matplotlib.patches import Ellipse
 
     element = place.element
-    assert isinstance(element, Ratio)
+    assert isinstance(element, Ratio | GearPair)
     share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
     first = 0.8 / (1 + share)
     middle = (place.start + place.end) / 2
@@ -194,6 +209,8 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "Shaft": _shaft,
     "Disk": _disk,
     "Ratio": _ratio,
+    "GearPair": _ratio,
+    "PiecewiseShaft": _stages,
 }
 
 
@@ -222,13 +239,13 @@ def _between_joints(line: Driveline, place: int) -> bool:
         return i is not None and hasattr(line.elements[i], "angle")
 
     before, behind = line.parents[place], place
-    while before is not None and not bends(before) and not isinstance(line.elements[before], Shaft):
+    while before is not None and not bends(before) and not isinstance(line.elements[before], SHAFTS):
         before = line.parents[before]
     follow = True
     while follow:
         children = [i for i, p in enumerate(line.parents) if p == behind]
         behind = children[0] if children else -1
-        follow = behind >= 0 and not bends(behind) and not isinstance(line.elements[behind], Shaft)
+        follow = behind >= 0 and not bends(behind) and not isinstance(line.elements[behind], SHAFTS)
     return bends(before) and behind >= 0 and bends(behind)
 
 
@@ -239,16 +256,16 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
     angle, plane = (float(getattr(element, key, 0.0)) for key in ("angle", "plane"))
     if hasattr(element, "angle"):
         text = f"β {angle / DEGREE:.4g}°" + (f"\nplane {plane / DEGREE:.4g}°" if plane else "")
-    elif isinstance(element, Shaft) and (element.fork_offset or between):
+    elif isinstance(element, Shaft | PiecewiseShaft) and (element.fork_offset or between):
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
-    elif isinstance(element, Ratio):
+    elif isinstance(element, Ratio | GearPair):
         text = f"i {element.speed_ratio:.4g}"
     elif isinstance(element, Disk) and element.load_torque:
         text = f"load\n{element.load_torque:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
     middle = (place.start + place.end) / 2
-    if isinstance(element, Ratio):  # beside the upper wheel
+    if isinstance(element, Ratio | GearPair):  # beside the upper wheel
         at = place.end + np.array([0.05, 0.75])
         axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:

@@ -94,7 +94,9 @@ def _arrows(axes: Axes, response: Any) -> None:
         left = [a for shift in (side, -side) for a, ok in response.at(at + shift) if ok and abs(a - size) > 0.1 * size]
         both = [a for a in left if abs(a - size) > 0.05 * max(left)]
         if both:
-            landing = max(both, key=lambda a: abs(a - size)) if len(both) == 1 else min(both, key=lambda a: abs(a - size))
+            landing = (
+                max(both, key=lambda a: abs(a - size)) if len(both) == 1 else min(both, key=lambda a: abs(a - size))
+            )
             arrow = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0, "shrinkA": 4, "shrinkB": 2}
             axes.annotate("", (at, landing), (at, size), arrowprops=arrow)
 

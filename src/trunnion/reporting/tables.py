@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element, Shaft
-from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, shown
+from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
 from trunnion.plots.speed_frequency import crossings
 from trunnion.reporting.contents import Contents
 from trunnion.results.speeds import speed_factor
@@ -60,6 +60,9 @@ def _numbers(element: Element) -> list[str]:
         if key in ("name", "after"):
             continue
         kind = element.quantity_of(key)
+        if isinstance(value, tuple):
+            parts.append(f"{key.replace('_', ' ')} {_listed(value, kind)}")
+            continue
         text = shown(value, kind) if kind else str(value)
         parts.append(f"{key.replace('_', ' ')} {_signs(text)}")
     if isinstance(element, Shaft) and element.stiffness is None:
@@ -72,6 +75,13 @@ def _numbers(element: Element) -> list[str]:
     if isinstance(element, Disk) and element.inertia is None:
         parts.append("hence " + _signs(shown(element.moment_of_inertia, INERTIA, digits=4)))
     return parts
+
+
+def _listed(values: tuple[object, ...], kind: Kind | None) -> str:
+    """Quantities one after the other, or how many harmonics there are."""
+    if not all(isinstance(value, float) for value in values):
+        return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
+    return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))
 
 
 def _signs(text: str) -> str:

@@ -53,15 +53,16 @@ class Case:
         return int(np.sum(self.sweep.positive & (self.sweep.exponents[:, 0] > 1e-3)))
 
 
-def sweep_of(shaft: DoubleTripod, element: str, points: int, effort: int = 1) -> LyapunovSweep:
+def sweep_of(shaft: DoubleTripod, element: str, points: int, effort: int = 1, *, loaded: bool = True) -> LyapunovSweep:
     """Exponents of (29) or (30) over S4's range of frequencies, η the parameter ``excitation`` [rad/s].
 
     Half of the points are even over the range, the others close to 2Ω, where exponents split within 0.1 %.
-    ``effort`` lengthens the runs, which weak damping needs.
+    ``effort`` lengthens the runs, which weak damping needs; without load φ = 0 is the motion, however it is excited.
     """
     low, high = (2 * np.pi * f for f in RANGES[element])
     periods, transient = (effort * count for count in PERIODS[element])
     system = shaft.system(element)
+    system = system if loaded else system.but(torque_over_inertia=0.0)
     near = system.parameters["excitation"] * (1 + NEAR * np.linspace(-1, 1, points // 2 | 1) ** 3)
     values = np.unique(np.concatenate([np.linspace(low, high, max(points // 2, 2)), near]))
     turn = None if element == "input" else float(4 * np.pi / (low + high))
@@ -92,7 +93,10 @@ def cases(points: int, tell: Callable[[float], None]) -> list[Case]:
 
 def exponents_at_resonance(shaft: DoubleTripod, element: str) -> Array:
     """Exponents [1/s] of (29) or (30) at η = 2Ω, the largest first."""
-    return lyapunov_spectrum(shaft.system(element), starts=1).exponents
+    samples = 2000 if element == "input" else 20_000  # 7 s before and after: exponents 0.7 1/s apart have sorted
+    system = shaft.system(element)
+    length = samples * (system.forcing_period or 2 * np.pi / system.parameters["excitation"])
+    return lyapunov_spectrum(system, duration=length, starts=1, transient=samples).exponents
 
 
 def floquet_exponents(system: System) -> Array:

@@ -45,7 +45,17 @@ def index_figure(up: Sweep, down: Sweep) -> Figure:
     axes = new_axes(8.0, 4.4)
     for one, shape, colour in ((up, "^-", "#d55e00"), (down, "v-", "#0072b2")):
         words = "sweep up" if one.up else "sweep down"
-        axes.plot(one.frequency, one.impact_energy, shape, color=colour, ms=3.5, lw=1.0, mfc="none", label=words)
+        axes.plot(
+            one.frequency,
+            one.impact_energy,
+            shape,
+            color=colour,
+            ms=3.5,
+            lw=1.2,
+            mfc="none",
+            label=words,
+            markevery=0.02,
+        )
     axes.set_xlabel("frequency ω [rad/s]", fontsize=TEXT, color=INK)
     axes.set_ylabel("Σ I v²/2 of the impacts per period", fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0)

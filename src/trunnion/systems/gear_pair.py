@@ -7,7 +7,7 @@ u = r₁φ₁ − r₂φ₂ − e(t) and the mesh force k f(u) + c u̇:
 
 give  ü + (c/I) u̇ + (k/I) f(u) = M₁r₁/I₁ + M₂r₂/I₂ − ë,   I = I₁I₂/(I₁r₂² + I₂r₁²).
 
-Rezaee and Farshidianfar's equations (2) to (8), whose damping stands at the angles instead of their rates.
+The reduction of Rezaee and Farshidianfar, equations (2) to (8).
 """
 
 from __future__ import annotations
@@ -86,7 +86,9 @@ def gear_pair(
         return inertia * (pair[0] * r1 / i1 + pair[1] * r2 / i2)
 
     # −I ë
-    error = tuple((k, inertia * (k * frequency) ** 2 * p, inertia * (k * frequency) ** 2 * q) for k, p, q in transmission_error)
+    error = tuple(
+        (k, inertia * (k * frequency) ** 2 * p, inertia * (k * frequency) ** 2 * q) for k, p, q in transmission_error
+    )
     return PiecewiseOscillator.gap(
         gap, stiffness, inside, damping, force(torques), force(torque_amplitudes), frequency, inertia=inertia,
         harmonics=error, name=name, **more,

@@ -176,7 +176,7 @@ class PiecewiseOscillator:
     def coefficients(self) -> NDArray[np.complex128]:
         """B₀ and p_k − i q_k, all over the mass; the constant first."""
         highest = max([1, *(k for k, _, _ in self.harmonics)])
-        out = np.zeros(highest + 1, dtype=complex)
+        out: NDArray[np.complex128] = np.zeros(highest + 1, dtype=np.complex128)
         out[0], out[1] = self.mean_force, self.force
         for k, p, q in self.harmonics:
             out[k] += complex(p, -q)

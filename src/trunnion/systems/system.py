@@ -28,6 +28,10 @@ from trunnion.systems.regimes import Regimes
 from trunnion.systems.user_functions import CFunction, rate_function
 
 Array = NDArray[np.float64]
+MOST_AT_ONCE = 8
+"""Surfaces that a motion may start on together."""
+ON_SURFACE = 1e-14
+"""Relative to the terms of a guard, what counts as zero."""
 MOST_SHOWN = 8
 """Parameters that ``print`` shows."""
 Period = float | Callable[[Mapping[str, float]], float | None] | None
@@ -214,8 +218,45 @@ class System:
         return self.jacobian_times(time, state, np.eye(self.size), regime).T
 
     def regime_at(self, time: float, state: ArrayLike) -> int:
-        """The regime a motion through ``state`` is in; 0 for a smooth system."""
-        return 0 if self.regimes is None else self.regimes.at(self, float(time), self.checked(state))
+        """The regime a motion through ``state`` goes on in; 0 for a smooth system.
+
+        On a switching surface it is the regime behind it, if the motion is about to cross.
+        """
+        if self.regimes is None:
+            return 0
+        t, x = float(time), self.checked(state)
+        regime = self.regimes.at(self, t, x)
+        for _ in range(MOST_AT_ONCE):
+            then = self._crossing(t, x, regime)
+            if then < 0:
+                break
+            regime = then
+        return regime
+
+    def _crossing(self, time: float, state: Array, regime: int) -> int:
+        """The regime behind a surface that ``state`` lies on and leaves its own regime by; −1 where there is none."""
+        equations, n = self.equations, self.size
+        p, count = self.numbers.copy(), equations.transitions.shape[1]
+
+        def rates(t: float, x: Array) -> tuple[Array, Array, Array]:
+            g, slope = np.zeros(count), np.zeros(count * (n + 1))
+            if kernel().call_guard(equations.guard, t, x, p, regime, g, slope):
+                return np.full(count, np.nan), np.full(count, np.nan), np.zeros(n)
+            slopes, rate = slope.reshape(count, n + 1), self.rate_at(t, x, regime)
+            size = np.abs(slopes[:, :n]) @ np.abs(x)
+            return np.where(np.abs(g) <= ON_SURFACE * size, 0.0, g), slopes[:, :n] @ rate + slopes[:, n], rate
+
+        value, speed, rate = rates(time, state)
+        for i in np.flatnonzero(value == 0):
+            then, direction = equations.transitions[regime, i], equations.directions[regime, i]
+            going = speed[i]
+            if abs(going) <= ON_SURFACE * float(np.abs(rate).max()):
+                # At rest on the surface: what it does next.
+                ahead = 1e-6 * (self.forcing_period or 1.0)
+                going = rates(time + ahead, state + ahead * rate)[1][i]
+            if then >= 0 and (direction * going > 0 or (direction == 2 and going != 0)):
+                return int(then)
+        return -1
 
     def _evaluate(self, time: float, block: Array, regime: int) -> Array:
         flat, out = np.ascontiguousarray(block).ravel(), np.full(block.size, np.nan)

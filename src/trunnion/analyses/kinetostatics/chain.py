@@ -2,7 +2,8 @@
 
 A *step* leads from the station in front of an element to the one behind it. A *member* is everything that
 turns about one axis between two joints; its axis changes at every joint. A *train* is a run of members tied
-by joints; a Ratio ends it, because where its gears put the next axis is not part of the description.
+by joints; a Ratio ends it, because where its gears put the next axis is not part of the description. A GearPair is
+a Ratio here, rigid and in contact; a PiecewiseShaft has the stiffness torque/twist of the static load.
 """
 
 from __future__ import annotations
@@ -26,6 +27,10 @@ from trunnion.driveline.elements import (
     Shaft,
     TripodJoint,
 )
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.parameters import pack
+from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.equations.stage_laws import stage_law
 from trunnion.errors import InputError
 from trunnion.joints import double_cardan, tripod
 
@@ -127,7 +132,9 @@ def member_ratio(chain: Chain, member: int) -> float:
 def period_turns(chain: Chain) -> int:
     """Fewest whole turns of the input after which every joint is back in phase (half a turn of its shaft)."""
     fractions = {
-        n: e.fraction for n, e in zip(chain.line.names, chain.line.elements, strict=True) if isinstance(e, Ratio)
+        n: e.fraction
+        for n, e in zip(chain.line.names, chain.line.elements, strict=True)
+        if isinstance(e, Ratio | GearPair)
     }
     ratio, period = [Fraction(1)], 1
     for step in chain.steps[1:]:
@@ -186,6 +193,11 @@ class _Draft:
             )  # fmt: skip
             self.members[member].shafts.append(name)
             self.members[member].length += self.lengths.get(name, element.length or 0.0)
+        elif isinstance(element, PiecewiseShaft):
+            stiffness = _under_load(self.line, i)
+            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, stiffness=stiffness)
+            self.members[member].shafts.append(name)
+            self.members[member].length += self.lengths.get(name, 0.0)
         elif isinstance(element, Disk):
             inertia, load = element.moment_of_inertia, element.load_torque
             here = self._step(Link.RIGID, here, name, member, far_inertia=inertia, load=load)
@@ -204,7 +216,7 @@ class _Draft:
             self.members[-1].length = element.yoke_length or 0.0
             # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
             here = self._joint(Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
-        elif isinstance(element, Ratio):
+        elif isinstance(element, Ratio | GearPair):
             self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
             here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)
         elif isinstance(element, ConstantSpeed):
@@ -227,3 +239,25 @@ class _Draft:
     def _step(self, link: Link, parent: int, name: str, member: int, **numbers: float) -> int:
         self.steps.append(Step(link, parent, name, member, **numbers))
         return len(self.steps) - 1
+
+
+def _under_load(line: Driveline, place: int) -> float:
+    """Torque over twist of a shaft with stages under the static load; its stiffest stage without load."""
+    torque = 0.0
+    for i, element in enumerate(line.elements):
+        if isinstance(element, Disk):
+            torque -= element.load_torque * _ratio_between(line, place, i)
+    packed = pack(line)
+    law = stage_law(line, place, packed.column, packed.table(1))
+    twist = float(law.under(np.array([torque]), free=True)[0][0])
+    return torque / twist if twist else float(law.slopes.max())
+
+
+def _ratio_between(line: Driveline, front: int, back: int) -> float:
+    """Mean speed behind over in front, both of elements; 0 where ``back`` does not hang on ``front``."""
+    ratio, i = 1.0, line.parents[back]
+    while i is not None and i != front:
+        element = line.elements[i]
+        ratio /= abs(element.speed_ratio) if isinstance(element, Ratio | GearPair) else 1.0
+        i = line.parents[i]
+    return ratio if i == front else 0.0

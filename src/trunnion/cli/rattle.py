@@ -1,0 +1,236 @@
+"""The commands about backlash: frequency-response, sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.options import Json, file_stem
+from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+    from trunnion.systems.system import System
+
+GEARS, DEAD_ZONE = "gear-rattle", "dead-zone-oscillator"
+Subject = Annotated[
+    str,
+    typer.Argument(metavar="NAME", help="gear-rattle, dead-zone-oscillator, or another reference system."),
+]
+From = Annotated[float, typer.Option("--from", help="Lowest frequency [rad/s].")]
+To = Annotated[float, typer.Option("--to", help="Highest frequency [rad/s].")]
+Set = Annotated[
+    list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
+]
+Output = Annotated[
+    list[Path] | None,
+    typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
+]
+
+
+def frequency_response(
+    name: Subject,
+    low: From = 0.3,
+    high: To = 1.3,
+    method: Annotated[
+        list[str] | None,
+        typer.Option("--method", help="exact, harmonic balance, averaging, …; repeat it, or write all."),
+    ] = None,
+    parameters: Set = None,
+    fit_range: Annotated[
+        float | None, typer.Option("--fit-range", help="Of the cubic fit of averaging and multiple scales [x].")
+    ] = None,
+    harmonics: Annotated[int | None, typer.Option("--harmonics", help="Of harmonic balance.", min=1)] = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Frequency response with folds, jumps and stability, by one method or several.
+
+    Example: trunnion frequency-response gear-rattle --method all -o response.png
+    """
+    from trunnion.analyses.frequency_response import METHODS, ResponseComparison
+    from trunnion.analyses.frequency_response import frequency_response as compute
+
+    subject = _subject(name, parameters)
+    _check(to)
+    piecewise = not hasattr(subject, "states")
+    first = METHODS[0] if piecewise else "harmonic balance"
+    chosen = list(METHODS) if method == ["all"] and piecewise else (method or [first])
+    with output.compile_notice():
+        found = ResponseComparison(
+            {m: compute(subject, low, high, method=m, **_options(m, fit_range, harmonics)) for m in chosen}
+        )
+    for response in found.responses.values():
+        if not len(response.frequency):
+            response.outcome.require()
+    one = found.responses[chosen[0]]
+    written = _files(to, file_stem(name), "frequency-response", one.data, lambda: found.plot())
+    if as_json:
+        output.write_json("frequency-response", {"methods": _json(found), "written": [str(path) for path in written]})
+        return
+    text = str(one) if len(chosen) == 1 else f"{found}\n\n{one}"
+    _print(text, written)
+
+
+def sweep(
+    name: Subject,
+    low: From = 0.3,
+    high: To = 1.3,
+    points: Annotated[int, typer.Option("--points", help="Frequencies.", min=2, max=100_000)] = 101,
+    direction: Annotated[str, typer.Option("--direction", help="up, down or both.")] = "both",
+    parameters: Set = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.
+
+    Example: trunnion sweep gear-rattle --set mean_force=0 -o sweep.png
+    """
+    import numpy as np
+
+    from trunnion.analyses.piecewise_branch import check_range
+    from trunnion.analyses.piecewise_sweep import sweep as compute
+
+    subject: Any = _subject(name, parameters)
+    if hasattr(subject, "states"):
+        raise InputError(
+            "is not swept: it has no gap", key="NAME", value=name, remedy=f"use {GEARS} or {DEAD_ZONE}, or run-up"
+        )
+    if direction not in ("up", "down", "both"):
+        raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
+    check_range(low, high)
+    _check(to)
+    grid = np.linspace(low, high, points)
+    with output.compile_notice():
+        found = [
+            compute(subject, grid if d == "up" else grid[::-1]) for d in ("up", "down") if direction in (d, "both")
+        ]
+
+    def draw() -> Any:
+        from trunnion.plots.frequency_response import draw_sweeps
+
+        return draw_sweeps(found)
+
+    written = _files(to, file_stem(name), "sweep", _sweeps_data(found), draw)
+    if as_json:
+        content = [
+            {
+                "direction": "up" if one.up else "down",
+                "frequency": one.frequency,
+                "half_peak_to_peak": one.peak_to_peak / 2,
+                "mean": one.mean,
+                "contact": list(one.contact),
+                "impacts": one.impacts,
+                "impact_energy": one.impact_energy,
+                "settled": [bool(s) for s in one.settled],
+                "jumps": [list(jump) for jump in one.jumps],
+                "says": str(one.outcome),
+            }
+            for one in found
+        ]
+        output.write_json("sweep", {"sweeps": content, "written": [str(path) for path in written]})
+        return
+    _print("\n".join(map(str, found)), written)
+
+
+def _subject(name: str, parameters: list[str] | None) -> PiecewiseOscillator | System:
+    from trunnion.driveline.refusals import nearest
+    from trunnion.published import catalogue
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+    from trunnion.systems.reference import SYSTEMS
+
+    values = _values(parameters)
+    if name == GEARS:
+        return catalogue("gear-rattle", **values)
+    if name not in SYSTEMS:
+        known = [GEARS, *SYSTEMS]
+        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=nearest(name, known))
+    system = SYSTEMS[name]().with_parameters(values)
+    return PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system
+
+
+def _values(parameters: list[str] | None) -> dict[str, float]:
+    values = {}
+    for text in parameters or []:
+        key, _, value = text.partition("=")
+        try:
+            values[key.strip()] = float(value)
+        except ValueError:
+            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write damping=0.1") from None
+    return values
+
+
+def _options(method: str, fit_range: float | None, harmonics: int | None) -> dict[str, Any]:
+    if method in ("averaging", "multiple scales") and fit_range is not None:
+        return {"fit_range": fit_range}
+    return {"harmonics": harmonics} if method == "harmonic balance" and harmonics is not None else {}
+
+
+def _json(found: Any) -> list[dict[str, Any]]:
+    return [
+        {
+            "method": r.method,
+            "peak": {"frequency": r.peak[0], "half_peak_to_peak": r.peak[1]},
+            "frequency": r.frequency,
+            "half_peak_to_peak": r.half_peak_to_peak,
+            "stable": [bool(s) for s in r.stable],
+            "marks": [{"kind": k, "frequency": f, "half_peak_to_peak": a} for k, f, a in r.marks],
+            "says": str(r.outcome),
+        }
+        for r in found.responses.values()
+    ]
+
+
+def _sweeps_data(found: list[Any]) -> Any:
+    import xarray as xr
+
+    if len(found) == 1:
+        return found[0].data
+    parts = [one.data.sortby("frequency") for one in found]
+    return xr.concat(parts, dim="direction", combine_attrs="drop_conflicts").assign_coords(direction=["up", "down"])
+
+
+def _check(to: list[Path] | None) -> None:
+    from trunnion.plots.style import FORMATS
+
+    for path in to or []:
+        if path.suffix.removeprefix(".").lower() not in (*FORMATS, "nc"):
+            remedy = "end it in .png, .pdf, .svg or .nc"
+            raise InputError("is nothing this command writes", key="output", value=str(path), remedy=remedy)
+
+
+def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
+    from trunnion.results.files import folder_written_whole
+
+    if to:
+        return [_write(path, data, draw) for path in to]
+    with folder_written_whole(DEFAULT_FOLDER) as temporary:
+        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
+        for path in names:
+            _write(path, data, draw)
+    return [DEFAULT_FOLDER / path.name for path in names]
+
+
+def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
+    from trunnion.plots.style import save
+    from trunnion.results.files import written_whole
+
+    if path.suffix.lower() == ".nc":
+        with written_whole(path) as temporary:
+            data.to_netcdf(temporary, engine="h5netcdf")
+    else:
+        save(draw().figure.figure, path)
+    return path
+
+
+def _print(text: str, written: list[Path]) -> None:
+    from trunnion.cli.report import print_written
+
+    out = output.console()
+    out.print(text, soft_wrap=True, markup=False, highlight=False)
+    print_written(out, written)

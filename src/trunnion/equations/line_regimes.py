@@ -1,0 +1,167 @@
+"""Stages of gear meshes and of shafts with stages as regimes of a line, one number for all of them together.
+
+A spring with s stages counts them 0 … s − 1; the regime of the line is Σ stage · stride, the strides being products of
+the numbers of stages before. Each spring has two guards, which lead from the stage it is in to its neighbours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import prod
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
+from trunnion.errors import InputError
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.systems.regimes import Regimes
+from trunnion.systems.system import System
+from trunnion.systems.user_functions import CFunction
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+MOST_REGIMES = 400
+NEVER = -1e30
+"""The constant of a guard that leads nowhere, so that it never binds."""
+
+
+@dataclass(frozen=True)
+class StagedSpring:
+    """One spring's numbers as ``line_kernel`` reads them.
+
+    table (stages, 9); then (stages, 2): the next stage or −1; error, wave (harmonics, 3).
+    """
+
+    name: str
+    stride: int
+    table: Array
+    then: Integers
+    error: Array
+    wave: Array
+
+    @property
+    def stages(self) -> int:
+        """How many."""
+        return len(self.table)
+
+    @property
+    def numbers(self) -> Array:
+        """All of them in a row."""
+        return np.concatenate([self.table.ravel(), self.error.ravel(), self.wave.ravel()])
+
+
+def staged_springs(assembly: Assembly, row: Array) -> dict[int, StagedSpring]:
+    """The springs with stages by the place of their compliance, at one row of packed numbers."""
+    found, stride = {}, 1
+    for e, compliance in enumerate(assembly.topology.compliances):
+        place = compliance.shafts[0]
+        if has_stages(assembly.line.elements[place]):
+            found[e] = _spring(assembly, row, place, stride)
+            stride *= found[e].stages
+    return found
+
+
+def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSpring:
+    element, column = assembly.line.elements[place], assembly.packed.column
+    law = stage_law(assembly.line, place, column, row[None])
+    if assembly.line.damping_ratio is not None:
+        # A common ratio refers to the stiffest stage.
+        damping = float(assembly.common_damping(row[None], law.slopes.max(axis=1))[0])
+    else:
+        damping = float(spring_damping(element, place, column, row[None])[0])
+    kind = element.damping_law if law.knots.size and isinstance(element, GearPair | PiecewiseShaft) else "always"
+    name = assembly.line.names[place]
+    oscillator = PiecewiseOscillator(tuple(law.knots[0]), tuple(law.slopes[0]), damping, damping_law=kind, name=name)
+    regimes = oscillator.regimes
+    guards = np.where(regimes.then[:, :, None] >= 0, regimes.guards, np.array([0.0, 0.0, NEVER]))
+    table = np.concatenate([regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
+    error, wave = np.zeros((0, 3)), np.zeros((0, 3))
+    if isinstance(element, GearPair):
+        cycles = float(_mesh_cycles(assembly, place))
+        error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
+        error[:, 0] /= element.radii[1]
+        wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
+    return StagedSpring(name, stride, table, regimes.then, error, wave)
+
+
+def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, cycles: float) -> Array:
+    element, column = assembly.line.elements[place], assembly.packed.column
+    rows = [
+        [row[column(place, f"{key} {i} {size}")], cycles * harmonic.order, row[column(place, f"{key} {i} phase")]]
+        for i, harmonic in enumerate(getattr(element, key), start=1)
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 3)
+
+
+def _mesh_cycles(assembly: Assembly, place: int) -> Fraction:
+    """Teeth in mesh per turn of the line's input."""
+    topo, element = assembly.topology, assembly.line.elements[place]
+    assert isinstance(element, GearPair)
+    station = next(s for s, here in enumerate(topo.stations) if here.element == place)
+    return abs(topo.speed_ratio[station]) * (element.teeth_out or 0)
+
+
+def mesh_rates(assembly: Assembly) -> list[Fraction]:
+    """Cycles per turn of the input of everything that varies with a mesh phase."""
+    rates = []
+    for place, element in enumerate(assembly.line.elements):
+        if isinstance(element, GearPair):
+            orders = [h.order for h in element.transmission_error] + [h.order for h in element.stiffness_variation]
+            rates += [int(order) * _mesh_cycles(assembly, place) for order in orders]
+    return rates
+
+
+@dataclass(frozen=True)
+class LineRegimes(Regimes):
+    """Regimes of a line; transitions and directions (regimes, guards) as the integrator takes them."""
+
+    transitions: Integers | None = None
+    kernel: ModuleType | None = None
+
+    def tables(self) -> tuple[Integers, Integers]:
+        assert self.transitions is not None
+        return self.transitions, np.where(self.transitions >= 0, -1, 0).astype(np.int64)
+
+    def at(self, system: System, time: float, state: Array) -> int:
+        assert self.kernel is not None
+        return int(self.kernel.locate(float(time), np.ascontiguousarray(state, dtype=float), system.numbers))
+
+
+def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
+    """The regimes of a line; None where all springs are linear.
+
+    Raises
+    ------
+    InputError : more stages together than are told apart.
+    """
+    springs = [s for s in staged_springs(assembly, assembly.table(1)[0]).values() if s.stages > 1]
+    if not springs:
+        return None
+    count = prod(s.stages for s in springs)
+    if count > MOST_REGIMES:
+        raise InputError(
+            f"have {count} combinations of stages, more than the {MOST_REGIMES} that are told apart",
+            element=", ".join(s.name for s in springs), remedy="take some of the gaps out, or stages together",
+        )  # fmt: skip
+    transitions = np.full((count, 2 * len(springs)), -1, dtype=np.int64)
+    for regime in range(count):
+        for i, spring in enumerate(springs):
+            stage = regime // spring.stride % spring.stages
+            for side in range(2):
+                then = spring.then[stage, side]
+                if then >= 0:
+                    transitions[regime, 2 * i + side] = regime + (then - stage) * spring.stride
+    names = tuple(
+        ", ".join(f"{s.name} stage {regime // s.stride % s.stages + 1}" for s in springs) for regime in range(count)
+    )
+    guards = tuple(f"{s.name} {side} end of its stage" for s in springs for side in ("lower", "upper"))
+    compiled = kernel.line_guards
+    return LineRegimes(
+        names, guards, CFunction(compiled.address, compiled), (), lambda t, x, p: 0, None, transitions, kernel
+    )

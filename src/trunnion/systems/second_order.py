@@ -1,0 +1,121 @@
+"""Vibrating systems whose nonlinearity sits in springs: M ẍ + C ẋ + K x + Σ d f(dᵀx) = F(t), of any size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.errors import InputError
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A nonlinear spring along d: force(u) and slope(u) at elongations u = dᵀx of any shape; kinks: where the slope
+    jumps."""
+
+    direction: tuple[float, ...]
+    force: Callable[[Array], Array]
+    slope: Callable[[Array], Array]
+    kinks: tuple[float, ...] = ()
+
+
+def cubic_spring(direction: ArrayLike, cubic: float) -> Spring:
+    """f = k₃u³."""
+    return Spring(_tuple(direction), lambda u: cubic * u**3, lambda u: 3 * cubic * u**2)
+
+
+def backlash_spring(direction: ArrayLike, half_gap: float, stiffness: float, inside: float = 0.0) -> Spring:
+    """The force of ``PiecewiseOscillator.gap``, which says what it refuses."""
+    return _piecewise(direction, PiecewiseOscillator.gap(half_gap, stiffness, inside))
+
+
+@dataclass(frozen=True)
+class SecondOrder:
+    """M ẍ + C ẋ + K x + Σ d f(dᵀx) = F₀ + Σ_k (p_k cos kωt + q_k sin kωt).
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n).
+    springs : nonlinear ones.
+    mean : F₀ (n,).
+    harmonics : (k, p_k (n,), q_k (n,)).
+    names : of the unknowns.
+
+    Raises
+    ------
+    InputError : shapes that do not fit, a singular mass matrix, no harmonic of force.
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    springs: tuple[Spring, ...]
+    mean: Array
+    harmonics: tuple[tuple[int, Array, Array], ...]
+    names: tuple[str, ...] = field(default=(), kw_only=True)
+    name: str = field(default="second-order system", kw_only=True)
+
+    def __post_init__(self) -> None:
+        n = len(np.atleast_1d(np.asarray(self.mean, dtype=float)))
+        for key in ("mass", "damping", "stiffness"):
+            matrix = np.atleast_2d(np.asarray(getattr(self, key), dtype=float))
+            if matrix.shape != (n, n) or not np.isfinite(matrix).all():
+                raise InputError(f"must be {n} × {n} finite numbers", element=self.name, key=key, value=matrix.tolist())
+            object.__setattr__(self, key, matrix)
+        object.__setattr__(self, "mean", np.atleast_1d(np.asarray(self.mean, dtype=float)))
+        if abs(np.linalg.det(self.mass)) == 0:
+            raise InputError("is singular", element=self.name, key="mass", remedy="give every unknown an inertia")
+
+        def vector(force: ArrayLike) -> Array:
+            return np.broadcast_to(np.asarray(force, dtype=float), (n,))
+
+        forces = [(int(k), vector(p), vector(q)) for k, p, q in self.harmonics]
+        if not forces or min(force[0] for force in forces) < 1:
+            raise InputError(
+                "must name a harmonic from 1 of the force", element=self.name, key="harmonics", value=self.harmonics
+            )
+        object.__setattr__(self, "harmonics", tuple(forces))
+        for spring in self.springs:
+            if len(spring.direction) != n:
+                raise InputError(f"must be {n} numbers", element=self.name, key="direction", value=spring.direction)
+        if not self.names:
+            object.__setattr__(self, "names", tuple(f"x{i + 1}" for i in range(n)) if n > 1 else ("x",))
+
+    @property
+    def size(self) -> int:
+        """n."""
+        return len(self.mean)
+
+    @classmethod
+    def of_piecewise(cls, oscillator: PiecewiseOscillator) -> SecondOrder:
+        """A piecewise oscillator with damping that always acts.
+
+        Raises
+        ------
+        InputError : another damping law, whose force jumps or depends on the rate.
+        """
+        if oscillator.damping_law != "always":
+            raise InputError(
+                "is no spring and no constant damper", element=oscillator.name, key="damping_law",
+                value=oscillator.damping_law, remedy='use the method "exact"',
+            )  # fmt: skip
+        force = oscillator.coefficients * oscillator.inertia
+        harmonics = tuple((k, np.array([force[k].real]), np.array([-force[k].imag])) for k in range(1, len(force)))
+        return cls(
+            np.array([[oscillator.inertia]]), np.array([[oscillator.damping]]), np.zeros((1, 1)),
+            (_piecewise([1.0], oscillator),), np.array([force[0].real]), harmonics, name=oscillator.name,
+        )  # fmt: skip
+
+
+def _piecewise(direction: ArrayLike, oscillator: PiecewiseOscillator) -> Spring:
+    return Spring(_tuple(direction), oscillator.restoring, oscillator.slope, oscillator.breakpoints)
+
+
+def _tuple(direction: ArrayLike) -> tuple[float, ...]:
+    return tuple(float(d) for d in np.atleast_1d(np.asarray(direction, dtype=float)))
