@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from known_motions import DEAD_ZONE_FOLDS, DEAD_ZONE_GRAZING, DUFFING_FOLDS, DUFFING_LOWER, DUFFING_UPPER
 from jointed_lines import two_shafts
+from known_motions import DEAD_ZONE_FOLDS, DEAD_ZONE_GRAZING, DUFFING_FOLDS, DUFFING_LOWER, DUFFING_UPPER
 
 import trunnion as tn
 from trunnion.results.verdict import Verdict

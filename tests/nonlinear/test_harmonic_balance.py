@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from jointed_lines import two_shafts
 from known_motions import (
     DEAD_ZONE_INNER,
     DEAD_ZONE_OUTER,
@@ -13,7 +14,6 @@ from known_motions import (
     DUFFING_UPPER,
     DUFFING_UPPER_LARGEST,
 )
-from jointed_lines import two_shafts
 
 import trunnion as tn
 from trunnion.errors import InputError

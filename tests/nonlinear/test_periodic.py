@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jointed_lines import three_shafts, two_shafts
 from known_motions import (
     DEAD_ZONE_INNER,
     DEAD_ZONE_MULTIPLIER,
@@ -15,7 +16,6 @@ from known_motions import (
     DUFFING_UPPER,
     DUFFING_UPPER_LARGEST,
 )
-from jointed_lines import three_shafts, two_shafts
 
 import trunnion as tn
 from trunnion.results.verdict import Verdict

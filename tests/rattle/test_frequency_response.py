@@ -101,6 +101,15 @@ def test_nothing_found_is_said() -> None:
     assert not short.outcome.ok and "raise most_points" in short.outcome.sentence and len(short.frequency) == 6
 
 
+def test_a_branch_that_cannot_go_on_keeps_what_it_has() -> None:
+    """Undamped and linear towards its resonance at 1: the motion grows without bound, and the end says where."""
+    o = PiecewiseOscillator((), (1.0,), 0.0, 0.0, 0.1)
+    found = frequency_response(o, 0.6, 1.5, most_points=200)
+    assert not found.outcome.ok and len(found.frequency) > 20
+    assert 0.9 < found.frequency[-1] <= 1.0 and f"{found.frequency[-1]:.4g}"[:4] in found.outcome.sentence
+    assert found.half_peak_to_peak[-1] == pytest.approx(0.1 / (1 - found.frequency[-1] ** 2), rel=1e-6)
+
+
 def test_pictures_draw_what_is_there() -> None:
     found = compare_responses(gear_pair(), 0.5, 1.0, methods=("exact", "describing function", "sweep up"))
     axes = found.plot(length="rad")

@@ -39,10 +39,12 @@ PER_STATION = 14
 NEAR, FAR, NEAR_COORDINATE, FAR_COORDINATE, STIFFNESS, DAMPING = range(6)
 LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
 PER_COMPLIANCE = 11
-# A spring with stages has its law at p[LAW], else LAW is 0: per stage damping, slope, offset and two guards (a, e, h)
-# with a q + e q′ − h > 0 while the stage lasts; then ERRORS and WAVES mesh harmonics of amplitude, cycles per turn of
-# the input and phase: those of e, over the output radius, and of the stiffness.
-PER_STAGE, PER_WAVE = 9, 3
+# A spring with stages has its law at p[LAW], else LAW is 0: per stage damping, slope, offset and GUARDS guards of four
+# numbers (a, e, h, direction): the stage ends where a q + e q′ − h crosses zero in that direction (0: no such guard);
+# then ERRORS and WAVES mesh harmonics of amplitude, cycles per turn of the input and phase: those of e, over the output
+# radius, and of the stiffness.
+GUARDS, PER_GUARD, PER_WAVE = 3, 4, 3
+PER_STAGE = 3 + GUARDS * PER_GUARD
 # Per harmonic torque; order 0 means in time.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
@@ -113,13 +115,14 @@ def mesh_wave(p, q, theta):
 
 @njit(cache=True, nogil=True)
 def stage_at(p, q, twist, rate):
-    """The stage whose guards are all positive, or nearest to it."""
+    """The stage whose guards are all on the side where it lasts, or nearest to it."""
     best, depth = 0, -math.inf
     for stage in range(int(p[q + STAGES])):
         least = math.inf
-        for j in range(2):
-            g = int(p[q + LAW]) + stage * PER_STAGE + 3 + 3 * j
-            least = min(least, p[g] * twist + p[g + 1] * rate - p[g + 2])
+        for j in range(GUARDS):
+            g = int(p[q + LAW]) + stage * PER_STAGE + 3 + PER_GUARD * j
+            if p[g + 3] != 0.0:
+                least = min(least, -p[g + 3] * (p[g] * twist + p[g + 1] * rate - p[g + 2]))
         if least > depth:
             best, depth = stage, least
     return best
@@ -236,15 +239,15 @@ def line(t, y_, p_, k, regime, out_):
 
 @cfunc(_GUARD, cache=True)
 def line_guards(t, x_, p_, regime, sloped, g_, slope_):
-    """Two switching functions per spring with stages, and their gradients by x and t."""
+    """GUARDS switching functions per spring with stages, and their gradients by x and t."""
     head = carray(p_, (HEAD,))
     n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
     compliance = HEAD + count * PER_STATION
     scratch = compliance + joined * PER_COMPLIANCE + shaken * PER_HARMONIC + int(head[LAWS])
     p = carray(p_, (scratch + 5 * count,))
-    x, g = carray(x_, (2 * n,)), carray(g_, (2 * joined,))
+    x, g = carray(x_, (2 * n,)), carray(g_, (GUARDS * joined,))
     wide = 2 * n + 1
-    slope = carray(slope_, (2 * joined * wide,))
+    slope = carray(slope_, (GUARDS * joined * wide,))
     since = t - p[SINCE]
     omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
     theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
@@ -262,8 +265,8 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
         error, error_rate, error_acceleration = mesh_error(p, q, theta, omega, alpha)
         twist, rate = d[far] - d[near] + error, v[far] - v[near] + error_rate
         stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
-        for side in range(2):
-            at = stage + 3 + 3 * side
+        for j_guard in range(GUARDS):
+            at = stage + 3 + PER_GUARD * j_guard
             by_twist, by_rate = p[at], p[at + 1]
             g[m] = by_twist * twist + by_rate * rate - p[at + 2]
             if sloped != 0:

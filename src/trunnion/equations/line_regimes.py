@@ -1,7 +1,9 @@
 """Stages of gear meshes and of shafts with stages as regimes of a line, one number for all of them together.
 
 A spring with s stages counts them 0 … s − 1; the regime of the line is Σ stage · stride, the strides being products of
-the numbers of stages before. Each spring has two guards, which lead from the stage it is in to its neighbours.
+the numbers of stages before. Each spring has three guards. Two stages see the surface between them as one function
+under one number, crossed upwards from one and downwards from the other, so that behind a crossing nothing starts at a
+zero whose sign is rounding.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.systems.piecewise_oscillator import Regimes as Stages
 from trunnion.systems.regimes import Regimes
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
@@ -27,15 +30,15 @@ from trunnion.systems.user_functions import CFunction
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 MOST_REGIMES = 400
-NEVER = -1e30
-"""The constant of a guard that leads nowhere, so that it never binds."""
+GUARDS = 3
+"""Per spring; as many as its stages need, see ``_numbered``."""
 
 
 @dataclass(frozen=True)
 class StagedSpring:
     """One spring's numbers as ``line_kernel`` reads them.
 
-    table (stages, 9); then (stages, 2): the next stage or −1; error, wave (harmonics, 3).
+    table (stages, 3 + 4 · GUARDS); then (stages, GUARDS): the next stage or −1; error, wave (harmonics, 3).
     """
 
     name: str
@@ -49,6 +52,11 @@ class StagedSpring:
     def stages(self) -> int:
         """How many."""
         return len(self.table)
+
+    @property
+    def directions(self) -> Array:
+        """In which each guard is crossed, (stages, GUARDS)."""
+        return self.table[:, 3:].reshape(self.stages, GUARDS, 4)[:, :, 3]
 
     @property
     def numbers(self) -> Array:
@@ -78,16 +86,43 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
     kind = element.damping_law if law.knots.size and isinstance(element, GearPair | PiecewiseShaft) else "always"
     name = assembly.line.names[place]
     oscillator = PiecewiseOscillator(tuple(law.knots[0]), tuple(law.slopes[0]), damping, damping_law=kind, name=name)
-    regimes = oscillator.regimes
-    guards = np.where(regimes.then[:, :, None] >= 0, regimes.guards, np.array([0.0, 0.0, NEVER]))
-    table = np.concatenate([regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
+    guards, then = _numbered(oscillator.regimes)
+    table = np.concatenate([oscillator.regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
     error, wave = np.zeros((0, 3)), np.zeros((0, 3))
     if isinstance(element, GearPair):
         cycles = float(_mesh_cycles(assembly, place))
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
-    return StagedSpring(name, stride, table, regimes.then, error, wave)
+    return StagedSpring(name, stride, table, then, error, wave)
+
+
+def _numbered(regimes: Stages) -> tuple[Array, Integers]:
+    """Guards (stages, GUARDS, 4) as (a, e, h, direction), and where they lead (stages, GUARDS).
+
+    Given are functions that fall through zero at the end of a stage. Those of two neighbours differ in sign only: they
+    become one, and get a number that no other function of the same stage has.
+    """
+    found: list[list[tuple[tuple[float, ...], float, int]]] = []
+    for functions, then in zip(regimes.guards, regimes.then, strict=True):
+        own = []
+        for function, next_stage in zip(functions, then, strict=True):
+            if next_stage >= 0:
+                sign = float(np.sign(function[0] or function[1]))
+                own.append((tuple(float(v) + 0.0 for v in sign * function), -sign, int(next_stage)))
+        found.append(own)
+    number: dict[tuple[float, ...], int] = {}
+    for function in (f for own in found for f, _, _ in own):
+        if function not in number:
+            stages = [[f for f, _, _ in own] for own in found]
+            taken = {number[f] for stage in stages if function in stage for f in stage if f in number}
+            number[function] = next(i for i in range(GUARDS) if i not in taken)
+    guards, leads = np.zeros((len(found), GUARDS, 4)), np.full((len(found), GUARDS), -1, dtype=np.int64)
+    for stage, own in enumerate(found):
+        for function, direction, next_stage in own:
+            guards[stage, number[function]] = *function, direction
+            leads[stage, number[function]] = next_stage
+    return guards, leads
 
 
 def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, cycles: float) -> Array:
@@ -122,11 +157,12 @@ class LineRegimes(Regimes):
     """Regimes of a line; transitions and directions (regimes, guards) as the integrator takes them."""
 
     transitions: Integers | None = None
+    directions: Integers | None = None
     kernel: ModuleType | None = None
 
     def tables(self) -> tuple[Integers, Integers]:
-        assert self.transitions is not None
-        return self.transitions, np.where(self.transitions >= 0, -1, 0).astype(np.int64)
+        assert self.transitions is not None and self.directions is not None
+        return self.transitions, self.directions
 
     def at(self, system: System, time: float, state: Array) -> int:
         assert self.kernel is not None
@@ -149,19 +185,29 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
             f"have {count} combinations of stages, more than the {MOST_REGIMES} that are told apart",
             element=", ".join(s.name for s in springs), remedy="take some of the gaps out, or stages together",
         )  # fmt: skip
-    transitions = np.full((count, 2 * len(springs)), -1, dtype=np.int64)
+    transitions = np.full((count, GUARDS * len(springs)), -1, dtype=np.int64)
+    directions = np.zeros_like(transitions)
     for regime in range(count):
         for i, spring in enumerate(springs):
             stage = regime // spring.stride % spring.stages
-            for side in range(2):
-                then = spring.then[stage, side]
+            for guard in range(GUARDS):
+                then = spring.then[stage, guard]
                 if then >= 0:
-                    transitions[regime, 2 * i + side] = regime + (then - stage) * spring.stride
+                    transitions[regime, GUARDS * i + guard] = regime + (then - stage) * spring.stride
+                    directions[regime, GUARDS * i + guard] = int(spring.directions[stage, guard])
     names = tuple(
         ", ".join(f"{s.name} stage {regime // s.stride % s.stages + 1}" for s in springs) for regime in range(count)
     )
-    guards = tuple(f"{s.name} {side} end of its stage" for s in springs for side in ("lower", "upper"))
+    guards = tuple(f"{s.name} guard {side}" for s in springs for side in range(1, GUARDS + 1))
     compiled = kernel.line_guards
     return LineRegimes(
-        names, guards, CFunction(compiled.address, compiled), (), lambda t, x, p: 0, None, transitions, kernel
+        names,
+        guards,
+        CFunction(compiled.address, compiled),
+        (),
+        lambda t, x, p: 0,
+        None,
+        transitions,
+        directions,
+        kernel,
     )

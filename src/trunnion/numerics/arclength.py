@@ -245,6 +245,8 @@ def _on_edge(
     tolerance: float,
 ) -> CurvePoint | None:
     edge = bounds[1] if outside.parameter > bounds[1] else bounds[0]
+    if outside.parameter == inside.parameter:  # a curve along which the parameter stands still, on its bound
+        return None
     share = (edge - inside.parameter) / (outside.parameter - inside.parameter)
     across = np.zeros(len(scale))
     across[-1] = np.sign(outside.parameter - inside.parameter)

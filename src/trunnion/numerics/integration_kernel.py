@@ -326,6 +326,26 @@ def _locate(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
 
 
 @njit(cache=True, nogil=True)
+def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, directions, x, g, slope):
+    """Another function that crosses between ``low`` and ``high``, in front of ``which``, and its side; −1 for none.
+
+    Two crossings between neighbouring samples come in either order.
+    """
+    interpolate(q, low, x)
+    if _watched(functions, t + low * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        return -1, 0.0
+    before = g.copy()
+    interpolate(q, high, x)
+    if _watched(functions, t + high * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        return -1, 0.0
+    for i in range(g.size):
+        side = _sign(before[i])
+        if i != which and directions[i] != 0 and _crosses(side, g[i], directions[i]):
+            return i, side
+    return -1, 0.0
+
+
+@njit(cache=True, nogil=True)
 def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
     """A step to begin with, from the sizes of f and of its change (Hairer et al., section II.4)."""
     size, slope = 0.0, 0.0
@@ -525,6 +545,16 @@ def advance(
                 _watched(functions, t + high * step, x, p, asked, n, regime, own, 0, g, slope)
                 side = -_sign(g[which])
             fraction = _locate(functions, t, step, q, p, asked, n, regime, own, which, side, low, high, x, g, slope)
+            for _ in range(m):
+                other, beside = _earlier(
+                    functions, t, step, q, p, asked, n, regime, own, which, low, fraction, active, x, g, slope
+                )
+                if fraction < 0 or other < 0:
+                    break
+                which, side = other, beside
+                fraction = _locate(
+                    functions, t, step, q, p, asked, n, regime, own, which, side, low, fraction, x, g, slope
+                )
             if fraction < 0:
                 clock[TIME], clock[STEP] = t, h
                 return REFUSED

@@ -19,7 +19,7 @@ STYLES = {
     "shooting": ("#1a1a1a", 2.2),
     "harmonic balance": ("#0072b2", 1.3),
     "describing function": ("#d55e00", 1.5),
-    "averaging": ("#009e73", 1.5),
+    "averaging": ("#009e73", 3.6),  # beneath multiple scales, with which it coincides
     "multiple scales": ("#cc79a7", 1.5),
 }
 SWEEPS = {"sweep up": ("^", "#56b4e9"), "sweep down": ("v", "#e69f00")}

@@ -94,7 +94,8 @@ def _methods(found: ResponseComparison, what: str) -> Comparison:
         rows.append(Row(name, "—", f"peak {a:.5f} at {f:.5f}; turns at {folds}; stable at 0.8: {motions}", words))
     return Comparison(
         f"Methods against the exact motion, {what} (half peak-to-peak, ω)", tuple(rows),
-        "The paper draws its curves without numbers. Turns are folds, of sweeps the last frequency before a jump.",
+        "The paper draws its curves without numbers. Turns are folds, of sweeps the last frequency before a jump; "
+        "motions at 0.8 are interpolated along the curves.",
     )  # fmt: skip
 
 
