@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "nonlinear"))
 
 import numpy as np
-from lines import three_shafts
+from jointed_lines import three_shafts
 from oracles.taylor import end_state
 from scipy.integrate import solve_ivp
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import trunnion as tn
+from trunnion.analyses.periodic_response import PeriodicResponse
 from trunnion.analyses.simulation import simulate_system
+from trunnion.cli.program import app
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
@@ -390,6 +395,27 @@ def test_two_surfaces_crossed_in_one_step() -> None:
     assert run.final[0] == pytest.approx(1.0 + 1.3 * (2.0 - 0.999 - 0.001 / 1.2))
 
 
+@pytest.mark.parametrize(("load", "contact"), [(0.0, "two-sided"), (12.0, "one-sided"), (40.0, "one-sided")])
+def test_contacts_are_those_of_the_exact_orbit(load: float, contact: str) -> None:
+    """Shares, sides, impacts and their energy against the orbit of the reduced equation."""
+    disk = tn.Disk(inertia=0.02, load_torque=load, excitation=[{"amplitude": 9.0, "frequency": 70.0}])
+    spring = tn.PiecewiseShaft(breakpoints=[-0.05, 0.05], stiffnesses=[300.0, 0.0, 300.0], damping=0.5)
+    line = tn.Driveline([tn.ConstantSpeed(), spring, disk])
+    orbit = tn.piecewise_orbit(tn.exact_oscillator(line))
+    response = tn.periodic_response(line, 70.0, start=orbit.start)
+    assert isinstance(response, PeriodicResponse) and response.outcome.ok
+    (found,) = response.contacts
+    assert found.contact == contact == orbit.contact
+    assert found.impacts == orbit.impacts
+    assert found.impact_energy == pytest.approx(orbit.impact_energy, rel=1e-4, abs=1e-12)
+    if load == 40.0:
+        assert found.stage_shares == pytest.approx([1, 0, 0]) and "stays on its drive side" in str(found)
+    else:
+        times, states = orbit.motion(20_000)
+        assert found.play_share == pytest.approx(np.mean(np.abs(states[:, 0]) < 0.05), abs=1e-3)
+        assert any("contact is lost" in f.sentence for f in response.findings)
+
+
 @pytest.mark.parametrize(
     ("line", "options", "words"),
     [
@@ -438,3 +464,75 @@ def test_kinematics_take_a_mesh_rigid() -> None:
     twist = one.angle[-1] - one.angle[-1].mean()
     assert np.isfinite(twist).all()
     assert tn.sketch(line(mesh())) is not None
+
+
+PAIR = """
+format = 1
+name = "gear pair"
+[[element]]
+type = "Disk"
+inertia = "0.002 kg*m^2"
+load_torque = "-1 N*m"
+[[element.excitation]]
+amplitude = "6 N*m"
+frequency = 3000
+[[element]]
+type = "GearPair"
+teeth_in = 18
+teeth_out = 27
+module = "5 mm"
+mesh_stiffness = "2e6 N/m"
+mesh_damping = "60 N*s/m"
+backlash = "40 um"
+stiffness_ratio = 0.1
+[[element]]
+type = "Disk"
+inertia = "0.005 kg*m^2"
+load_torque = "1.5 N*m"
+"""
+
+
+def test_commands_take_a_file(tmp_path: Path) -> None:
+    file, picture = tmp_path / "pair.toml", tmp_path / "r.png"
+    file.write_text(PAIR, encoding="utf-8")
+
+    def told(*arguments: str) -> Any:
+        result = CliRunner().invoke(app, [*arguments, "--json", "-o", str(picture)])
+        assert result.exit_code == 0, result.output
+        return json.loads(result.stdout)
+
+    o = tn.exact_oscillator(tn.load(file))
+    (up,) = told("sweep", str(file), "--points", "31", "--direction", "up")["sweeps"]
+    assert up["frequency"][0] == 1500.0 and up["frequency"][-1] == 4500.0
+    assert up["half_peak_to_peak"] == pytest.approx(tn.sweep(o, up["frequency"]).peak_to_peak / 2)
+    (exact,) = told("frequency-response", str(file), "--from", "1700", "--to", "1900")["methods"]
+    assert exact["peak"]["half_peak_to_peak"] == pytest.approx(0.000687911, rel=1e-3)
+    file.write_text(
+        PAIR.replace("backlash", 'transmission_error = [{ amplitude = "2 um" }]\nbacklash'), encoding="utf-8"
+    )
+    for arguments, words in (
+        (["sweep", str(file)], "is not swept"),
+        (["sweep", str(file), "--set", "a=1"], "belongs to"),
+    ):
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code != 0 and words in f"{result.output} {result.exception}"
+
+
+def test_report_of_a_line_with_backlash() -> None:
+    """Its own table: the clutch that lands, the mesh that stays where the load has it."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=4e3, damping=3.0),
+            tn.Disk(inertia=0.05),
+            tn.GearPair(
+                teeth_in=20, teeth_out=30, module="4 mm", mesh_stiffness=5e7, mesh_damping=2000, backlash="0.1 mm"
+            ),
+            tn.Disk(inertia=0.05, load_torque=40.0),
+            tn.PiecewiseShaft(breakpoints=[-0.01, 0.01], stiffnesses=[4e3, 200.0, 4e3], damping=3.0),
+            tn.Disk(inertia=0.1, load_torque=1.0, excitation=[{"amplitude": 60.0, "order": 4}]),
+        ],
+        operation=tn.Operation(speed="900 rpm"),
+    )
+    page = tn.report(line).html
+    assert "Backlash and stages" in page and "GearPair 1" in page and "one-sided" in page and "contact is lost" in page

@@ -8,6 +8,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 PAGE = (Path(__file__).parents[2] / "docs" / "rattle.md").read_text(encoding="utf-8")
 
 
@@ -25,6 +27,17 @@ def test_examples_run_in_order() -> None:
     assert abs(names["amplitude"][-1] - names["large"].amplitude) < 1e-3
     assert names["small"].stable and not names["saddle"].stable
     assert tn_orbit(names).outcome.ok
+    assert names["motion"].outcome.ok and [c.spring for c in names["motion"].contacts] == [
+        "GearPair 1",
+        "PiecewiseShaft 1",
+    ]
+    # The line's pair of gears is the pair at the top of the page, but for the transmission error.
+    same = names["pair"].but(harmonics=(), name=names["one"].name)
+    assert names["one"].inertia == pytest.approx(same.inertia) and names["one"].slopes == pytest.approx(same.slopes)
+    assert names["one"].mean_force == pytest.approx(same.mean_force) and names["one"].force == pytest.approx(same.force)
+    tables = "\n".join(re.findall(r"^```toml\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE))
+    disk = '[[element]]\ntype = "Disk"\ninertia = 0.1\n'
+    assert names["tn"].loads(f"format = 1\n{disk}{tables}{disk}").elements[1].backlash == 1e-4
 
 
 def tn_orbit(names: dict[str, Any]) -> Any:

@@ -151,9 +151,9 @@ class ResponseComparison:
         rows = [heads]
         for name, r in self.responses.items():
             at, size = r.peak
-            folds = ", ".join(f"{f:.6f}" for f in r.folds()) or "none"
-            motions = [", ".join(f"{a:.5f}" for a, ok in r.at(f) if ok) or "none" for f in frequencies]
-            rows.append((name, f"{size:.5f}", f"{at:.5f}", folds, *motions, f"{r.seconds:.2g}"))
+            folds = ", ".join(f"{f:#.6g}" for f in r.folds()) or "none"
+            motions = [", ".join(f"{a:#.5g}" for a, ok in r.at(f) if ok) or "none" for f in frequencies]
+            rows.append((name, f"{size:#.5g}", f"{at:#.6g}", folds, *motions, f"{r.seconds:.2g}"))
         return rows
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.periodic_orbit import TOLERANCE, PeriodicOrbit, extremes, periodic_orbit, torque_driven_orbit
 from trunnion.analyses.simulation import simulate_system
+from trunnion.analyses.spring_contacts import SpringContact, spring_contacts
 from trunnion.analyses.stability import Stability, operating_speed, stability
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
@@ -169,6 +170,11 @@ class PeriodicResponse:
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
         return np.asarray(self.torque.mean(axis=0))
 
+    @cached_property
+    def contacts(self) -> tuple[SpringContact, ...]:
+        """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
+        return spring_contacts(self)
+
     def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
         """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]; order 0 is the mean."""
         count = int(np.floor(highest * self.turns + 1e-9)) + 1
@@ -249,6 +255,7 @@ class PeriodicResponse:
                 f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
                 f"{self.growth_rate:+.6g} 1/s",
                 *rows,
+                *(f"  {contact}" for contact in self.contacts),
                 f"  {against}",
                 f"  {self.outcome}",
             ]
@@ -394,6 +401,8 @@ def _findings(result: PeriodicResponse, unit: str) -> list[Finding]:
         )
     else:
         found.append(Finding(Gravity.NOTE, f"The periodic motion at {at} is {result.verdict}; {torque}."))
+    rattling = [contact for contact in result.contacts if contact.rattles]
+    found += [Finding(Gravity.CAUTION, f"At {at} contact is lost: {contact}.") for contact in rattling]
     comparison = result.comparison
     if comparison is not None and not comparison.agree:
         found.append(

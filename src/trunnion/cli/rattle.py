@@ -9,21 +9,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.options import Json, file_stem
+from trunnion.cli.options import Json, file_stem, read_line
 from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
+    from trunnion.driveline.driveline import Driveline
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.system import System
 
 GEARS, DEAD_ZONE = "gear-rattle", "dead-zone-oscillator"
 Subject = Annotated[
     str,
-    typer.Argument(metavar="NAME", help="gear-rattle, dead-zone-oscillator, or another reference system."),
+    typer.Argument(
+        metavar="NAME", help="gear-rattle, dead-zone-oscillator, another reference system, or a driveline file."
+    ),
 ]
-From = Annotated[float, typer.Option("--from", help="Lowest frequency [rad/s].")]
-To = Annotated[float, typer.Option("--to", help="Highest frequency [rad/s].")]
+From = Annotated[float | None, typer.Option("--from", help="Lowest frequency (of a longer line: speed) [rad/s].")]
+To = Annotated[float | None, typer.Option("--to", help="Highest frequency (of a longer line: speed) [rad/s].")]
 Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
 ]
@@ -35,8 +38,8 @@ Output = Annotated[
 
 def frequency_response(
     name: Subject,
-    low: From = 0.3,
-    high: To = 1.3,
+    low: From = None,
+    high: To = None,
     method: Annotated[
         list[str] | None,
         typer.Option("--method", help="exact, harmonic balance, averaging, …; repeat it, or write all."),
@@ -55,10 +58,12 @@ def frequency_response(
     """
     from trunnion.analyses.frequency_response import METHODS, ResponseComparison
     from trunnion.analyses.frequency_response import frequency_response as compute
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     subject = _subject(name, parameters)
+    low, high = _range(subject, low, high)
     _check(to)
-    piecewise = not hasattr(subject, "states")
+    piecewise = isinstance(subject, PiecewiseOscillator)
     first = METHODS[0] if piecewise else "harmonic balance"
     chosen = list(METHODS) if method == ["all"] and piecewise else (method or [first])
     with output.compile_notice():
@@ -79,8 +84,8 @@ def frequency_response(
 
 def sweep(
     name: Subject,
-    low: From = 0.3,
-    high: To = 1.3,
+    low: From = None,
+    high: To = None,
     points: Annotated[int, typer.Option("--points", help="Frequencies.", min=2, max=100_000)] = 101,
     direction: Annotated[str, typer.Option("--direction", help="up, down or both.")] = "both",
     parameters: Set = None,
@@ -95,12 +100,15 @@ def sweep(
 
     from trunnion.analyses.piecewise_branch import check_range
     from trunnion.analyses.piecewise_sweep import sweep as compute
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-    subject: Any = _subject(name, parameters)
-    if hasattr(subject, "states"):
+    subject = _subject(name, parameters)
+    if not isinstance(subject, PiecewiseOscillator):
         raise InputError(
-            "is not swept: it has no gap", key="NAME", value=name, remedy=f"use {GEARS} or {DEAD_ZONE}, or run-up"
-        )
+            "is not swept: it has no gap, or is more than one equation", key="NAME", value=name,
+            remedy=f"use {GEARS}, {DEAD_ZONE} or a line of two inertias and one mesh, or run-up",
+        )  # fmt: skip
+    low, high = _range(subject, low, high)
     if direction not in ("up", "down", "both"):
         raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
     check_range(low, high)
@@ -138,13 +146,18 @@ def sweep(
     _print("\n".join(map(str, found)), written)
 
 
-def _subject(name: str, parameters: list[str] | None) -> PiecewiseOscillator | System:
+def _subject(name: str, parameters: list[str] | None) -> PiecewiseOscillator | System | Driveline:
     from trunnion.driveline.refusals import nearest
     from trunnion.published import catalogue
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.reference import SYSTEMS
 
     values = _values(parameters)
+    if Path(name).suffix:
+        if values:
+            remedy = "edit the file instead"
+            raise InputError("belongs to reference systems", key="--set", value=parameters, remedy=remedy)
+        return _of_line(read_line(name))
     if name == GEARS:
         return catalogue("gear-rattle", **values)
     if name not in SYSTEMS:
@@ -152,6 +165,35 @@ def _subject(name: str, parameters: list[str] | None) -> PiecewiseOscillator | S
         raise InputError("is no oscillator known here", key="NAME", value=name, remedy=nearest(name, known))
     system = SYSTEMS[name]().with_parameters(values)
     return PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system
+
+
+def _of_line(line: Driveline) -> PiecewiseOscillator | Driveline:
+    """One equation where the line is that, and nothing in it grows with the speed."""
+    from trunnion.driveline.gears import GearPair
+    from trunnion.driveline.stages import PiecewiseShaft
+    from trunnion.equations.exact_oscillator import exact_oscillator
+
+    small = len(line.elements) == 3 and isinstance(line.elements[1], GearPair | PiecewiseShaft)
+    return exact_oscillator(line) if small and not getattr(line.elements[1], "transmission_error", ()) else line
+
+
+def _range(
+    subject: PiecewiseOscillator | System | Driveline, low: float | None, high: float | None
+) -> tuple[float, float]:
+    """As given; else about the frequency of the excitation, or a line's range of speeds."""
+    from trunnion.analyses.overview import speed_range
+    from trunnion.driveline.driveline import Driveline
+    from trunnion.equations.coefficients import assemble
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+    usual = 0.3, 1.3
+    if low is not None and high is not None:
+        usual = low, high
+    elif isinstance(subject, Driveline):
+        usual = speed_range(assemble(subject, tripods=True))
+    elif isinstance(subject, PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
+        usual = 0.5 * subject.frequency, 1.5 * subject.frequency
+    return usual[0] if low is None else low, usual[1] if high is None else high
 
 
 def _values(parameters: list[str] | None) -> dict[str, float]:

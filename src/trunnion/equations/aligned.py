@@ -34,17 +34,23 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
         if c >= 0:
             mass[:, c] += coefficients.inertia[:, s] * relative_ratio(topo, s) ** 2
     damping, stiffness = np.zeros((cases, n, n)), np.zeros((cases, n, n))
-    for e, compliance in enumerate(topo.compliances):
-        elongation = np.zeros(n)
-        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
-        if far >= 0:
-            elongation[far] = 1.0
-        if near >= 0:
-            elongation[near] = -relative_ratio(topo, compliance.near)
-        outer = np.outer(elongation, elongation)
+    for e in range(len(topo.compliances)):
+        direction = elongation(topo, e)
+        outer = np.outer(direction, direction)
         damping += coefficients.damping[:, e, None, None] * outer
         stiffness += coefficients.stiffness[:, e, None, None] * outer
     return AlignedMatrices(mass, damping, stiffness)
+
+
+def elongation(topo: Topology, compliance: int) -> Array:
+    """Twist of one compliance per rotation of every unknown (n,)."""
+    ends, direction = topo.compliances[compliance], np.zeros(topo.size)
+    far, near = topo.coordinate[ends.far_group], topo.coordinate[topo.group_of(ends.near)]
+    if far >= 0:
+        direction[far] = 1.0
+    if near >= 0:
+        direction[near] = -relative_ratio(topo, ends.near)
+    return direction
 
 
 def relative_ratio(topo: Topology, station: int) -> float:

@@ -38,12 +38,14 @@ GUARDS = 3
 class StagedSpring:
     """One spring's numbers as ``line_kernel`` reads them.
 
-    table (stages, 3 + 4 · GUARDS); then (stages, GUARDS): the next stage or −1; error, wave (harmonics, 3).
+    table (stages, 3 + 4 · GUARDS); side (stages,): −1 below the softest stage, +1 above, 0 in it; then (stages,
+    GUARDS): the next stage or −1; error, wave (harmonics, 3).
     """
 
     name: str
     stride: int
     table: Array
+    side: Integers
     then: Integers
     error: Array
     wave: Array
@@ -94,7 +96,7 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
-    return StagedSpring(name, stride, table, then, error, wave)
+    return StagedSpring(name, stride, table, oscillator.regimes.side, then, error, wave)
 
 
 def _numbered(regimes: Stages) -> tuple[Array, Integers]:

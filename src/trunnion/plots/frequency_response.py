@@ -68,14 +68,24 @@ def draw_responses(
                 _arrows(axes, response)
     if any(not r.stable.all() for r in responses.values() if hasattr(r, "stable")):
         axes.plot([], [], color=FAINT, lw=1.2, ls=DASHED, label="unstable")
-    axes.set_xlabel("frequency ω [rad/s]", fontsize=TEXT, color=INK)
-    unit = f" [{length}]" if length else ""
-    axes.set_ylabel(f"half peak-to-peak of x{unit}", fontsize=TEXT, color=INK)
+    of, what, unit = _followed(responses)
+    axes.set_xlabel(f"{of} [rad/s]", fontsize=TEXT, color=INK)
+    unit = f" [{length or unit}]" if length or unit else ""
+    axes.set_ylabel(f"half peak-to-peak of {what}{unit}", fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0, top=top)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    axes.legend(fontsize=SMALL, frameon=False, loc="upper left", ncols=1)
+    axes.legend(fontsize=SMALL, frameon=False, loc="best", ncols=1)
     return axes
+
+
+def _followed(responses: Mapping[str, Any]) -> tuple[str, str, str]:
+    """What runs along the axis, what is drawn, and its unit; a driveline's branch knows better than the usual words."""
+    detail = next((r.detail for r in responses.values() if hasattr(r, "detail")), None)
+    branch: Any = getattr(detail, "branch", detail)
+    if getattr(branch, "label", "") == "speed":
+        return "input speed", f"the torque of {branch.curves[0]}", "N·m"
+    return "frequency ω", "x", ""
 
 
 def _spread(stable: Any) -> Any:
@@ -125,7 +135,7 @@ def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: st
     axes.set_ylim(bottom=0)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    axes.legend(title="contact, sweep", fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="upper left")
+    axes.legend(title="contact, sweep", fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="best")
     return axes
 
 

@@ -111,6 +111,7 @@ def _page(contents: Contents, source: Path | None) -> str:
         "irregularity": tables.irregularity(contents),
         "torques": tables.torques(contents, unit),
         "under_load": tables.under_load(contents),
+        "contacts": tables.contacts(contents),
         "bending": tables.bending(contents, unit),
         "stability": _verdict(seen),
         "at_speed": show_speed(seen.stability.speed, unit) if seen.stability else "",

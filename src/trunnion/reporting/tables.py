@@ -214,6 +214,23 @@ def under_load(contents: Contents) -> Table | None:
     return Table(heads, tuple(rows))
 
 
+def contacts(contents: Contents) -> Table | None:
+    """Every case and every mesh or shaft with stages: sides touched, time between them, impacts."""
+    rows = [
+        (
+            motion.case, c.spring, c.contact, four(100 * c.play_share), str(c.impacts),
+            four(float(c.approach_speeds.max())) if c.rattles else "–", four(c.impact_energy) if c.rattles else "–",
+        )
+        for motion in contents.loaded
+        for c in motion.response.contacts
+    ]  # fmt: skip
+    heads = (
+        "case", "spring", "contact", "in the softest stage [%]", "impacts per period", "fastest approach [rad/s]",
+        "impact energy per period [J]",
+    )  # fmt: skip
+    return Table(heads, tuple(rows)) if rows else None
+
+
 def bending(contents: Contents, unit: str) -> Table:
     """Bending critical speeds of tubes against the highest speed of the range."""
     high = contents.overview.speed_range[1]
