@@ -28,6 +28,9 @@ def empty_series(program):
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def joint_series(program, block, begin, unit, series, start):
     used = 1 if block.alike else LANES
+    wound = False
+    for j in range(len(program.joint_rate)):
+        wound = wound or (program.joint_speed_source[j] >= 0 and abs(program.joint_rate[j]) != 1.0)
     for j in range(len(program.joint_rate)):
         own = series[j * PER_SERIES : (j + 1) * PER_SERIES]
         joint = block.joint[j * PER_JOINT : (j + 1) * PER_JOINT]
@@ -43,6 +46,8 @@ def joint_series(program, block, begin, unit, series, start):
             driven_at_varying_speed(used, own)
         ratio_series(joint, used, own)
         _output(joint, used, own, leaves)
+        if wound:
+            _output_angle(joint, used, own, leaves)
         group, factor = program.joint_ratio_source[j], program.joint_ratio[j]
         if group < 0:
             for k in range((ORDER + 1) * LANES):
@@ -104,6 +109,12 @@ def _output(joint, used, own, leaves):
         over = own[OWN_RATIO * ROWS + lane] / cb
         leaves[COS_OUT * LANES + lane] = 0.5 * (cb * cb * (1.0 + c) - (1.0 - c)) * over
         leaves[SIN_OUT * LANES + lane] = cb * s * over
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _output_angle(joint, used, own, leaves):
+    for lane in range(used):
+        cb, c, s = joint[COSINE * LANES + lane], own[COS_IN * ROWS + lane], own[SIN_IN * ROWS + lane]
         t = (1.0 - cb) / (1.0 + cb)
         leaves[ANGLE_OUT * LANES + lane] += math.atan2(t * s, 1.0 - t * c)
 """

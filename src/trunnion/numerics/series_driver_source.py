@@ -35,7 +35,7 @@ LONGEST, STEEPEST = 4.0, 0.7
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def all_columns(w, n, h, u, series):
     wide, size = 2 * n, 2 * n * ROWS
-    near_squares(w)
+    begin_step(w, h)
     for c in range(wide):
         for i in range(wide):
             at, o = STATE_ROW + i * ROWS, (c * wide + i) * LANES

@@ -34,6 +34,7 @@ class _Rows:
         self.stiffness = [self._take(1) for _ in range(n)]
         self.damping = [self._take(1) for _ in range(n)]
         self.frequency = self._take(1)
+        self.rate_damping = {i: self._take(1) for i in self.jointed}
         self.state = [self._take(ORDER + 1) for _ in range(2 * n)]
         self.twist = {i: self._take(ORDER + 1) for i in self.jointed}
         self.torque = {i: self._take(ORDER) for i in self.jointed}
@@ -58,7 +59,7 @@ def series_step_source(parent: tuple[int, ...]) -> str:
     ]
     for k in range(ORDER):
         out += _loop(_order(k, parent, rows))
-    out += [*_function("near_squares(w)"), *_loop(_near_squares(rows))]
+    out += [*_function("begin_step(w, h)"), *_loop(_begin(rows))]
     out += [
         *_function("evaluate(series, count, s, u)"),
         "    for i in range(count):",
@@ -101,9 +102,12 @@ def _start(n: int, rows: _Rows) -> list[str]:
     return [f"{_at(rows.square + LAST)} += {squares}"]
 
 
-def _near_squares(rows: _Rows) -> list[str]:
-    """The couplings must be as well known as the motion: the damping trace rests on them alone."""
-    lines = []
+def _begin(rows: _Rows) -> list[str]:
+    """What all columns share.
+
+    The couplings must be as well known as the motion: the damping trace rests on them alone.
+    """
+    lines = [f"{_at(d)} = {_at(rows.damping[i])} / (h * {_at(rows.frequency)})" for i, d in rows.rate_damping.items()]
     for m in range(LAST):
         total = "".join(f" + {_at(row)} * {_at(row)}" for row in (e + ORDER + 1 - LAST + m for e in rows.near.values()))
         lines.append(f"{_at(rows.square + m)} = 0.0{total}")
@@ -118,9 +122,10 @@ def _order(k: int, parent: tuple[int, ...], rows: _Rows) -> list[str]:
         lines.append(f"x{i} = nu * {_at(rows.state[n + i] + k)} * {1 / (k + 1)!r}")
         lines.append(f"{_at(rows.state[i] + k + 1)} = x{i}")
     for i, p in enumerate(parent):
-        kappa, d = _at(rows.stiffness[i]), _at(rows.damping[i])
+        kappa = _at(rows.stiffness[i])
         if p < 0:
-            lines.append(f"T{i} = {kappa} * {_at(rows.state[i] + k)} + {d} * ({k + 1}.0 * x{i} / nu)")
+            rate = _at(rows.state[n + i] + k)
+            lines.append(f"T{i} = {kappa} * {_at(rows.state[i] + k)} + {_at(rows.damping[i])} * {rate}")
             continue
         e, x, q = rows.near[i], rows.state[p], rows.twist[i]
         if k == 0:
@@ -128,7 +133,7 @@ def _order(k: int, parent: tuple[int, ...], rows: _Rows) -> list[str]:
         passed = "".join(f" - {_at(e + j)} * {_at(x + k + 1 - j)}" for j in range(1, k + 2))
         lines.append(f"q{i} = x{i} - {_at(e)} * x{p}{passed}")
         lines.append(f"{_at(q + k + 1)} = q{i}")
-        lines.append(f"T{i} = {kappa} * {_at(q + k)} + {d} * ({k + 1}.0 * q{i} / nu)")
+        lines.append(f"T{i} = {kappa} * {_at(q + k)} + {k + 1}.0 * {_at(rows.rate_damping[i])} * q{i}")
         lines.append(f"{_at(rows.torque[i] + k)} = T{i}")
     for i in range(n):
         force = f"-T{i}"
