@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.certify_chaos import certify_chaos
     from trunnion.analyses.chaos_zero_one import zero_one_test
     from trunnion.analyses.describing_function import DescribingFunction
+    from trunnion.analyses.exact_motion import exact_motion
     from trunnion.analyses.frequency_response import compare_responses, frequency_response
     from trunnion.analyses.harmonic_balance import harmonic_balance
     from trunnion.analyses.harmonic_balance_springs import balance_springs
@@ -178,6 +179,7 @@ _HOME = {
     "cubic_spring": "trunnion.systems.second_order",
     "balance_springs": "trunnion.analyses.harmonic_balance_springs",
     "gear_pair": "trunnion.systems.gear_pair",
+    "exact_motion": "trunnion.analyses.exact_motion",
     "exact_oscillator": "trunnion.equations.exact_oscillator",
     "base_radius": "trunnion.systems.gear_pair",
     "frequency_response": "trunnion.analyses.frequency_response",

@@ -48,6 +48,11 @@ def test_json_is_alone_on_stdout(start):
     assert json.loads(out)["driveline"] == "test line"
 
 
+def test_the_package_itself_is_the_command_too(start):
+    code, out, err = finished(start("--version", program=("-m", "trunnion")))
+    assert (code, err) == (0, "") and out.startswith("trunnion ")
+
+
 def test_bad_input(start):
     code, out, err = finished(start("stability", "line.toml", "--speed", "0"))
     assert code == 2

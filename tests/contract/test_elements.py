@@ -11,10 +11,12 @@ from trunnion.driveline import (
     ConstantSpeed,
     Disk,
     Driveline,
+    GearPair,
     HookeJoint,
     IdealJoint,
     LoadCase,
     Operation,
+    PiecewiseShaft,
     Ratio,
     Shaft,
     deg,
@@ -37,6 +39,15 @@ ONE_OF_EACH = [
     Ratio(ratio=-4.1),
     Ratio(teeth_in=10, teeth_out=41),
 ]
+WITH_STAGES = [
+    GearPair(
+        teeth_in=20, teeth_out=31, module="4 mm", pressure_angle="22.5 deg", mesh_stiffness=2e8, mesh_damping=900,
+        damping_law="in contact", backlash="0.1 mm", stiffness_ratio=0.05,
+        transmission_error=[{"amplitude": "4 um", "phase": "30 deg"}], stiffness_variation=[{"share": 0.1, "order": 2}],
+    ),
+    GearPair(base_radius_in=0.04, base_radius_out=0.06, mesh_stiffness=2e8, angular_backlash="0.2 deg"),
+    PiecewiseShaft(breakpoints=["-4 deg", "4 deg"], stiffnesses=[2e3, 0, 2.5e3], damping=0.3, fork_offset="90 deg"),
+]  # fmt: skip
 
 
 def small_line(**rest):
@@ -53,7 +64,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element

@@ -31,6 +31,8 @@ def test_examples_run_in_order() -> None:
         "GearPair 1",
         "PiecewiseShaft 1",
     ]
+    assert names["exact"].outcome.ok and len(names["exact"].events) > 20 and names["orbit"].contacts[1].rattles
+    assert [p.kind for p in names["over_speed"].special] == ["grazing"] and names["over_speed"].outcome.ok
     # The line's pair of gears is the pair at the top of the page, but for the transmission error.
     same = names["pair"].but(harmonics=(), name=names["one"].name)
     assert names["one"].inertia == pytest.approx(same.inertia) and names["one"].slopes == pytest.approx(same.slopes)

@@ -35,6 +35,10 @@ STEP, LEAST_STEP = 0.1, 1e-8
 """Largest and smallest step along the branch, in units of the scales."""
 UNTOLD = 1e-6
 """A spectral radius nearer to 1 than this is not told from it."""
+NOISE = 1e-8
+"""A test function below this on both sides changes sign by rounding, as Π(σ_i σ_j − 1) does without damping."""
+BOUNDLESS = 30.0
+"""Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
 
 
 class Names(Protocol):
@@ -187,9 +191,18 @@ class PeriodicBranch:
 
 
 def follow_both_ways(
-    problem: Problem, first: Array, low: float, high: float, most_points: int, tolerance: float = CLOSE
+    problem: Problem,
+    first: Array,
+    low: float,
+    high: float,
+    most_points: int,
+    tolerance: float = CLOSE,
+    stop: Callable[[CurvePoint], bool] | None = None,
 ) -> tuple[list[tuple[CurvePoint, str]], Outcome]:
-    """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome."""
+    """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome.
+
+    ``stop`` ends the branch at the first point it is true of; that end is an outcome of kind "stopped".
+    """
     begin = float(first[-1])
     curves: list[Curve] = []
     for direction in (-1.0, 1.0):
@@ -199,9 +212,11 @@ def follow_both_ways(
             follow(
                 problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
                 first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
-                tolerance=tolerance,
+                tolerance=tolerance, on_point=stop,
             )
         )  # fmt: skip
+        if curves[-1].ending is Ending.STOPPED:
+            return [(point, "") for point in curves[-1].points], _ending(problem, curves[-1])
         if curves[-1].ending is Ending.CLOSED:
             break  # the other way is the same way round
     outcomes = [_ending(problem, curve) for curve in curves]
@@ -217,19 +232,35 @@ def follow_both_ways(
 def _ending(problem: Problem, curve: Curve) -> Outcome:
     """The end of a curve as a sentence."""
     count = len(curve.points)
-    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}" if count else "its start"
+    unit = "" if problem.over.unit == "1" else f" {problem.over.unit}"
+    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}{unit}" if count else "its start"
     if curve.ending is Ending.BOUND:
         return Outcome(True, "end", f"followed to {at}")
     if curve.ending is Ending.CLOSED:
         return Outcome(True, "closed", "the branch closes on itself")
+    if curve.ending is Ending.STOPPED:
+        return Outcome(False, "stopped", f"stopped at {at}")
+    if _boundless(problem, curve):
+        words = f"the motion grows without bound towards {at}, where nothing damps it"
+        return Outcome(False, "unbounded", f"{words}; give damping, or end the range before")
     if curve.ending is Ending.POINTS:
         return Outcome(False, "points", f"stopped after {count} points at {at}; raise most_points or longest_step")
     return Outcome(
         False,
         "lost",
-        f"the branch was lost at {at} after {count} points: no step converges there; loosen the tolerance, or look for "
-        "a switching surface that the motion touches",
+        f"the branch was lost at {at} after {count} points: no step converges there; lower longest_step (of a series: "
+        "raise harmonics), or look for a switching surface that the motion touches",
     )
+
+
+def _boundless(problem: Problem, curve: Curve) -> bool:
+    """Whether the last half of the curve does nothing but grow at nearly one value of the parameter."""
+    if len(curve.points) < 8:
+        return False
+    z = curve.z / problem.scale
+    size, late = np.linalg.norm(z[:, :-1], axis=1), z[len(z) // 2 :, -1]
+    growing = bool(np.all(np.diff(size[len(z) // 2 :]) > 0)) and size[-1] > BOUNDLESS * size.min()
+    return growing and float(np.ptp(late)) < 0.02 * float(np.ptp(z[:, -1]))
 
 
 def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, str]]:
@@ -249,7 +280,8 @@ def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, st
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
             ends = test(problem.multipliers(here)), test(problem.multipliers(there))
-            if not ends[0] * ends[1] < 0 or (kind == "branch point" and i in folds):
+            told = ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
+            if not told or (kind == "branch point" and i in folds):
                 continue
             met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
             if met is not None and (kind != "Neimark–Sacker" or _on_circle(problem.multipliers(met))):

@@ -11,7 +11,7 @@ motion misses its start after a period is the ``defect``, the error of the serie
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,7 +40,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 FEWEST, MOST = 8, 256
 """Harmonics to begin with, and the most that a tail is answered with."""
-TAIL = 1e-6
+TAIL, KINKED_TAIL = 1e-6, 1e-4
+"""Of a smooth motion, whose coefficients fall exponentially; of one with kinks, whose rates fall like k⁻³."""
 SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
 """Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
 MOST_STEPS = 200_000
@@ -107,7 +108,7 @@ def harmonic_balance(
     speed: float | None = None,
     periods: int = 1,
     harmonics: int | None = None,
-    tail: float = TAIL,
+    tail: float | None = None,
     longest_step: float = 0.01,
     most_points: int = 2000,
 ) -> HarmonicBalance:
@@ -119,7 +120,8 @@ def harmonic_balance(
         ``periods`` > 1 gives subharmonic motions, an isolated branch is followed from a ``start`` on it.
     start : a state near the first motion at t = 0, or its series (n, 2H + 1).
     harmonics : number of harmonics H of the motion's own period; by default as many as bring the last ones below
-        ``tail`` times the motion everywhere on the branch (at most 256).
+        ``tail`` times the motion everywhere on the branch (at most 256; the outcome says if these are too few).
+    tail : 1e-6 by default, 1e-4 for systems with regimes.
 
     Returns
     -------
@@ -131,19 +133,23 @@ def harmonic_balance(
     """
     if harmonics is not None and not 1 <= harmonics <= 10_000:
         raise InputError("must be a whole number of at least 1", key="harmonics", value=harmonics)
-    if not 0 < tail < 1:
+    if tail is not None and not 0 < tail < 1:
         raise InputError("must lie between 0 and 1", key="tail", value=tail, remedy="write 1e-6, say")
     over = system_over(line, parameter, low, high, begin, speed, longest_step / STEP)
+    limit = tail or (TAIL if over.at(over.begin).regimes is None else KINKED_TAIL)
     h = harmonics or FEWEST * periods
     rows = _first_rows(over, start, periods, h)
-    while True:
-        # Matrices of a few hundred rows: a library's threads would spend their time waiting for each other.
-        with threadpool_limits(1, user_api="blas"):
-            found = _followed(over, rows, periods, h, low, high, most_points)
-        if harmonics is not None or 2 * h > MOST or not len(found.rows) or found.tail.max() < tail:
-            return found
-        h *= 2
-        rows = fourier.resized(rows, h)
+    # Matrices of a few hundred rows: a library's threads would spend their time waiting for each other.
+    with threadpool_limits(1, user_api="blas"):
+        while harmonics is None and 2 * h <= MOST:
+            found = _followed(over, rows, periods, h, low, high, most_points, limit)
+            if found is not None and (not len(found.rows) or found.tail.max() < limit):
+                return found
+            h *= 2
+            rows = fourier.resized(rows, h)
+        found = _followed(over, rows, periods, h, low, high, most_points)
+    assert found is not None
+    return found if harmonics is not None else _judged(found, limit)
 
 
 def _first_rows(over: SystemOver, start: ArrayLike | None, periods: int, h: int) -> Array:
@@ -161,10 +167,23 @@ def _first_rows(over: SystemOver, start: ArrayLike | None, periods: int, h: int)
 
 
 def _followed(
-    over: SystemOver, rows: Array, periods: int, h: int, low: float, high: float, most_points: int
-) -> HarmonicBalance:
+    over: SystemOver,
+    rows: Array,
+    periods: int,
+    h: int,
+    low: float,
+    high: float,
+    most_points: int,
+    limit: float = np.inf,
+) -> HarmonicBalance | None:
+    """The branch with h harmonics; None as soon as a point of it needs more to keep its tail below the limit."""
     problem = _Balance(over, periods, h)
-    whole, outcome = follow_both_ways(problem, problem.packed(rows, over.begin), low, high, most_points)
+    first = problem.packed(rows, over.begin)
+    whole, outcome = follow_both_ways(
+        problem, first, low, high, most_points, stop=lambda point: not _tail(problem.rows(point)) < limit
+    )
+    if outcome.kind == "stopped" and np.isfinite(limit):
+        return None
     if not whole:
         nothing = f"no motion with {h} harmonics was found near {over.label} = {over.begin:g}; give a start"
         outcome = Outcome(False, "not found", nothing)
@@ -177,6 +196,16 @@ def _result(problem: _Balance, points: list[tuple[CurvePoint, str]], outcome: Ou
     tails = np.array([_tail(row) for row in rows])
     defects = np.array([problem.defect(point) for point, _ in points])
     return HarmonicBalance(collect(problem, points, outcome), rows, tails, defects, problem.periods)
+
+
+def _judged(found: HarmonicBalance, limit: float) -> HarmonicBalance:
+    """With the outcome that the tail asked for was not reached, if so."""
+    worst = float(found.tail.max()) if len(found.tail) else 0.0
+    if worst < limit:
+        return found
+    words = f"{found.outcome.sentence}; the last of {found.harmonics} harmonics are still {worst:.1e} of the motion"
+    outcome = Outcome(False, "tail", f"{words}: raise tail above {limit:.1g}, or give harmonics")
+    return replace(found, branch=replace(found.branch, outcome=outcome))
 
 
 def _tail(rows: Array) -> float:

@@ -153,16 +153,28 @@ class _Shooting:
         return -1 if run is None else len(run.event_time)
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
-        """See ``branch.Problem``."""
-        system, start, count = self.over.at(point.parameter), point.z[:-1], 1024
+        """See ``branch.Problem``; NaN where the motion cannot be computed."""
+        system, count = self.over.at(point.parameter), 1024
         assert system.forcing_period is not None
         period = self.periods * system.forcing_period
-        run = integrate(
-            system.equations, 0.0, period, start, regime=system.regime_at(0.0, start), tolerance=self.tolerance,
-            most_steps=MOST_INTEGRATION_STEPS,
-        )  # fmt: skip
+        run = self._seen(system, point.z[:-1], period)
+        if run is None:
+            curves = np.full(len(self.over.curves), np.nan)
+            return curves, curves, np.full(self.size, np.nan), period
         times = period * np.arange(count) / count
         states = run.at(times)
         amplitude = 2 * np.abs(np.fft.rfft(states, axis=0)[1]) / count
         low, high = extremes(self.over.observe(system, times, states))
         return high - low, np.maximum(np.abs(low), np.abs(high)), amplitude, period
+
+    def _seen(self, system: System, start: Array, period: float) -> Trajectory | None:
+        """One period with dense output. A motion that touches a switching surface may chatter there at one tolerance
+        and pass at another; both look the same."""
+        for looser in (1, 10, 100):
+            run = integrate(
+                system.equations, 0.0, period, start, regime=system.regime_at(0.0, start),
+                tolerance=looser * self.tolerance, most_steps=MOST_INTEGRATION_STEPS,
+            )  # fmt: skip
+            if run.end is End.REACHED:
+                return run
+        return None

@@ -12,7 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.closing import refuse_speed
+from trunnion.analyses.exact_branch import exact_branch
 from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.arclength import CurvePoint
 from trunnion.numerics.piecewise import Passage, TooManyEventsError, measure, period
@@ -35,12 +39,13 @@ def check_range(low: float, high: float) -> None:
 
 
 def piecewise_branch(
-    oscillator: PiecewiseOscillator,
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
     low: float,
     high: float,
     *,
     begin: float | None = None,
     start: ArrayLike | None = None,
+    speed: float | None = None,
     periods: int = 1,
     longest_step: float = 0.01,
     most_points: int = 4000,
@@ -49,23 +54,35 @@ def piecewise_branch(
 
     Parameters
     ----------
+    oscillator : or a driveline that ``exact_motion`` takes, over its speed, or over the common frequency of its
+        excitations where those are in time.
     begin : frequency to begin at, ``low`` by default; the branch is followed both ways from it.
-    start : x and x′ at phase zero near the first motion; so isolated branches are reached.
+    start : x and x′ at phase zero near the first motion; so isolated branches are reached. Of a driveline as in
+        ``exact_motion``.
+    speed : of a driveline excited in time, where a viscous load depends on it.
     periods : forcing periods of the motion; 2 follows a motion of twice the period.
     longest_step : of the continuation, over the frequency range and over the size of the gap or of the motion.
 
     Returns
     -------
-    PeriodicBranch with curves "x" and "v"; where nothing was found at ``begin`` it has no points and says so.
+    PeriodicBranch with curves "x" and "v", of a driveline the torques of its springs; where nothing was found at
+    ``begin`` it has no points and says so.
 
     Raises
     ------
-    InputError : a range that does not rise, a frequency outside it, an undamped linear resonance.
+    InputError : a range that does not rise, a frequency outside it, an undamped linear resonance; a driveline
+        without exact motion, or excited both by its rotation and in time.
     """
     check_range(low, high)
     first = low if begin is None else float(begin)
     if not low <= first <= high:
         raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    if isinstance(oscillator, Driveline | Assembly):
+        return exact_branch(
+            oscillator, low, high, begin=first, start=start, speed=speed, periods=periods, longest_step=longest_step,
+            most_points=most_points,
+        )  # fmt: skip
+    refuse_speed(oscillator.name, speed)
     orbit = piecewise_orbit(oscillator.but(frequency=first), start, periods=periods)
     size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
     problem = _Exact(oscillator, periods, size, (high - low) * longest_step / STEP)

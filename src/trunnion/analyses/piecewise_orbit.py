@@ -8,10 +8,15 @@ touches a breakpoint (grazing) has no derivative there; ``clearance`` says how n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.closing import CLOSED, SETTLING, checked_periods, refuse_speed, verdict_of
+from trunnion.analyses.exact_orbit import ExactOrbit, exact_orbit
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.newton import solve
 from trunnion.numerics.piecewise import Passage, TooManyEventsError, measure, move, period, states
@@ -23,11 +28,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
-CLOSED = 1e-11
-"""How well an orbit must close, in units of its size."""
-UNTOLD = 1e-9
-"""A spectral radius nearer to 1 than this is not told from it."""
-SETTLING = (0, 50, 500)
 
 
 def contact_state(sides: str) -> str:
@@ -116,16 +116,6 @@ class PiecewiseOrbit:
     __repr__ = __str__
 
 
-def verdict_of(multipliers: Complex) -> Verdict:
-    """The verdict on two multipliers known to rounding."""
-    radius = float(np.abs(multipliers).max())
-    if not np.isfinite(radius):
-        return Verdict.FAILED
-    if abs(radius - 1) <= UNTOLD:
-        return Verdict.UNDECIDED
-    return Verdict.STABLE if radius < 1 else Verdict.UNSTABLE
-
-
 def refuse_unbounded(oscillator: PiecewiseOscillator) -> None:
     """Refuse a linear oscillator driven, undamped, at its own frequency.
 
@@ -143,27 +133,54 @@ def refuse_unbounded(oscillator: PiecewiseOscillator) -> None:
             )  # fmt: skip
 
 
+@overload
 def piecewise_orbit(
     oscillator: PiecewiseOscillator, start: ArrayLike | None = None, *, periods: int = 1, settle: bool = True
-) -> PiecewiseOrbit:
+) -> PiecewiseOrbit: ...
+@overload
+def piecewise_orbit(
+    oscillator: Driveline | Assembly,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    periods: int = 1,
+    settle: bool = True,
+) -> ExactOrbit: ...
+
+
+def piecewise_orbit(
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    periods: int = 1,
+    settle: bool = True,
+) -> PiecewiseOrbit | ExactOrbit:
     """The periodic motion near ``start``, stable or not.
 
     Parameters
     ----------
-    start : x and x′ near it at phase zero; by default rest at the static equilibrium.
+    oscillator : or a driveline that ``exact_motion`` takes.
+    start : x and x′ near it at phase zero, by default rest at the static equilibrium; of a driveline twists and rates
+        (2m,) as in ``exact_motion``.
+    speed : of a driveline as in ``exact_motion``.
     periods : forcing periods in one period of the motion.
     settle : where shooting fails, let 50 and then 500 periods pass and shoot again.
 
     Returns
     -------
-    An orbit whose ``outcome`` says whether it was found; otherwise its numbers are NaN.
+    An orbit whose ``outcome`` says whether it was found; otherwise its numbers are NaN. Of a driveline an
+    ``ExactOrbit``.
 
     Raises
     ------
-    InputError : a start that is not two finite numbers; an undamped linear resonance.
+    InputError : a start that is not two finite numbers; an undamped linear resonance; a driveline that has no exact
+        motion, no excitation or none with a common period.
     """
-    if isinstance(periods, bool) or periods != int(periods) or periods < 1:
-        raise InputError("must be a whole number from 1", key="periods", value=periods)
+    periods = checked_periods(periods)
+    if isinstance(oscillator, Driveline | Assembly):
+        return exact_orbit(oscillator, start, speed=speed, periods=periods, settle=settle)
+    refuse_speed(oscillator.name, speed)
     first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
     if first.shape != (2,) or not np.isfinite(first).all():
         raise InputError("must be x and x′, two finite numbers", element=oscillator.name, key="start", value=start)

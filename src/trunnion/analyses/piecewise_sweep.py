@@ -7,12 +7,17 @@ one frequency, and the rattle index, what the impacts of a period amount to, ove
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.closing import refuse_speed
+from trunnion.analyses.exact_sweep import LineSweep, exact_sweep
+from trunnion.analyses.jumps import abrupt_changes
 from trunnion.analyses.piecewise_orbit import CONTACT, PiecewiseOrbit, contact_state, piecewise_orbit, refuse_unbounded
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise import COLUMNS, MOST_EVENTS, kernel
 from trunnion.results.outcome import Outcome
@@ -25,8 +30,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
-JUMP, ABRUPT = 0.25, 2.0
-"""A change between neighbours is a jump if it is this share of the larger swing and that many times those beside."""
 
 
 @dataclass(frozen=True)
@@ -65,12 +68,8 @@ class Sweep:
     @property
     def jumps(self) -> tuple[tuple[float, float], ...]:
         """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
-        swing = self.peak_to_peak
-        change = np.abs(np.diff(swing))
-        around = np.pad(change, 1)
-        usual = np.maximum(around[:-2], around[2:])
-        abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
-        return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in np.flatnonzero(abrupt))
+        places = abrupt_changes(self.peak_to_peak)
+        return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in places)
 
     @property
     def data(self) -> xr.Dataset:
@@ -110,6 +109,7 @@ class Sweep:
     __repr__ = __str__
 
 
+@overload
 def sweep(
     oscillator: PiecewiseOscillator,
     frequencies: ArrayLike,
@@ -118,25 +118,62 @@ def sweep(
     least: int = LEAST,
     most: int = MOST,
     same: float = SAME,
-) -> Sweep:
+) -> Sweep: ...
+@overload
+def sweep(
+    oscillator: Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> LineSweep: ...
+
+
+def sweep(
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> Sweep | LineSweep:
     """Steady motions over ``frequencies`` in the order given: rising for an up-sweep, falling for a down-sweep.
 
     Parameters
     ----------
-    frequencies : (points,) [rad/s].
-    start : x and x′ at the first; by default rest at the static equilibrium.
+    oscillator : or a driveline that ``exact_motion`` takes, which is swept over its speed, or over the common
+        frequency of its excitations where those are in time.
+    frequencies : (points,) [rad/s]; of a driveline speeds, where its excitation turns with it.
+    start : state at the first: x and x′, by default rest at the static equilibrium; of a driveline as in
+        ``exact_motion``.
+    speed : of a driveline excited in time, where a viscous load depends on it.
     least, most : periods of every step.
     same : relative change of the state per period below which, three times running, a motion counts as settled.
 
+    Returns
+    -------
+    Sweep; of a driveline LineSweep with the torques of its springs.
+
     Raises
     ------
-    InputError : frequencies that are not positive, an undamped linear resonance among them.
+    InputError : frequencies that are not positive, an undamped linear resonance among them; a driveline without exact
+        motion, or excited both by its rotation and in time.
     """
     omegas = np.ascontiguousarray(np.atleast_1d(np.asarray(frequencies, dtype=float)))
     if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
         raise InputError("must be positive numbers", key="frequencies", value=np.asarray(frequencies).tolist())
     if not 1 <= least <= most:
         raise InputError("must be from 1, and no less than least", key="least, most", value=[least, most])
+    if isinstance(oscillator, Driveline | Assembly):
+        return exact_sweep(
+            oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same, measured=MEASURED
+        )
+    refuse_speed(oscillator.name, speed)
     for omega in omegas:
         refuse_unbounded(oscillator.but(frequency=float(omega)))
     first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)

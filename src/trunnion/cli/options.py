@@ -81,15 +81,15 @@ def read_unit(line: Driveline, unit: str | None) -> str:
     return unit
 
 
-def read_speed(text: str | None, unit: str) -> float | None:
+def read_speed(text: str | None, unit: str, key: str = "--speed") -> float | None:
     """``"1500 rpm"``, or a bare number in ``unit``, as a positive speed in rad/s."""
     if text is None:
         return None
     from trunnion.driveline.quantities import SPEED
 
-    speed = _quantity(text, SPEED.name, unit, key="--speed")
+    speed = _quantity(text, SPEED.name, unit, key=key)
     if not speed > 0:
-        raise InputError("must be positive", key="--speed", value=text, remedy='write "1500 rpm", say')
+        raise InputError("must be positive", key=key, value=text, remedy='write "1500 rpm", say')
     return speed
 
 

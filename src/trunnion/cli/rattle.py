@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.options import Json, file_stem, read_line
+from trunnion.cli.options import Json, file_stem, read_line, read_speed
 from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
 
@@ -25,8 +25,11 @@ Subject = Annotated[
         metavar="NAME", help="gear-rattle, dead-zone-oscillator, another reference system, or a driveline file."
     ),
 ]
-From = Annotated[float | None, typer.Option("--from", help="Lowest frequency (of a longer line: speed) [rad/s].")]
-To = Annotated[float | None, typer.Option("--to", help="Highest frequency (of a longer line: speed) [rad/s].")]
+From = Annotated[
+    str | None,
+    typer.Option("--from", help='Lowest frequency [rad/s]; of a longer line the speed, "300 rpm" or in its unit.'),
+]
+To = Annotated[str | None, typer.Option("--to", help="Highest frequency or speed.")]
 Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
 ]
@@ -49,6 +52,9 @@ def frequency_response(
         float | None, typer.Option("--fit-range", help="Of the cubic fit of averaging and multiple scales [x].")
     ] = None,
     harmonics: Annotated[int | None, typer.Option("--harmonics", help="Of harmonic balance.", min=1)] = None,
+    curve: Annotated[
+        str, typer.Option("--curve", help="State of a system or shaft of a line to look at; default: the first.")
+    ] = "",
     to: Output = None,
     as_json: Json = False,
 ) -> None:
@@ -56,29 +62,34 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.frequency_response import METHODS, ResponseComparison
+    from trunnion.analyses.frequency_response import ResponseComparison, methods_of
     from trunnion.analyses.frequency_response import frequency_response as compute
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-    subject = _subject(name, parameters)
-    low, high = _range(subject, low, high)
+    subject, length = _subject(name, parameters)
+    unit = _unit(subject)
+    first, last = _range(subject, low, high)
     _check(to)
-    piecewise = isinstance(subject, PiecewiseOscillator)
-    first = METHODS[0] if piecewise else "harmonic balance"
-    chosen = list(METHODS) if method == ["all"] and piecewise else (method or [first])
+    known = methods_of(subject)
+    # The exact motion of longer lines is for those without joints: asked for by name.
+    every = known if isinstance(subject, PiecewiseOscillator) else known[:2]
+    chosen = list(every) if method == ["all"] else (method or [known[0]])
     with output.compile_notice():
         found = ResponseComparison(
-            {m: compute(subject, low, high, method=m, **_options(m, fit_range, harmonics)) for m in chosen}
+            {
+                m: compute(subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics))
+                for m in chosen
+            }
         )
     for response in found.responses.values():
         if not len(response.frequency):
             response.outcome.require()
     one = found.responses[chosen[0]]
-    written = _files(to, file_stem(name), "frequency-response", one.data, lambda: found.plot())
+    written = _files(to, file_stem(name), "frequency-response", one.data, lambda: found.plot(length=length, unit=unit))
     if as_json:
         output.write_json("frequency-response", {"methods": _json(found), "written": [str(path) for path in written]})
         return
-    text = str(one) if len(chosen) == 1 else f"{found}\n\n{one}"
+    text = one.describe(unit) if len(chosen) == 1 else f"{found.describe(unit)}\n\n{one.describe(unit)}"
     _print(text, written)
 
 
@@ -98,22 +109,24 @@ def sweep(
     """
     import numpy as np
 
+    from trunnion.analyses.free_play import require_forced
     from trunnion.analyses.piecewise_branch import check_range
     from trunnion.analyses.piecewise_sweep import sweep as compute
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-    subject = _subject(name, parameters)
+    subject, length = _subject(name, parameters)
     if not isinstance(subject, PiecewiseOscillator):
         raise InputError(
             "is not swept: it has no gap, or is more than one equation", key="NAME", value=name,
-            remedy=f"use {GEARS}, {DEAD_ZONE} or a line of two inertias and one mesh, or run-up",
+            remedy=f"use {GEARS}, {DEAD_ZONE} or a line of two inertias and one mesh; or frequency-response, run-up",
         )  # fmt: skip
-    low, high = _range(subject, low, high)
+    first, last = _range(subject, low, high)
     if direction not in ("up", "down", "both"):
         raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
-    check_range(low, high)
+    check_range(first, last)
+    require_forced(subject)
     _check(to)
-    grid = np.linspace(low, high, points)
+    grid = np.linspace(first, last, points)
     with output.compile_notice():
         found = [
             compute(subject, grid if d == "up" else grid[::-1]) for d in ("up", "down") if direction in (d, "both")
@@ -122,7 +135,7 @@ def sweep(
     def draw() -> Any:
         from trunnion.plots.frequency_response import draw_sweeps
 
-        return draw_sweeps(found)
+        return draw_sweeps(found, length=length)
 
     written = _files(to, file_stem(name), "sweep", _sweeps_data(found), draw)
     if as_json:
@@ -146,54 +159,66 @@ def sweep(
     _print("\n".join(map(str, found)), written)
 
 
-def _subject(name: str, parameters: list[str] | None) -> PiecewiseOscillator | System | Driveline:
+def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillator | System | Driveline, str]:
+    """What is meant, and the unit of its x if it has one."""
     from trunnion.driveline.refusals import nearest
-    from trunnion.published import catalogue
+    from trunnion.published import catalogue, entries
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.reference import SYSTEMS
 
     values = _values(parameters)
-    if Path(name).suffix:
-        if values:
-            remedy = "edit the file instead"
-            raise InputError("belongs to reference systems", key="--set", value=parameters, remedy=remedy)
-        return _of_line(read_line(name))
     if name == GEARS:
-        return catalogue("gear-rattle", **values)
-    if name not in SYSTEMS:
-        known = [GEARS, *SYSTEMS]
-        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=nearest(name, known))
-    system = SYSTEMS[name]().with_parameters(values)
-    return PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system
+        return catalogue("gear-rattle", **values), "rad"
+    if name in SYSTEMS:
+        system = SYSTEMS[name]().with_parameters(values)
+        return PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system, ""
+    lines = [entry.name for entry in entries()]
+    if not Path(name).suffix and not Path(name).exists() and name not in lines:
+        remedy = nearest(name, [GEARS, *SYSTEMS, *lines])
+        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=remedy)
+    if values:
+        remedy = "edit the file instead"
+        raise InputError("belongs to reference systems", key="--set", value=parameters, remedy=remedy)
+    return _of_line(read_line(name))
 
 
-def _of_line(line: Driveline) -> PiecewiseOscillator | Driveline:
-    """One equation where the line is that, and nothing in it grows with the speed."""
+def _of_line(line: Driveline) -> tuple[PiecewiseOscillator | Driveline, str]:
+    """One equation where the line is that, and nothing in it grows with the speed; and the unit of its x."""
     from trunnion.driveline.gears import GearPair
     from trunnion.driveline.stages import PiecewiseShaft
     from trunnion.equations.exact_oscillator import exact_oscillator
 
-    small = len(line.elements) == 3 and isinstance(line.elements[1], GearPair | PiecewiseShaft)
-    return exact_oscillator(line) if small and not getattr(line.elements[1], "transmission_error", ()) else line
+    spring = line.elements[1] if len(line.elements) == 3 else None
+    phased = isinstance(spring, GearPair) and bool(spring.transmission_error)
+    if not isinstance(spring, GearPair | PiecewiseShaft) or phased:
+        return line, ""
+    return exact_oscillator(line), "m" if isinstance(spring, GearPair) else "rad"
 
 
-def _range(
-    subject: PiecewiseOscillator | System | Driveline, low: float | None, high: float | None
-) -> tuple[float, float]:
+def _unit(subject: PiecewiseOscillator | System | Driveline) -> str:
+    from trunnion.analyses.overview import speed_unit
+    from trunnion.driveline.driveline import Driveline
+
+    return speed_unit(subject) if isinstance(subject, Driveline) else "rad/s"
+
+
+def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, high: str | None) -> tuple[float, float]:
     """As given; else about the frequency of the excitation, or a line's range of speeds."""
     from trunnion.analyses.overview import speed_range
     from trunnion.driveline.driveline import Driveline
     from trunnion.equations.coefficients import assemble
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
+    unit = _unit(subject)
+    first, last = read_speed(low, unit, "--from"), read_speed(high, unit, "--to")
+    if first is not None and last is not None:
+        return first, last
     usual = 0.3, 1.3
-    if low is not None and high is not None:
-        usual = low, high
-    elif isinstance(subject, Driveline):
+    if isinstance(subject, Driveline):
         usual = speed_range(assemble(subject, tripods=True))
     elif isinstance(subject, PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
         usual = 0.5 * subject.frequency, 1.5 * subject.frequency
-    return usual[0] if low is None else low, usual[1] if high is None else high
+    return usual[0] if first is None else first, usual[1] if last is None else last
 
 
 def _values(parameters: list[str] | None) -> dict[str, float]:

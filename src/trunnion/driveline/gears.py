@@ -27,6 +27,8 @@ from trunnion.errors import InputError
 
 DampingLaw = Literal["always", "in contact", "never pulling"]
 LAWS = ("always", "in contact", "never pulling")
+COARSEST, WIDEST = 0.2, 0.1
+"""Modules [m] and shares of the smaller base radius beyond which a unit was probably left out."""
 STEEPEST = 45 * DEGREE
 """Pressure angles are less than this."""
 
@@ -240,6 +242,12 @@ class GearPair(Element):
     def doubts(self) -> Iterator[Doubt]:
         if self.stiffness_ratio and not self.total_backlash:
             yield ("stiffness_ratio", "has no backlash to act in", "give backlash or angular_backlash")
+        if self.module is not None and self.module > COARSEST:
+            yield ("module", f"is {self.module:g} m", 'write "4 mm", say: a number alone is in metres')
+        elif self.total_backlash > WIDEST * min(self.radii):
+            key = "backlash" if self.backlash else "angular_backlash"
+            problem = f"is {self.total_backlash:.3g} m along the line of action, as wide as teeth"
+            yield (key, problem, 'write "0.1 mm" or "0.1 deg", say: a number alone is in metres or radians')
 
     @property
     def fraction(self) -> Fraction:

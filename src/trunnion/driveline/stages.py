@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from math import pi
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Element
+from trunnion.driveline.elements import Doubt, Element
 from trunnion.driveline.quantities import ANGLE, Angle, Damping, Stiffness, parse
 from trunnion.errors import InputError
 
@@ -74,6 +75,12 @@ class PiecewiseShaft(Element):
             remedy = 'write "always" or "in contact"'
             raise InputError("is unknown", key="damping_law", value=data["damping_law"], remedy=remedy)
         return data
+
+    def doubts(self) -> Iterator[Doubt]:
+        widest = max(self.breakpoints, key=abs)
+        if abs(widest) > pi:
+            remedy = 'write "4 deg", say: a number alone is in radians'
+            yield ("breakpoints", f"reach {widest:g} rad, more than half a turn", remedy)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

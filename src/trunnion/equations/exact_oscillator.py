@@ -55,7 +55,7 @@ def exact_oscillator(line: Driveline, speed: float | None = None) -> PiecewiseOs
     near, far = (np.inf if isinstance(e, ConstantSpeed) else e.moment_of_inertia for e in (front, back))
     r1, r2 = spring.radii if isinstance(spring, GearPair) else (-1.0, -1.0)
     inertia = 1 / (r1**2 / near + r2**2 / far)
-    turning = _Turning(line, speed)
+    turning = Turning(line, speed)
     mean, parts = 0.0, Parts()
     gearing = 1 / spring.speed_ratio if isinstance(spring, GearPair) else 1.0
     for disk, lever, rate in ((front, r1 / near, 1.0), (back, -r2 / far, gearing)):
@@ -83,8 +83,8 @@ def _three(line: Driveline) -> tuple[Disk | ConstantSpeed, GearPair | PiecewiseS
     ):
         raise InputError(
             "is not one spring with stages between two inertias", element="driveline",
-            remedy="write [Disk or ConstantSpeed, GearPair or PiecewiseShaft, Disk]; longer lines take tn.simulate, "
-            "tn.periodic_branch and tn.harmonic_balance",
+            remedy="write [Disk or ConstantSpeed, GearPair or PiecewiseShaft, Disk]; longer lines take "
+            "tn.exact_motion, tn.piecewise_orbit and tn.simulate",
         )  # fmt: skip
     front, spring, back = elements
     assert isinstance(front, Disk | ConstantSpeed) and isinstance(back, Disk)
@@ -104,7 +104,7 @@ def _three(line: Driveline) -> tuple[Disk | ConstantSpeed, GearPair | PiecewiseS
     return front, spring, back
 
 
-class _Turning:
+class Turning:
     """The mean input speed, asked for only where something depends on it."""
 
     def __init__(self, line: Driveline, speed: float | None) -> None:
@@ -135,7 +135,7 @@ def _oscillator(
         # From torque over twist of the output gear to force over deflection, which point against each other.
         out = spring.radii[1]
         knots, slopes, damping = -out * knots[::-1], slopes[::-1] / out**2, damping / out**2
-    base = _common(line, sorted({frequency for frequency, _ in parts}))
+    base = common_frequency(sorted({frequency for frequency, _ in parts}))
     first, harmonics = 0.0, []
     for frequency, amplitude in parts:
         order = round(frequency / base)
@@ -151,8 +151,13 @@ def _oscillator(
     )  # fmt: skip
 
 
-def _common(line: Driveline, frequencies: list[float]) -> float:
-    """The frequency that all are multiples of."""
+def common_frequency(frequencies: list[float]) -> float:
+    """The frequency [rad/s] that all are multiples of; 1 where there is none.
+
+    Raises
+    ------
+    InputError : none of usable size.
+    """
     if not frequencies:
         return 1.0
     ratios = [Fraction(f / frequencies[0]).limit_denominator(MOST_ORDER) for f in frequencies]

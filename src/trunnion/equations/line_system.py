@@ -288,6 +288,17 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
     InputError : a second prescribed speed; what ``assemble`` refuses.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line, tripods=True)
+    refuse_second_speed(assembly)
+    return LineSystem(assembly, float(speed))
+
+
+def refuse_second_speed(assembly: Assembly) -> None:
+    """Refuse a line whose two ends are both prescribed.
+
+    Raises
+    ------
+    InputError : so.
+    """
     if sum(assembly.topology.prescribed) > 1:
         raise InputError(
             "a second prescribed speed has no place in the nonlinear equations",
@@ -295,4 +306,3 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
             key="ConstantSpeed",
             remedy="end the line with a Disk",
         )
-    return LineSystem(assembly, float(speed))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,16 +16,22 @@ if TYPE_CHECKING:
     from trunnion.analyses.piecewise_sweep import Basins, Sweep
 
 STYLES = {
-    "exact": ("#1a1a1a", 2.2),
-    "shooting": ("#1a1a1a", 2.2),
-    "harmonic balance": ("#0072b2", 1.3),
+    "exact": ("#1a1a1a", 3.0),
+    "shooting": ("#1a1a1a", 3.0),
+    "harmonic balance": ("#56b4e9", 1.2),  # upon the exact curve, with which it coincides
     "describing function": ("#d55e00", 1.5),
     "averaging": ("#009e73", 3.6),  # beneath multiple scales, with which it coincides
     "multiple scales": ("#cc79a7", 1.5),
 }
-SWEEPS = {"sweep up": ("^", "#56b4e9"), "sweep down": ("v", "#e69f00")}
+SWEEPS = {"sweep up": ("^", "#0072b2", 0.0), "sweep down": ("v", "#e69f00", 0.5)}
+"""Shape, colour, and by what part of the distance between marks they begin later, not to hide each other."""
+SWEPT = 36
+"""Marks of a sweep, evenly over its range; it may have many more steps."""
 MARKS = {"fold": "o", "period doubling": "s", "Neimark–Sacker": "D", "branch point": "*", "grazing": "x"}
 DASHED = (0, (4, 2))
+ARROW = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0}
+JUMP = "jump of a slow sweep"
+CONTACTS = {"none": "#56b4e9", "one-sided": "#e69f00", "two-sided": "#d55e00"}
 
 
 def draw_responses(
@@ -32,6 +39,7 @@ def draw_responses(
     axes: Axes | None = None,
     *,
     length: str = "",
+    unit: str = "rad/s",
     marks: bool = True,
     jumps: bool = True,
     top: float | None = None,
@@ -42,36 +50,25 @@ def draw_responses(
     ----------
     responses : method → response; the special points are those of the first that has any.
     length : unit of x, for the axis.
+    unit : of the frequency, ``rad/s``, ``rpm`` or ``Hz``; "" for a number without one.
     marks, jumps : draw special points; draw arrows where a slow sweep leaves a fold.
     top : of the vertical axis.
     """
     axes = axes or new_axes(7.2, 4.9)
-    marked = False
+    factor = speed_factor(unit) if unit else 1.0
     for name, response in responses.items():
-        frequency, size = response.frequency, response.half_peak_to_peak
-        if name in SWEEPS:
-            shape, colour = SWEEPS[name]
-            axes.plot(frequency, size, shape, color=colour, ms=3.8, mfc="none", mew=0.9, ls="", label=name, zorder=4)
-            continue
-        colour, width = STYLES.get(name, (FAINT, 1.4))
-        stable = response.stable
-        axes.plot(frequency, np.where(_spread(stable), size, np.nan), color=colour, lw=width, label=name)
-        axes.plot(frequency, np.where(~stable, size, np.nan), color=colour, lw=0.8 * width, ls=DASHED)
-        special = [m for m in getattr(response, "marks", ()) if m[0] in MARKS]
-        if marks and special and not marked:
-            marked = True
-            for kind, shape in MARKS.items():
-                points = [(f, a) for k, f, a in special if k == kind]
-                if points:
-                    axes.plot(*np.array(points).T, shape, color=INK, ms=6, mfc="none", ls="", label=kind, zorder=5)
-            if jumps:
-                _arrows(axes, response)
+        _curve(axes, name, response, factor)
     if any(not r.stable.all() for r in responses.values() if hasattr(r, "stable")):
         axes.plot([], [], color=FAINT, lw=1.2, ls=DASHED, label="unstable")
-    of, what, unit = _followed(responses)
-    axes.set_xlabel(f"{of} [rad/s]", fontsize=TEXT, color=INK)
-    unit = f" [{length or unit}]" if length or unit else ""
-    axes.set_ylabel(f"half peak-to-peak of {what}{unit}", fontsize=TEXT, color=INK)
+    marked = next((r for r in responses.values() if any(m[0] in MARKS for m in getattr(r, "marks", ()))), None)
+    if marks and marked is not None:
+        _special_points(axes, marked, factor)
+        if jumps:
+            _arrows(axes, marked, factor)
+    of, what, own = _followed(responses)
+    axes.set_xlabel(f"{of} [{unit}]" if unit else of, fontsize=TEXT, color=INK)
+    of_what = f" [{length or own}]" if length or own else ""
+    axes.set_ylabel(f"half peak-to-peak of {what}{of_what}", fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0, top=top)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
@@ -79,13 +76,38 @@ def draw_responses(
     return axes
 
 
+def _curve(axes: Axes, name: str, response: Any, factor: float) -> None:
+    """One method: a line, full where stable and dashed where not; or the marks of a sweep."""
+    frequency, size = response.frequency * factor, response.half_peak_to_peak
+    if name in SWEEPS:
+        shape, colour, later = SWEEPS[name]
+        every = max(len(frequency) // SWEPT, 1)
+        shown = slice(int(later * every), None, every)
+        axes.plot(frequency[shown], size[shown], shape, color=colour, ms=4.5, mfc="none", mew=1.0, label=name, zorder=4)
+        return
+    colour, width = STYLES.get(name, (FAINT, 1.4))
+    stable = response.stable
+    axes.plot(frequency, np.where(_spread(stable), size, np.nan), color=colour, lw=width, label=name)
+    axes.plot(frequency, np.where(~stable, size, np.nan), color=colour, lw=0.8 * width, ls=DASHED)
+
+
+def _special_points(axes: Axes, response: Any, factor: float) -> None:
+    for kind, shape in MARKS.items():
+        points = [(f * factor, a) for k, f, a in response.marks if k == kind]
+        if points:
+            x, y = np.array(points).T
+            axes.plot(x, y, shape, color=INK, ms=6, mfc="none", ls="", label=kind, zorder=5)
+
+
 def _followed(responses: Mapping[str, Any]) -> tuple[str, str, str]:
     """What runs along the axis, what is drawn, and its unit; a driveline's branch knows better than the usual words."""
-    detail = next((r.detail for r in responses.values() if hasattr(r, "detail")), None)
+    first = next((r for r in responses.values() if hasattr(r, "detail")), None)
+    detail = getattr(first, "detail", None)
     branch: Any = getattr(detail, "branch", detail)
-    if getattr(branch, "label", "") == "speed":
-        return "input speed", f"the torque of {branch.curves[0]}", "N·m"
-    return "frequency ω", "x", ""
+    curve = getattr(first, "curve", "x")
+    if getattr(branch, "curve_unit", "") == "N*m":
+        return "input speed" if branch.label == "speed" else branch.label, f"the torque of {curve}", "N·m"
+    return "frequency ω", curve, ""
 
 
 def _spread(stable: Any) -> Any:
@@ -95,8 +117,9 @@ def _spread(stable: Any) -> Any:
     return out
 
 
-def _arrows(axes: Axes, response: Any) -> None:
+def _arrows(axes: Axes, response: Any, factor: float) -> None:
     """From every fold to the stable motion that is left there: the nearest in size of the others."""
+    drawn = False
     for kind, at, size in response.marks:
         if kind != "fold":
             continue
@@ -107,30 +130,41 @@ def _arrows(axes: Axes, response: Any) -> None:
             landing = (
                 max(both, key=lambda a: abs(a - size)) if len(both) == 1 else min(both, key=lambda a: abs(a - size))
             )
-            arrow = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0, "shrinkA": 4, "shrinkB": 2}
-            axes.annotate("", (at, landing), (at, size), arrowprops=arrow)
+            arrow = {**ARROW, "shrinkA": 4, "shrinkB": 2}
+            axes.annotate("", (at * factor, landing), (at * factor, size), arrowprops=arrow)
+            drawn = True
+    if drawn:
+        _arrow_entry(axes, FAINT)
 
 
-def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: str = "") -> Axes:
-    """Half peak-to-peak of sweeps, coloured by what is touched, jumps marked."""
+def _arrow_entry(axes: Axes, colour: str) -> None:
+    """A line of the legend for the arrows, which have none of their own."""
+    axes.plot([], [], color=colour, lw=1.0, marker=r"$\rightarrow$", ms=11, mew=0.2, ls="", label=JUMP)
+
+
+def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: str = "", unit: str = "rad/s") -> Axes:
+    """Half peak-to-peak of sweeps, coloured by what is touched (full going up, hollow going down), jumps marked."""
     axes = axes or new_axes(7.2, 4.4)
-    colours = {"none": "#56b4e9", "one-sided": "#e69f00", "two-sided": "#d55e00"}
-    shown: set[str] = set()
+    factor = speed_factor(unit) if unit else 1.0
     for one in sweeps:
-        size = one.peak_to_peak / 2
-        axes.plot(one.frequency, size, color="#bbbbbb", lw=0.8, zorder=1)
-        for kind, colour in colours.items():
+        x, size = one.frequency * factor, one.peak_to_peak / 2
+        axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)
+        for kind, colour in CONTACTS.items():
             here = np.array([c == kind for c in one.contact])
             if here.any():
+                shape, wide, inside = ("^", 3.4, colour) if one.up else ("v", 6.0, "none")
                 label = f"{kind}, {'up' if one.up else 'down'}"
-                shape = "^" if one.up else "v"
-                axes.plot(one.frequency[here], size[here], shape, color=colour, ms=4, ls="", label=label)
-                shown.add(label)
+                axes.plot(x[here], size[here], shape, color=colour, ms=wide, mfc=inside, ls="", label=label)
+        loose = ~one.settled
+        if loose.any():
+            words = None if one is not sweeps[0] else "not of one period"
+            axes.plot(x[loose], size[loose], "_", color=INK, ms=8, mew=0.8, label=words, zorder=5)
         for a, b in one.jumps:
             i, j = int(np.flatnonzero(one.frequency == a)[0]), int(np.flatnonzero(one.frequency == b)[0])
-            arrow = {"arrowstyle": "-|>", "color": INK, "lw": 1.0}
-            axes.annotate("", (b, size[j]), (a, size[i]), arrowprops=arrow)
-    axes.set_xlabel("frequency ω [rad/s]", fontsize=TEXT, color=INK)
+            axes.annotate("", (x[j], size[j]), (x[i], size[i]), arrowprops={**ARROW, "color": INK})
+    if any(one.jumps for one in sweeps):
+        _arrow_entry(axes, INK)
+    axes.set_xlabel(f"frequency ω [{unit}]" if unit else "frequency ω", fontsize=TEXT, color=INK)
     axes.set_ylabel(f"half peak-to-peak of x{f' [{length}]' if length else ''}", fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0)
     axes.grid(which="major", color="#dddddd", lw=0.6)
@@ -139,7 +173,7 @@ def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: st
     return axes
 
 
-def draw_basins(basins: Basins, axes: Axes | None = None) -> Axes:
+def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -> Axes:
     """The plane of starts, one colour per attractor, its start at phase zero as a cross."""
     from matplotlib.colors import ListedColormap
 
@@ -152,11 +186,13 @@ def draw_basins(basins: Basins, axes: Axes | None = None) -> Axes:
         shading="nearest",
     )  # fmt: skip
     for i, orbit in enumerate(basins.attractors):
-        words = f"{orbit.contact} contact, {orbit.peak_to_peak / 2:.3g}"
+        words = f"{orbit.contact} contact, half peak-to-peak {orbit.peak_to_peak / 2:.3g}"
         axes.plot(*orbit.start, "x", color=INK, ms=8, mew=1.8)
         axes.plot([], [], "s", color=colours[1 + i % 5], label=words)
-    axes.set_xlabel("x at phase zero", fontsize=TEXT, color=INK)
-    axes.set_ylabel("x′ at phase zero", fontsize=TEXT, color=INK)
+    if np.any(basins.number < 0):
+        axes.plot([], [], "s", color=colours[0], mec=FAINT, label="no motion of one period")
+    axes.set_xlabel(f"x at phase zero{f' [{length}]' if length else ''}", fontsize=TEXT, color=INK)
+    axes.set_ylabel(f"x′ at phase zero{f' [{length}/s]' if length else ''}", fontsize=TEXT, color=INK)
     plain(axes)
     axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
     return axes

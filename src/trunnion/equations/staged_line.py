@@ -1,0 +1,337 @@
+"""A driveline whose springs are linear stage by stage as a flow that is exact within every stage.
+
+Without bent joints the inertias M are constant, and the twists q = E y + e(t) of the springs, y the deviations of the
+inertias from uniform rotation and e the transmission errors of the meshes, follow from each other alone:
+
+    q″ = −E M⁻¹ Eᵀ f(q, q′) − E M⁻¹ V E⁻¹ (q′ − e′) + E M⁻¹ T(t) + e″,
+
+V the viscous loads and T the outer torques. In a line that starts free the rotation of the first inertia does not
+matter to the twists unless a viscous load resists it; then it is one more unknown, a spring without torque.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk, HookeJoint, TripodJoint
+from trunnion.driveline.gears import GearPair
+from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.exact_oscillator import Turning, common_frequency
+from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
+from trunnion.equations.line_system import refuse_second_speed
+from trunnion.equations.topology import Topology
+from trunnion.errors import InputError
+from trunnion.numerics.staged_flow import StagedFlow
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+Clock = Literal["speed", "frequency", "both", "none"]
+
+
+@dataclass(frozen=True)
+class Wave:
+    """One harmonic of all that excites the line, at ω = cycles · Ω + frequency.
+
+    force (m,): complex amplitude in q″; error (m,): of the transmission errors, e = Re(error · e^{iωt}).
+    """
+
+    cycles: float
+    frequency: float
+    force: Complex
+    error: Complex
+
+
+@dataclass(frozen=True)
+class StagedLine:
+    """A line ready for exact motion at one speed or frequency.
+
+    springs: names of the compliances (m,), massless shafts in series as one; ``turns`` with one more unknown at the
+    end, the rotation of the first inertia. speed [rad/s] of the input, None where nothing depends on it. pieces,
+    guards, then, counts as in ``StagedFlow``; sides (m, stages): −1 below the softest stage, +1 above, 0 in it;
+    staged (m,): whether a spring has more than one stage; knots: largest breakpoint of every spring (m,) [rad], 0 of
+    linear ones.
+    """
+
+    assembly: Assembly
+    springs: tuple[str, ...]
+    turns: bool
+    speed: float | None
+    inverse: Array
+    drag: Array
+    constant: Array
+    constant_by_speed: Array
+    waves: tuple[Wave, ...]
+    pieces: Array
+    guards: Array
+    then: Integers
+    counts: Integers
+    sides: Integers
+
+    @property
+    def name(self) -> str:
+        """Of the line."""
+        return self.assembly.line.name or "driveline"
+
+    @property
+    def size(self) -> int:
+        """Number of unknown twists, the rotation of the first inertia included where it counts."""
+        return len(self.inverse)
+
+    @property
+    def staged(self) -> Integers:
+        """Places of the springs with several stages."""
+        return np.flatnonzero(self.counts > 1)
+
+    @cached_property
+    def knots(self) -> Array:
+        """Largest breakpoint of every spring (m,) [rad], 0 where it has none."""
+        watched = self.then >= 0
+        by_twist = np.where(self.guards[..., 0] == 0, 1.0, np.abs(self.guards[..., 0]))
+        return np.asarray(np.where(watched, np.abs(self.guards[..., 2]) / by_twist, 0.0).max(axis=(1, 2)))
+
+    @cached_property
+    def clock(self) -> Clock:
+        """What turns the excitation: the speed of the line, frequencies in time, both or nothing."""
+        turning, in_time = any(w.cycles for w in self.waves), any(w.frequency for w in self.waves)
+        return "both" if turning and in_time else "speed" if turning else "frequency" if in_time else "none"
+
+    @cached_property
+    def base(self) -> float:
+        """The frequency [rad/s] that all harmonics are multiples of, at the line's own speed.
+
+        Raises
+        ------
+        InputError : nothing excites the line, or there is none of usable size.
+        """
+        if not self.waves:
+            raise InputError(
+                "is excited by nothing, so its motion has no period", element="driveline", key="excitation",
+                remedy="give a disk an excitation or a mesh a transmission_error; tn.exact_motion takes it as it is",
+            )  # fmt: skip
+        return common_frequency(sorted({self._frequency(w) for w in self.waves}))
+
+    @property
+    def value(self) -> float:
+        """The clock's own value: the speed, or the common frequency [rad/s]."""
+        return float(self.speed or 0.0) if self.clock == "speed" else self.base
+
+    def period(self, value: float | None = None) -> float:
+        """Common period [s] of all excitation, at another value of the clock perhaps."""
+        period = 2 * np.pi / self.base
+        return period if value is None else period * self.value / value
+
+    def _frequency(self, wave: Wave) -> float:
+        return wave.cycles * (self.speed or 0.0) + wave.frequency
+
+    def flow(self, value: float | None = None) -> StagedFlow:
+        """The flow, at another value of the clock perhaps, with its derivative by that value."""
+        m, speed, stretch, by_speed = self.size, self.speed or 0.0, 1.0, self.clock == "speed"
+        if value is not None:
+            speed, stretch = (value, 1.0) if by_speed else (speed, value / self.value)
+        waves = self.waves
+        cycles = np.array([w.cycles for w in waves])
+        in_time = np.array([w.frequency for w in waves])
+        omega = cycles * speed + in_time * stretch
+        rate = cycles if by_speed or self.clock in ("both", "none") else in_time / self.value
+        push = np.array([w.force for w in waves], dtype=complex).reshape(-1, m)
+        error = np.array([w.error for w in waves], dtype=complex).reshape(-1, m)
+        dragged = error @ self.drag.T
+        w = omega[:, None]
+        return StagedFlow(
+            inverse=self.inverse,
+            drag=self.drag,
+            constant=self.constant + self.constant_by_speed * speed,
+            frequencies=omega,
+            force=push - w**2 * error + 1j * w * dragged,
+            constant_slope=self.constant_by_speed if by_speed else np.zeros(m),
+            frequency_slope=np.asarray(rate),
+            force_slope=(-2 * w * error + 1j * dragged) * np.reshape(rate, (-1, 1)),
+            pieces=self.pieces,
+            guards=self.guards,
+            then=self.then,
+            counts=self.counts,
+        )
+
+    def errors(self, time: float) -> tuple[Array, Array]:
+        """Transmission errors as angles of the output gears (m,) [rad], and their rates."""
+        e, rate = np.zeros(self.size), np.zeros(self.size)
+        for wave in self.waves:
+            omega = self._frequency(wave)
+            turned = wave.error * np.exp(1j * omega * time)
+            e += turned.real
+            rate += (1j * omega * turned).real
+        return e, rate
+
+    def rest(self) -> Array:
+        """The state (2m,) at t = 0 in which the line turns uniformly: the start of ``simulate``."""
+        return np.concatenate(self.errors(0.0))
+
+    def from_rotations(self, state: Array, time: float = 0.0) -> Array:
+        """The state (2m,), twists and their rates, of deviations from uniform rotation and rates (2n,)."""
+        e, rate = self.errors(time)
+        n = len(state) // 2
+        twisting = twisting_of(self.assembly.topology, self.turns)
+        return np.concatenate([twisting @ state[:n] + e, twisting @ state[n:] + rate])
+
+
+def staged_line(line: Driveline | Assembly, speed: float | None = None) -> StagedLine:
+    """The line as an exact flow.
+
+    Parameters
+    ----------
+    speed : mean input speed [rad/s], by which mesh phases and orders turn into frequencies and viscous loads have a
+        mean; by default that of the line's operation. Asked for only where it matters.
+
+    Raises
+    ------
+    InputError : a bent Hooke's or tripod joint, a mesh stiffness that varies, a quadratic load, two prescribed
+        speeds, no speed where one is needed.
+    """
+    if not isinstance(line, Driveline | Assembly):
+        raise InputError(
+            f"is a {type(line).__name__}, which has no exact motion by stages", key="line", remedy="give a Driveline"
+        )
+    assembly = line if isinstance(line, Assembly) else assemble(line, tripods=True)
+    refuse_second_speed(assembly)
+    _refuse_inexact(assembly.line)
+    return _Builder(assembly, Turning(assembly.line, speed)).build()
+
+
+def twisting_of(topo: Topology, turns: bool) -> Array:
+    """E (m, n): twist of every spring per rotation of every unknown; a last row for the first inertia's rotation."""
+    rows = [elongation(topo, e) for e in range(len(topo.compliances))]
+    if turns:
+        rows.append(np.eye(topo.size)[topo.coordinate[0]])
+    return np.array(rows)
+
+
+def _refuse_inexact(line: Driveline) -> None:
+    elsewhere = "use tn.simulate, tn.periodic_response or tn.periodic_branch, which locate changes of stage"
+    for element, name in zip(line.elements, line.names, strict=True):
+        found: tuple[str, str] | None = None
+        if isinstance(element, HookeJoint | TripodJoint) and element.angle:
+            found = "angle", "bends the line, so that no stage is linear with constant coefficients"
+        elif isinstance(element, GearPair) and element.stiffness_variation:
+            found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"
+        elif isinstance(element, Disk) and element.quadratic_load:
+            found = "quadratic_load", "is not linear in the speed, so that no motion is exact"
+        if found:
+            key, problem = found
+            value = getattr(element, key)
+            raise InputError(
+                problem, element=name, key=key, value=value if isinstance(value, float) else None, remedy=elsewhere
+            )
+
+
+class _Builder:
+    """The parts of a ``StagedLine``, each by its own rule."""
+
+    def __init__(self, assembly: Assembly, turning: Turning) -> None:
+        self.assembly, self.topo, self.turning = assembly, assembly.topology, turning
+        self.row = assembly.table(1)[0]
+        self.coefficients = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
+        self.laws = staged_springs(assembly, self.row)
+        self.viscous = self._viscous()
+        self.turns = self.topo.free and bool(self.viscous.any())
+        self.twisting = twisting_of(self.topo, self.turns)
+        mass = aligned_matrices(self.topo, self.coefficients).mass[0]
+        self.accelerated = self.twisting / mass
+        """E M⁻¹, (m, n)."""
+
+    def build(self) -> StagedLine:
+        line, topo = self.assembly.line, self.topo
+        drag = np.zeros((len(self.twisting),) * 2)
+        if self.viscous.any():
+            drag = (self.accelerated * self.viscous) @ np.linalg.inv(self.twisting)
+        constant, by_speed = self._constant()
+        waves = tuple(self._torques() + self._errors())
+        needed = any(w.cycles for w in waves) or bool(by_speed.any() and not topo.free)
+        speed = self.turning.given
+        if needed:
+            speed = self.turning.speed(line)
+        pieces, guards, then, counts, sides = self._stages()
+        springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
+        return StagedLine(
+            self.assembly, springs, self.turns, speed, self.accelerated @ self.twisting.T, drag, constant, by_speed,
+            waves, pieces, guards, then, counts, sides,
+        )  # fmt: skip
+
+    def _push(self, station: int) -> Array:
+        """q″ (m,) by a unit torque at a station."""
+        coordinate = self.topo.coordinate[self.topo.group_of(station)]
+        if coordinate < 0:
+            return np.zeros(len(self.twisting))
+        return np.asarray(self.accelerated[:, coordinate] * relative_ratio(self.topo, station))
+
+    def _loads(self) -> list[tuple[int, float]]:
+        """Stations with viscous loads [N m s/rad]."""
+        column = self.assembly.packed.column
+        return [(s, float(self.row[column(i, "viscous_load")])) for s, i in self.topo.disks]
+
+    def _viscous(self) -> Array:
+        """V (n,)."""
+        out = np.zeros(self.topo.size)
+        for station, load in self._loads():
+            coordinate = self.topo.coordinate[self.topo.group_of(station)]
+            if coordinate >= 0:
+                out[coordinate] += load * relative_ratio(self.topo, station) ** 2
+        return out
+
+    def _constant(self) -> tuple[Array, Array]:
+        """q″ (m,) by the loads, and its part per input speed."""
+        mean = [float(q) for q in self.topo.speed_ratio]
+        constant, by_speed = np.zeros(len(self.twisting)), np.zeros(len(self.twisting))
+        for station in range(len(self.topo.stations)):
+            constant -= self._push(station) * self.coefficients.load[0, station] * np.sign(mean[station])
+        for station, load in self._loads():
+            by_speed -= self._push(station) * load * mean[station]
+        return constant, by_speed
+
+    def _torques(self) -> list[Wave]:
+        found, column = [], self.assembly.packed.column
+        for station, i in self.topo.disks:
+            element, mean = self.assembly.line.elements[i], float(self.topo.speed_ratio[station])
+            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
+                amplitude, phase = (self.row[column(i, f"excitation {h} {k}")] for k in ("amplitude", "phase"))
+                push = self._push(station) * float(np.sign(mean)) * amplitude * np.exp(1j * phase)
+                # By order at the mean rotation: the torque does not follow the deviation of its own disk.
+                cycles = abs(mean) * (harmonic.order or 0.0)
+                frequency = 0.0 if harmonic.order else float(self.row[column(i, f"excitation {h} frequency")])
+                if push.any():
+                    found.append(Wave(cycles, frequency, push, np.zeros(len(push), dtype=complex)))
+        return found
+
+    def _errors(self) -> list[Wave]:
+        found = []
+        for e, law in self.laws.items():
+            for amplitude, cycles, phase in law.error:
+                error = np.zeros(len(self.twisting), dtype=complex)
+                error[e] = amplitude * np.exp(1j * phase)
+                if amplitude:
+                    found.append(Wave(float(cycles), 0.0, np.zeros(len(error), dtype=complex), error))
+        return found
+
+    def _stages(self) -> tuple[Array, Array, Integers, Integers, Integers]:
+        springs: Sequence[StagedSpring | None] = [self.laws.get(e) for e in range(len(self.twisting))]
+        count, most = len(springs), max([1, *(s.stages for s in springs if s)])
+        pieces, guards = np.zeros((count, most, 3)), np.zeros((count, most, GUARDS, 4))
+        then, sides = np.full((count, most, GUARDS), -1, dtype=np.int64), np.zeros((count, most), dtype=np.int64)
+        counts = np.ones(count, dtype=np.int64)
+        for e, spring in enumerate(springs):
+            if spring is None:
+                if e < len(self.topo.compliances):
+                    pieces[e, 0, :2] = self.coefficients.damping[0, e], self.coefficients.stiffness[0, e]
+                continue
+            counts[e] = n = spring.stages
+            pieces[e, :n], sides[e, :n], then[e, :n] = spring.table[:, :3], spring.side, spring.then
+            guards[e, :n] = spring.table[:, 3:].reshape(n, GUARDS, 4)
+        return pieces, guards, then, counts, sides
