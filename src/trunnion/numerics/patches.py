@@ -78,7 +78,10 @@ class Patch:
     def columns(self, u: Array) -> Array:
         """Coefficients of T_i(v) along each column ``u``; shape (quantity, i, u)."""
         across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1), self.coefficients.shape[2])
-        return np.asarray(self.coefficients @ across)
+        out = np.empty((*self.coefficients.shape[:2], len(u)))
+        for weights, own in zip(self.coefficients, out, strict=True):
+            weighted_sums(weights, across[None], own[None])
+        return out
 
     def weights(self, v: Array) -> Array:
         """T_i(v) of rows ``v``; shape (v, i)."""

@@ -4,7 +4,8 @@ Scaled so that e₄ = 1, x⁴ − ax³ + bx² − cx + 1 is (x² − px + q)(x²
 w = q + t ≥ 2 is the largest root of w³ − bw² + (ac − 4)w − (a² + c² − 4b), a cubic that is not positive at 2.
 
 Every step is a loop over a chunk of pixels without branches, which the compiler turns into vector
-instructions; what Newton's method did not settle is marked, for ``characteristic`` to treat one by one.
+instructions; the few that those steps did not settle take as many as they need one by one, and what is left
+then is marked, for ``characteristic`` to treat.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ CHUNK = 256
 CUBIC_STEPS = 12
 """Newton steps on the resolvent: from beyond the root they halve the distance at first, then square it."""
 POLISHING_STEPS = 2
+PATIENT_STEPS = 200
+"""Newton steps for those that had too few."""
 SETTLED = 1e-13
 """Residual of the factors over the size of the coefficients."""
 A, B, C, SCALE, SCALE2, W, P, S, Q, T, LEFT, RADIUS, ERROR, REAL, IMAGINARY = range(15)
@@ -38,6 +41,7 @@ def quartic_chunk(values, bounds, work):  # type: ignore[no-untyped-def]
     for _ in range(POLISHING_STEPS):
         _polish(work)
     _residual(work)
+    _settle(work)
     _radii(bounds[0], bounds[1], bounds[2], bounds[3], work)
 
 
@@ -69,36 +73,17 @@ def _largest_resolvent_root(w):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
 def _factor(w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
-        a, b, c, x = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l], w[W * CHUNK + l]
-        spread = math.sqrt(max(0.25 * a * a - b + x, 0.0))
-        apart = math.sqrt(max(0.25 * x * x - 1, 0.0))
-        p, s = 0.5 * a + spread, 0.5 * a - spread
-        q, t = 0.5 * x + apart, 0.5 * x - apart
-        swapped = abs(p * q + s * t - c) < abs(p * t + s * q - c)
-        w[P * CHUNK + l], w[S * CHUNK + l] = p, s
-        w[Q * CHUNK + l] = t if swapped else q
-        w[T * CHUNK + l] = q if swapped else t
+        p, s, q, t = _factors(w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l], w[W * CHUNK + l])
+        w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l] = p, s, q, t
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
 def _polish(w):  # type: ignore[no-untyped-def]
-    """One Newton step on p + s = a, q + t + ps = b, pt + sq = c, qt = 1, if it is a small one."""
     for l in range(CHUNK):
         a, b, c = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l]
         p, s, q, t = w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l]
-        r1, r2, r3, r4 = a - p - s, b - q - t - p * s, c - p * t - s * q, 1 - q * t
-        # With ds = r1 − dp: dq + dt = u − v dp and s dq + p dt = g − h dp.
-        v, u, h, g = s - p, r2 - p * r1, t - q, r3 - q * r1
-        den = p - s
-        slope = -t * v * den + (q - t) * (s * v - h)
-        dp = ((r4 - t * u) * den - (q - t) * (g - s * u)) / slope
-        dt = (g - h * dp - s * (u - v * dp)) / den
-        dq = u - v * dp - dt
-        small = abs(dp) + abs(dq) + abs(dt) < 1e-2 * (1 + abs(p) + abs(q))
-        w[P * CHUNK + l] = p + dp if small else p
-        w[S * CHUNK + l] = s + r1 - dp if small else s
-        w[Q * CHUNK + l] = q + dq if small else q
-        w[T * CHUNK + l] = t + dt if small else t
+        p, s, q, t = _polished(a, b, c, p, s, q, t)
+        w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l] = p, s, q, t
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
@@ -106,8 +91,66 @@ def _residual(w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
         a, b, c = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l]
         p, s, q, t = w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l]
-        left = abs(p + s - a) + abs(q + t + p * s - b) + abs(p * t + s * q - c) + abs(q * t - 1)
-        w[LEFT * CHUNK + l] = left / (1 + abs(a) + abs(b) + abs(c))
+        w[LEFT * CHUNK + l] = _left(a, b, c, p, s, q, t)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle(w):  # type: ignore[no-untyped-def]
+    """The few for which some steps were too few, as long as it takes: from beyond all roots Newton only descends."""
+    for l in range(CHUNK):
+        if w[LEFT * CHUNK + l] < SETTLED:
+            continue
+        a, b, c = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l]
+        c1, c0 = a * c - 4, 4 * b - a * a - c * c
+        x = 1 + max(abs(b), max(abs(c1), abs(c0)))
+        for _ in range(PATIENT_STEPS):
+            step = (((x - b) * x + c1) * x + c0) / ((3 * x - 2 * b) * x + c1)
+            x -= step
+            if not step > 1e-15 * x:
+                break
+        p, s, q, t = _factors(a, b, c, x)
+        for _ in range(2 * POLISHING_STEPS):
+            p, s, q, t = _polished(a, b, c, p, s, q, t)
+        w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l] = p, s, q, t
+        w[LEFT * CHUNK + l] = _left(a, b, c, p, s, q, t)
+
+
+@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+def _factors(a, b, c, x):  # type: ignore[no-untyped-def]
+    """p, s, q, t from the root x of the resolvent."""
+    spread = math.sqrt(max(0.25 * a * a - b + x, 0.0))
+    apart = math.sqrt(max(0.25 * x * x - 1, 0.0))
+    p, s = 0.5 * a + spread, 0.5 * a - spread
+    q, t = 0.5 * x + apart, 0.5 * x - apart
+    swapped = abs(p * q + s * t - c) < abs(p * t + s * q - c)
+    return p, s, t if swapped else q, q if swapped else t
+
+
+@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+def _polished(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
+    """One Newton step on p + s = a, q + t + ps = b, pt + sq = c, qt = 1, if it is a small one."""
+    r1, r2, r3, r4 = a - p - s, b - q - t - p * s, c - p * t - s * q, 1 - q * t
+    # With ds = r1 − dp: dq + dt = u − v dp and s dq + p dt = g − h dp.
+    v, u, h, g = s - p, r2 - p * r1, t - q, r3 - q * r1
+    den = p - s
+    slope = -t * v * den + (q - t) * (s * v - h)
+    dp = ((r4 - t * u) * den - (q - t) * (g - s * u)) / slope
+    dt = (g - h * dp - s * (u - v * dp)) / den
+    dq = u - v * dp - dt
+    small = abs(dp) + abs(dq) + abs(dt) < 1e-2 * (1 + abs(p) + abs(q))
+    return (
+        p + dp if small else p,
+        s + r1 - dp if small else s,
+        q + dq if small else q,
+        t + dt if small else t,
+    )
+
+
+@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+def _left(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
+    """What the factors leave of the polynomial, over its size."""
+    left = abs(p + s - a) + abs(q + t + p * s - b) + abs(p * t + s * q - c) + abs(q * t - 1)
+    return left / (1 + abs(a) + abs(b) + abs(c))
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
