@@ -51,8 +51,8 @@ def all_columns(w, n, h, u, series):
 @njit(cache=True, nogil=True)
 def length_of_step(squares, n, asked, last, grown):
     # The step, in units, after which the neglected terms reach ``asked`` per unit; their sizes go to the rows.
-    # They fall at least as fast as the last four computed ones do, so a geometric series bounds them; twice,
-    # because even and odd orders do not fall in step.
+    # They fall at least as fast as the last four computed ones do, two by two because even and odd orders do not
+    # fall in step, so that a geometric series in (fall · s)² bounds them.
     fall, worst = 0.0, 0.0
     for l in range(LANES):
         last[l] = np.sqrt(squares[2 * LANES + l] + squares[3 * LANES + l])
@@ -66,8 +66,8 @@ def length_of_step(squares, n, asked, last, grown):
         return LONGEST, fall
     s = 1.0
     for _ in range(3):
-        rest = max(1.0 - fall * s, 1.0 - STEEPEST)
-        s = (asked * rest / (2 * worst * fall * fall)) ** (1.0 / ORDER)
+        rest = 1.0 - min(fall * s, STEEPEST) ** 2
+        s = (asked * rest / (1.5 * worst * fall * fall)) ** (1.0 / ORDER)
     return min(s, STEEPEST / fall, LONGEST), fall
 
 
@@ -110,7 +110,7 @@ def propagate_block(program, block, begin, length, tolerance, most_steps, out, e
             s = left
         elif 2 * s > left:
             s = left / 2
-        power = 2 * fall * fall * s ** (ORDER + 1) / (1.0 - min(fall * s, STEEPEST))
+        power = 1.5 * fall * fall * s ** (ORDER + 1) / (1.0 - min(fall * s, STEEPEST) ** 2)
         for l in range(LANES):
             error[l] += power * last[l] / grown[l]
             largest[l] = max(largest[l], grown[l])
