@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
+import xarray as xr
 
 PAIR = """\
 format = 1
@@ -50,7 +52,12 @@ load_torque = "4 N*m"
 """
 UNLOADED = PAIR.replace('load_torque = "-1 N*m"\n', "").replace('load_torque = "1.5 N*m"\n', "")
 FREE = UNLOADED.replace("stiffness_ratio = 0.1", "stiffness_ratio = 0").replace('"6 N*m"', '"0.01 N*m"')
+GEARED = PAIR.replace("frequency = 3000", "order = 2").replace(
+    "\n[[element]]", '\n[operation]\nspeed = "900 rpm"\n\n[[element]]', 1
+) + CLUTCH.replace("4 N*m", "0 N*m")
+"""Three inertias, a mesh and a clutch, free at both ends."""
 FILES = {
+    "geared.toml": GEARED,
     "pair.toml": PAIR,
     "negative.toml": PAIR.replace('"40 um"', '"-40 um"'),
     "ratio.toml": PAIR.replace("= 0.1", "= 1.2"),
@@ -73,6 +80,9 @@ REFUSED = [
     (("natural-frequencies", "stages.toml"), "clutch (element 4).breakpoints = ['1 deg', '-1 deg']: must rise"),
     (("natural-frequencies", "one.toml"), "stiffnesses = "),
     (("sweep", "phased.toml"), "transmission_error 1 size"),
+    (("sweep", "two-shaft-cardan"), "HookeJoint 1"),
+    (("sweep", "duffing"), "has no gap to be swept over; use gear-rattle"),
+    (("sweep", "geared.toml", "--curve", "clutchh"), 'is no shaft or mesh of the line; did you mean "clutch"?'),
     (("frequency-response", "free.toml"), "moves less than its free play of 4e-05: no contact is possible"),
     (("frequency-response", "gear-rattle", "--set", "force=0"), "force = 0: is zero: nothing moves"),
     (("sweep", "gear-rattle", "--set", "force=0"), "force = 0: is zero: nothing moves"),
@@ -141,5 +151,23 @@ def test_a_longer_line_in_its_own_unit(run, here):
     assert one.exit_code == 0, one.stderr
     assert "by shooting" in one.stdout and "of clutch" in one.stdout and "rpm" in one.stdout
     assert "followed to speed = 64.926" in one.stdout
+    assert "may take minutes" in one.stderr
     named = run("frequency-response", "two-shaft-cardan", "--from", "0.5", "--to", "0.51", "-o", "c.png")
     assert named.exit_code == 0 and "by harmonic balance" in named.stdout, named.stderr
+
+
+def test_a_sweep_of_a_longer_line(run, here):
+    """Torques of every spring, in the file's unit; the picture of the one named; both directions in one dataset."""
+    (here / "geared.toml").write_text(GEARED, encoding="utf-8")
+    call = ("sweep", "geared.toml", "--from", "600", "--to", "900 rpm", "--points", "4")
+    result = run(*call, "--curve", "clutch", "-o", "s.png", "-o", "s.nc")
+    assert result.exit_code == 0, result.stderr
+    assert "sweep up of gear pair, 4 steps from 600 to 900 rpm" in result.stdout
+    assert "contact of mesh:" in result.stdout and "clutch: largest torque" in result.stdout
+    with xr.open_dataset(here / "s.nc", engine="h5netcdf") as data:
+        assert data["torque_high"].dims == ("direction", "speed", "spring")
+        assert data["speed"].values[[0, -1]] == pytest.approx([20 * np.pi, 30 * np.pi])
+        high = data["torque_high"].sel(direction="up", spring="clutch").values
+    content = json.loads(run(*call, "--direction", "up", "--json", "-o", "t.png").stdout)["sweeps"]
+    low = [h - s for h, s in zip(high, content[0]["torque_peak_to_peak"]["clutch"], strict=True)]
+    assert len(content) == 1 and np.all(np.isfinite(low)) and set(content[0]["contact"]) == {"mesh", "clutch"}

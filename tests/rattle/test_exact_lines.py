@@ -132,11 +132,11 @@ def test_an_undamped_resonance_and_free_flight() -> None:
     motion = tn.exact_motion(line, times=[0.0, 4.0, 9.0])
     t = motion.time
     np.testing.assert_allclose(motion.twist[:, 0], 1.5 * t * np.sin(10 * t) / 20, atol=1e-13)
-    gap = tn.PiecewiseShaft(breakpoints=["-50 rad", "50 rad"], stiffnesses=[1.0, 0.0, 1.0])
+    gap = tn.PiecewiseShaft(breakpoints=[-3.0, 3.0], stiffnesses=[1.0, 0.0, 1.0])
     free = tn.Driveline([tn.ConstantSpeed(), gap, tn.Disk(inertia=2.0, load_torque=3.0)])
-    motion = tn.exact_motion(free, times=[0.0, 1.0, 8.0, 9.0])
+    motion = tn.exact_motion(free, times=[0.0, 0.5, 1.5, 2.5])
     np.testing.assert_allclose(motion.twist[:3, 0], -0.75 * motion.time[:3] ** 2, rtol=1e-14)
-    assert motion.events.time == pytest.approx([np.sqrt(50 / 0.75)], rel=1e-15) and motion.events.side.tolist() == [-1]
+    assert motion.events.time == pytest.approx([np.sqrt(3 / 0.75)], rel=1e-15) and motion.events.side.tolist() == [-1]
 
 
 @pytest.mark.parametrize("law", ["in contact", "never pulling"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,11 +16,14 @@ from trunnion.analyses.spring_contacts import SpringContact
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
+from trunnion.errors import InputError
 from trunnion.numerics.staged_flow import kernel, move
 from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 REPEATS = 3
@@ -68,6 +71,30 @@ class LineSweep:
         found = {i for swing in self.torque_peak_to_peak.T for i in abrupt_changes(swing)}
         return tuple((float(self.value[i]), float(self.value[i + 1])) for i in sorted(found))
 
+    def swing_of(self, spring: str) -> Array:
+        """Peak-to-peak torque of one spring (points,) [N m].
+
+        Raises
+        ------
+        InputError : no such spring.
+        """
+        return self.torque_peak_to_peak[:, self._place(spring)]
+
+    def contact_of(self, spring: str) -> tuple[str, ...]:
+        """none, one-sided or two-sided (points,); of a spring without stages two-sided."""
+        staged = [self.springs[e] for e in self.line.staged]
+        if self.springs[self._place(spring)] not in staged:
+            return ("two-sided",) * len(self.value)
+        return tuple(row[staged.index(spring)].contact for row in self.contacts)
+
+    def _place(self, spring: str) -> int:
+        if spring not in self.springs:
+            raise InputError(
+                "is no spring of the line", element=self.line.name, key="spring", value=spring,
+                remedy=f"name one of {', '.join(self.springs)}",
+            )  # fmt: skip
+        return self.springs.index(spring)
+
     @property
     def data(self) -> xr.Dataset:
         """Labelled dataset with units."""
@@ -98,22 +125,39 @@ class LineSweep:
                    "outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
         )  # fmt: skip
 
-    def __str__(self) -> str:
-        rough = int((~self.settled).sum())
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
+        from trunnion.plots.frequency_response import draw_line_sweeps
+
+        return draw_line_sweeps([self], axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """What was found, speeds in ``unit``."""
+        rough, value = int((~self.settled).sum()), self.value * speed_factor(unit)
         rows = []
         for e, name in enumerate(self.springs):
             swing = self.torque_peak_to_peak[:, e]
             best = int(np.nanargmax(swing)) if np.isfinite(swing).any() else 0
-            rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {self.value[best]:.6g} rad/s")
-        jumps = ", ".join(f"{a:.6g} → {b:.6g}" for a, b in self.jumps) or "none"
+            rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
+        for row in zip(*self.contacts, strict=True):
+            kinds = [contact.contact for contact in row]
+            told = ", ".join(f"{kinds.count(k)} {k}" for k in ("none", "one-sided", "two-sided") if k in kinds)
+            worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
+            impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
+            rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
+        factor = speed_factor(unit)
+        jumps = ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in self.jumps) or "none"
         return "\n".join(
             [
-                f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(self.value)} steps from "
-                f"{self.value[0]:.6g} to {self.value[-1]:.6g} rad/s, {rough} without a motion of one period",
+                f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(value)} steps from "
+                f"{value[0]:.6g} to {value[-1]:.6g} {unit}, {rough} without a motion of one period",
                 *rows,
                 f"  jumps: {jumps}; {self.outcome}",
             ]
         )
+
+    def __str__(self) -> str:
+        return self.describe()
 
     __repr__ = __str__
 

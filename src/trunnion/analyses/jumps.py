@@ -12,7 +12,10 @@ JUMP, ABRUPT = 0.25, 2.0
 def abrupt_changes(swing: NDArray[np.float64]) -> list[int]:
     """Places i where a response (points,) changes abruptly from i to i + 1."""
     change = np.abs(np.diff(swing))
-    around = np.pad(change, 1)
-    usual = np.maximum(around[:-2], around[2:])
+    if len(change) < 3:
+        return []
+    # At an end both neighbours stand on one side: a single small one says little about what is usual.
+    left, right = np.concatenate([change[2:3], change[:-1]]), np.concatenate([change[1:], change[-3:-2]])
+    usual = np.maximum(left, right)
     abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
     return [int(i) for i in np.flatnonzero(abrupt)]

@@ -65,7 +65,7 @@ def piecewise_branch(
 
     Returns
     -------
-    PeriodicBranch with curves "x" and "v", of a driveline the torques of its springs; where nothing was found at
+    PeriodicBranch with the curve "x", of a driveline the torques of its springs; where nothing was found at
     ``begin`` it has no points and says so.
 
     Raises
@@ -98,7 +98,7 @@ class _Frequency:
 
     label: str = "frequency"
     unit: str = "rad/s"
-    curves: tuple[str, ...] = ("x", "v")
+    curves: tuple[str, ...] = ("x",)
     curve_unit: str = "1"
 
 
@@ -148,8 +148,8 @@ class _Exact:
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
         o, omega = self.oscillator, point.parameter
         found = measure(o.regimes, o.coefficients, omega, point.z[:2], self.periods)
-        low, high, nan = found["low"], found["high"], np.nan
-        swing, largest = np.array([high - low, nan]), np.array([max(abs(low), abs(high)), nan])
+        low, high = found["low"], found["high"]
+        swing, largest = np.array([high - low]), np.array([max(abs(low), abs(high))])
         # At the forcing frequency, of a subharmonic motion too.
         fundamental = float(np.hypot(found["real"], found["imaginary"]))
         return swing, largest, fundamental * np.array([1.0, omega]), self.periods * 2 * np.pi / omega

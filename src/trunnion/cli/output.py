@@ -85,6 +85,11 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def note(text: str) -> None:
+    """A remark beside the result, on stderr."""
+    print(text, file=sys.stderr, flush=True)
+
+
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float], None]]:
     """A callback for the share done: a bar with the time left on a terminal, else a line now and then."""

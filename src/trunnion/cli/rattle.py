@@ -74,6 +74,8 @@ def frequency_response(
     # The exact motion of longer lines is for those without joints: asked for by name.
     every = known if isinstance(subject, PiecewiseOscillator) else known[:2]
     chosen = list(every) if method == ["all"] else (method or [known[0]])
+    if "shooting" in chosen and methods_of(subject)[0] == "shooting":
+        output.note("following the motions through their contacts, which may take minutes; a narrower range is quicker")
     with output.compile_notice():
         found = ResponseComparison(
             {
@@ -99,6 +101,7 @@ def sweep(
     high: To = None,
     points: Annotated[int, typer.Option("--points", help="Frequencies.", min=2, max=100_000)] = 101,
     direction: Annotated[str, typer.Option("--direction", help="up, down or both.")] = "both",
+    curve: Annotated[str, typer.Option("--curve", help="Shaft or mesh of a longer line to draw.")] = "",
     parameters: Set = None,
     to: Output = None,
     as_json: Json = False,
@@ -112,25 +115,34 @@ def sweep(
     from trunnion.analyses.free_play import require_forced
     from trunnion.analyses.piecewise_branch import check_range
     from trunnion.analyses.piecewise_sweep import sweep as compute
+    from trunnion.driveline.refusals import nearest
+    from trunnion.equations.staged_line import staged_line
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+    from trunnion.systems.system import System
 
     subject, length = _subject(name, parameters)
-    if not isinstance(subject, PiecewiseOscillator):
+    if isinstance(subject, System):
         raise InputError(
-            "is not swept: it has no gap, or is more than one equation", key="NAME", value=name,
-            remedy=f"use {GEARS}, {DEAD_ZONE} or a line of two inertias and one mesh; or frequency-response, run-up",
+            "has no gap to be swept over", key="NAME", value=name,
+            remedy=f"use {GEARS}, {DEAD_ZONE} or a line with gears; or frequency-response, periodic-response",
         )  # fmt: skip
     first, last = _range(subject, low, high)
     if direction not in ("up", "down", "both"):
         raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
     check_range(first, last)
-    require_forced(subject)
+    if isinstance(subject, PiecewiseOscillator):
+        require_forced(subject)
+    elif curve and curve not in (springs := staged_line(subject, first).springs):
+        remedy = nearest(curve, list(springs))
+        raise InputError("is no shaft or mesh of the line", key="--curve", value=curve, remedy=remedy)
     _check(to)
     grid = np.linspace(first, last, points)
+    grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
+    if not isinstance(subject, PiecewiseOscillator):
+        _sweep_line(subject, grids, name, curve, to, as_json)
+        return
     with output.compile_notice():
-        found = [
-            compute(subject, grid if d == "up" else grid[::-1]) for d in ("up", "down") if direction in (d, "both")
-        ]
+        found = [compute(subject, values) for values in grids]
 
     def draw() -> Any:
         from trunnion.plots.frequency_response import draw_sweeps
@@ -157,6 +169,42 @@ def sweep(
         output.write_json("sweep", {"sweeps": content, "written": [str(path) for path in written]})
         return
     _print("\n".join(map(str, found)), written)
+
+
+def _sweep_line(
+    line: Driveline, grids: list[Any], name: str, curve: str, to: list[Path] | None, as_json: bool
+) -> None:
+    """Torques of all springs of a line with several inertias."""
+    from trunnion.analyses.piecewise_sweep import sweep as compute
+
+    unit = _unit(line)
+    with output.compile_notice():
+        found = [compute(line, values) for values in grids]
+
+    def draw() -> Any:
+        from trunnion.plots.frequency_response import draw_line_sweeps
+
+        return draw_line_sweeps(found, spring=curve, unit=unit)
+
+    written = _files(to, file_stem(name), "sweep", _sweeps_data(found), draw)
+    if as_json:
+        staged = [row[0].spring for row in zip(*found[0].contacts, strict=True)]
+        content = [
+            {
+                "direction": "up" if one.up else "down",
+                one.line.clock: one.value,
+                "torque_peak_to_peak": {s: one.swing_of(s) for s in one.springs},
+                "contact": {s: one.contact_of(s) for s in staged},
+                "impact_energy": {s: [row[i].impact_energy for row in one.contacts] for i, s in enumerate(staged)},
+                "settled": [bool(s) for s in one.settled],
+                "jumps": [list(jump) for jump in one.jumps],
+                "says": str(one.outcome),
+            }
+            for one in found
+        ]
+        output.write_json("sweep", {"sweeps": content, "written": [str(path) for path in written]})
+        return
+    _print("\n".join(one.describe(unit) for one in found), written)
 
 
 def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillator | System | Driveline, str]:
@@ -258,7 +306,8 @@ def _sweeps_data(found: list[Any]) -> Any:
 
     if len(found) == 1:
         return found[0].data
-    parts = [one.data.sortby("frequency") for one in found]
+    over = next(str(n) for n in found[0].data.dims if n in ("frequency", "speed"))
+    parts = [one.data.sortby(over) for one in found]
     return xr.concat(parts, dim="direction", combine_attrs="drop_conflicts").assign_coords(direction=["up", "down"])
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import speed_factor
@@ -13,6 +14,7 @@ from trunnion.results.speeds import speed_factor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from trunnion.analyses.exact_sweep import LineSweep
     from trunnion.analyses.piecewise_sweep import Basins, Sweep
 
 STYLES = {
@@ -31,6 +33,7 @@ MARKS = {"fold": "o", "period doubling": "s", "Neimark–Sacker": "D", "branch p
 DASHED = (0, (4, 2))
 ARROW = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0}
 JUMP = "jump of a slow sweep"
+LOOSE = "not of one period"
 CONTACTS = {"none": "#56b4e9", "one-sided": "#e69f00", "two-sided": "#d55e00"}
 
 
@@ -147,30 +150,72 @@ def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: st
     axes = axes or new_axes(7.2, 4.4)
     factor = speed_factor(unit) if unit else 1.0
     for one in sweeps:
-        x, size = one.frequency * factor, one.peak_to_peak / 2
-        axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)
-        for kind, colour in CONTACTS.items():
-            here = np.array([c == kind for c in one.contact])
-            if here.any():
-                shape, wide, inside = ("^", 3.4, colour) if one.up else ("v", 6.0, "none")
-                label = f"{kind}, {'up' if one.up else 'down'}"
-                axes.plot(x[here], size[here], shape, color=colour, ms=wide, mfc=inside, ls="", label=label)
-        loose = ~one.settled
-        if loose.any():
-            words = None if one is not sweeps[0] else "not of one period"
-            axes.plot(x[loose], size[loose], "_", color=INK, ms=8, mew=0.8, label=words, zorder=5)
-        for a, b in one.jumps:
-            i, j = int(np.flatnonzero(one.frequency == a)[0]), int(np.flatnonzero(one.frequency == b)[0])
-            axes.annotate("", (x[j], size[j]), (x[i], size[i]), arrowprops={**ARROW, "color": INK})
-    if any(one.jumps for one in sweeps):
-        _arrow_entry(axes, INK)
-    axes.set_xlabel(f"frequency ω [{unit}]" if unit else "frequency ω", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"half peak-to-peak of x{f' [{length}]' if length else ''}", fontsize=TEXT, color=INK)
+        marks = _SweepMarks(one.frequency * factor, one.peak_to_peak / 2, one.contact, one.settled, one.up)
+        _draw_sweep_marks(axes, marks, first=one is sweeps[0])
+    words = f"half peak-to-peak of x{f' [{length}]' if length else ''}"
+    _label_sweeps(axes, f"frequency ω [{unit}]" if unit else "frequency ω", words, "contact, sweep")
+    return axes
+
+
+def draw_line_sweeps(
+    sweeps: Sequence[LineSweep], axes: Axes | None = None, *, spring: str = "", unit: str = "rad/s"
+) -> Axes:
+    """Peak-to-peak torque of one spring over speed, in the manner of ``draw_sweeps``; by default the first with a gap.
+
+    Raises
+    ------
+    InputError : no such spring.
+    """
+    axes = axes or new_axes(7.2, 4.4)
+    line = sweeps[0].line
+    name = spring or line.springs[line.staged[0] if len(line.staged) else 0]
+    for one in sweeps:
+        marks = _SweepMarks(
+            one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name), one.settled, one.up
+        )
+        _draw_sweep_marks(axes, marks, first=one is sweeps[0])
+    over = "speed" if line.clock == "speed" else "frequency"
+    _label_sweeps(axes, f"{over} [{unit}]", f"torque of {name}, peak to peak [N m]", f"contact of {name}, sweep")
+    return axes
+
+
+class _SweepMarks(NamedTuple):
+    """x, size (points,) in the picture's units; contact and settled (points,)."""
+
+    x: NDArray[np.float64]
+    size: NDArray[np.float64]
+    contact: Sequence[str]
+    settled: NDArray[np.bool_]
+    up: bool
+
+
+def _draw_sweep_marks(axes: Axes, one: _SweepMarks, *, first: bool) -> None:
+    from trunnion.analyses.jumps import abrupt_changes
+
+    x, size = one.x, one.size
+    axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)
+    for kind, colour in CONTACTS.items():
+        here = np.array([c == kind for c in one.contact])
+        if here.any():
+            shape, wide, inside = ("^", 3.4, colour) if one.up else ("v", 6.0, "none")
+            label = f"{kind}, {'up' if one.up else 'down'}"
+            axes.plot(x[here], size[here], shape, color=colour, ms=wide, mfc=inside, ls="", label=label)
+    loose = ~one.settled
+    if loose.any():
+        axes.plot(x[loose], size[loose], "_", color=INK, ms=8, mew=0.8, label=LOOSE if first else None, zorder=5)
+    for i in abrupt_changes(size):
+        axes.annotate("", (x[i + 1], size[i + 1]), (x[i], size[i]), arrowprops={**ARROW, "color": INK})
+        if JUMP not in axes.get_legend_handles_labels()[1]:
+            _arrow_entry(axes, INK)
+
+
+def _label_sweeps(axes: Axes, across: str, up: str, title: str) -> None:
+    axes.set_xlabel(across, fontsize=TEXT, color=INK)
+    axes.set_ylabel(up, fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    axes.legend(title="contact, sweep", fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="best")
-    return axes
+    axes.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="best")
 
 
 def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -> Axes:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.analyses.branch import PeriodicBranch
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS
 from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import speed_factor
@@ -33,9 +35,13 @@ def draw(
     ----------
     unit : of a speed on the axis.
     jumps : draw an arrow from every fold to the stable motion that is left there.
+
+    Raises
+    ------
+    InputError : no such curve.
     """
     axes = axes or new_axes(7.2, 4.4)
-    i = result.curves.index(curve) if curve else 0
+    i = _place(result, curve)
     by_speed = result.label == "speed"
     factor = speed_factor(unit) if by_speed else 1.0
     x, y, stable = result.parameter * factor, result.peak_to_peak[:, i], result.stable
@@ -70,6 +76,14 @@ def draw(
         *axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False
     )
     return axes
+
+
+def _place(result: PeriodicBranch, curve: str) -> int:
+    if not curve:
+        return 0
+    if curve not in result.curves:
+        raise InputError("is no curve of this branch", key="curve", value=curve, remedy=nearest(curve, result.curves))
+    return result.curves.index(curve)
 
 
 def _landing(result: PeriodicBranch, value: float, left: float, i: int) -> float | None:
