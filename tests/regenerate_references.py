@@ -36,9 +36,7 @@ def main() -> None:
     entries = [reference(chain, precise) for chain in chains]
     about = "random chains of 2 to 8 disks and their Floquet multipliers; see tests/regenerate_references.py"
     body = ",\n".join(json.dumps(entry) for entry in entries)
-    TARGET.write_text(
-        f'{{"about": {json.dumps(about)}, "seed": {SEED}, "entries": [\n{body}\n]}}\n', encoding="utf-8"
-    )
+    TARGET.write_text(f'{{"about": {json.dumps(about)}, "seed": {SEED}, "entries": [\n{body}\n]}}\n', encoding="utf-8")
     print(f"wrote {len(entries)} chains to {TARGET}")
 
 

@@ -68,17 +68,13 @@ def end_view(axes) -> None:
     circle = np.stack([ray(x, 0.62) for x in np.linspace(0, 360, 200)])
     axes.plot(*circle.T, color=INK, linewidth=1.2)
     for degrees, name in ((0, "plane of joint 1"), (40, "plane of joint 2")):
-        axes.plot(
-            *np.stack([ray(degrees, -1.15), ray(degrees, 1.15)], axis=1), color=PLANE, linestyle=(0, (5, 3))
-        )
+        axes.plot(*np.stack([ray(degrees, -1.15), ray(degrees, 1.15)], axis=1), color=PLANE, linestyle=(0, (5, 3)))
         axes.text(*ray(degrees, 1.3), name, fontsize=SMALL, color=PLANE, ha="center", va="center")
     psi, nu = 20.0, 100.0
     fork(axes, ray, psi + 90, FRONT)
     fork(axes, ray, psi + 90 + nu, REAR)
     axes.text(0.95, -0.26, "fork of joint 1\n(its output fork)", fontsize=SMALL, color=FRONT, va="center")
-    axes.text(
-        -0.72, -0.98, "fork of joint 2\n(its input fork)", fontsize=SMALL, color=REAR, ha="right", va="center"
-    )
+    axes.text(-0.72, -0.98, "fork of joint 2\n(its input fork)", fontsize=SMALL, color=REAR, ha="right", va="center")
     span(axes, ray, 0, psi + 90, 0.34, "ψ₁ + 90°", 62)
     span(axes, ray, psi + 90, psi + 90 + nu, 0.42, "ν", 165)
     span(axes, ray, 0, 40, 1.0, "ϑ", 20)

@@ -246,9 +246,7 @@ def test_mathieus_chart() -> None:
     ids=["the plane of a straight joint", "a fork where no joint is"],
 )
 def test_idle_parameters_that_enter_the_numbers_are_said(elements, idle) -> None:
-    line = tn.Driveline(
-        [tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0), *elements]
-    )
+    line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0), *elements])
     chart = tn.stability_chart(line, ("speed", 0.5, 1.0, 5), (idle, 0.0, 1.0, 4))
     assert [r for r in chart.remarks if "changes nothing" in r] == [f"{idle} changes nothing in this line"]
 

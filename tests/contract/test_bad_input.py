@@ -191,9 +191,7 @@ PYTHON = [
         "move Shaft 1 behind Disk 1",
     ),
     (
-        lambda: line(
-            Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1), Shaft(stiffness=1, after="Shaft 1")
-        ),
+        lambda: line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1), Shaft(stiffness=1, after="Shaft 1")),
         "Shaft 2.after = 'Shaft 1': is a Shaft",
         "branches leave from a Disk",
     ),
@@ -453,9 +451,7 @@ FILES = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("content", "start", "also"), FILES, ids=[f"{i}: {row[1]}" for i, row in enumerate(FILES)]
-)
+@pytest.mark.parametrize(("content", "start", "also"), FILES, ids=[f"{i}: {row[1]}" for i, row in enumerate(FILES)])
 def test_file(content, start, also, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "bad.toml"
@@ -488,9 +484,7 @@ def test_a_folder_is_not_a_file(tmp_path, monkeypatch):
 
 def test_output_not_writable(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    check(
-        lambda: dump(line(), "no/such/a.toml"), "no/such/a.toml: cannot be written", "check that the folder"
-    )
+    check(lambda: dump(line(), "no/such/a.toml"), "no/such/a.toml: cannot be written", "check that the folder")
     (tmp_path / "file").write_text("x")
     check(lambda: dump(line(), "file/a.toml"), "file/a.toml: cannot be written", "check that the folder")
     assert os.listdir(tmp_path) == ["file"]

@@ -75,9 +75,7 @@ def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
 
 
 def test_units_and_numbers_give_the_same_element():
-    assert Shaft(stiffness="12 kN*m/rad", fork_offset="90 deg") == Shaft(
-        stiffness=12000, fork_offset=math.pi / 2
-    )
+    assert Shaft(stiffness="12 kN*m/rad", fork_offset="90 deg") == Shaft(stiffness=12000, fork_offset=math.pi / 2)
     assert HookeJoint(angle="12 deg").angle == math.radians(12)
 
 

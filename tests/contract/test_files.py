@@ -92,9 +92,7 @@ def drivelines(draw):
         if earlier and draw(st.integers(0, 3)) == 0:
             elements[i] = type(element)(**element.stated, after=draw(st.sampled_from(earlier)))
     rest = {"name": draw(names), "description": draw(st.none() | st.text(max_size=40))}
-    if not any(isinstance(e, Shaft) and (e.damping or e.loss_factor) for e in elements) and draw(
-        st.booleans()
-    ):
+    if not any(isinstance(e, Shaft) and (e.damping or e.loss_factor) for e in elements) and draw(st.booleans()):
         rest["damping_ratio"] = draw(positive)
         rest["damping_ratio_frequency"] = draw(st.none() | positive)
     if draw(st.booleans()):
@@ -171,9 +169,7 @@ def test_dump_replaces_the_file_whole(tmp_path):
 def test_failed_dump_leaves_the_old_file(tmp_path, monkeypatch):
     path = tmp_path / "line.toml"
     path.write_text("old")
-    monkeypatch.setattr(
-        os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device"))
-    )
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(ValueError, match="cannot be written"):
         dump(loads(starter("two-shaft")), path)
     assert path.read_text() == "old"
@@ -183,9 +179,7 @@ def test_failed_dump_leaves_the_old_file(tmp_path, monkeypatch):
 def test_large_angle_in_a_file_is_a_remark_with_its_place(tmp_path):
     path = tmp_path / "steep.toml"
     path.write_text('format = 1\n[[element]]\ntype = "HookeJoint"\nangle = "50 deg"\n')
-    with pytest.warns(
-        InputRemark, match=r"^steep\.toml: HookeJoint 1 \(element 1\)\.angle = '50 deg': is 50 deg"
-    ):
+    with pytest.warns(InputRemark, match=r"^steep\.toml: HookeJoint 1 \(element 1\)\.angle = '50 deg': is 50 deg"):
         load(path)
 
 

@@ -44,9 +44,7 @@ def imported_parts(path: Path) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path} imports relatively"
             module = node.module or ""
-            modules += (
-                [f"trunnion.{alias.name}" for alias in node.names] if module == "trunnion" else [module]
-            )
+            modules += [f"trunnion.{alias.name}" for alias in node.names] if module == "trunnion" else [module]
     return {m.split(".")[1] for m in modules if m.startswith("trunnion.")}
 
 

@@ -32,9 +32,7 @@ def test_errata_of_s2():
     assert -1e6 * elastic.twist[1].max() == pytest.approx(13.9, abs=0.05)
     assert -1e6 * elastic.twist[1].min() == pytest.approx(17.8, abs=0.05)
     assert np.abs(elastic.output_speed - rigid.output_speed).max() == pytest.approx(8.8e-6, rel=0.02)
-    assert np.abs(elastic.output_acceleration - rigid.output_acceleration).max() == pytest.approx(
-        2.93e-5, rel=0.02
-    )
+    assert np.abs(elastic.output_acceleration - rigid.output_acceleration).max() == pytest.approx(2.93e-5, rel=0.02)
     assert np.abs(elastic.drive_torque - rigid.drive_torque).max() == pytest.approx(6.6e-4, rel=0.02)
     homokinetic = tn.kinetostatics(tn.catalogue("bicardan-elastic", homokinetic=True), rigid=False)
     assert homokinetic.irregularity == pytest.approx(1.6e-5, rel=0.01)

@@ -169,9 +169,7 @@ REFUSED = {
         "locks",
     ),
     "prescribed output": (
-        lambda: tn.kinetostatics(
-            tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1), tn.ConstantSpeed()])
-        ),
+        lambda: tn.kinetostatics(tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1), tn.ConstantSpeed()])),
         "ConstantSpeed 2",
         "load_torque",
     ),

@@ -76,9 +76,7 @@ def test_tripod_in_a_chain(spider):
     disk = tn.Disk(inertia=1.0, load_torque=30.0)
     result = tn.kinetostatics(tn.Driveline([tn.ConstantSpeed(), joint, disk]), speed=2.0)
     sign = 1 if spider == "output" else -1
-    assert np.allclose(
-        result.output_speed, 2 * (1 + sign * 3 * a * np.cos(3 * result.input_angle)), atol=1e-15
-    )
+    assert np.allclose(result.output_speed, 2 * (1 + sign * 3 * a * np.cos(3 * result.input_angle)), atol=1e-15)
     assert result.irregularity == pytest.approx(6 * a, rel=1e-6)
     assert result.power_residual < 1e-12
 
@@ -184,9 +182,7 @@ def test_double_cardan_without_centring():
     around = double_cardan.output_angle(np.stack([chi - step, chi + step]), first, second)
     slope = (around[1] - around[0]) / (2 * step)
     assert np.allclose(slope, double_cardan.ratio(chi, first, second), atol=1e-8)
-    line = tn.Driveline(
-        [tn.ConstantSpeed(), tn.DoubleCardanJoint(angle=0.6, distance_ratio=1.3), tn.Disk(inertia=1)]
-    )
+    line = tn.Driveline([tn.ConstantSpeed(), tn.DoubleCardanJoint(angle=0.6, distance_ratio=1.3), tn.Disk(inertia=1)])
     result = tn.kinetostatics(line)
     q = np.cos(second) / np.cos(first)
     assert result.irregularity == pytest.approx(abs(q - 1 / q), rel=1e-9)

@@ -107,9 +107,7 @@ def test_turns_behind_a_ratio():
     assert not whole.findings
     assert whole.irregularity >= short.irregularity
     assert whole.power_residual < 1e-12
-    assert whole.output_angle[-1] + whole.output_speed[-1] * 2 * np.pi / 720 == pytest.approx(
-        4 * np.pi, abs=1e-3
-    )
+    assert whole.output_angle[-1] + whole.output_speed[-1] * 2 * np.pi / 720 == pytest.approx(4 * np.pi, abs=1e-3)
 
 
 def test_negative_ratio_turns_the_load_with_it():
@@ -169,9 +167,7 @@ def test_parts_of_a_vector():
 
 
 def texts(figure):
-    return [
-        t.get_text() for ax in figure.axes for t in (ax.xaxis.label, ax.yaxis.label, ax.title) if t.get_text()
-    ]
+    return [t.get_text() for ax in figure.axes for t in (ax.xaxis.label, ax.yaxis.label, ax.title) if t.get_text()]
 
 
 @pytest.mark.parametrize("draw", [plots.draw, plots.draw_polar, plots.draw_paper])
@@ -199,9 +195,7 @@ def test_a_line_without_shafts_still_shows_itself(joint, tmp_path):
 def test_sketches(what):
     subject = {
         "line": LINE,
-        "layout": tn.layout(
-            [(0, 0, 0), (1, 0, 0.1), (2, 0.2, 0)], (1, 0.2, 0), (1, 0, 0.3), right_handed=False
-        ),
+        "layout": tn.layout([(0, 0, 0), (1, 0, 0.1), (2, 0.2, 0)], (1, 0.2, 0), (1, 0, 0.3), right_handed=False),
         "tripod": tn.Driveline(
             [tn.Shaft(stiffness=1), tn.TripodJoint(angle=0.2, radius=0.03, length=0.5), tn.Shaft(stiffness=1)]
         ),

@@ -68,9 +68,7 @@ def test_couple_is_half_steady_and_half_twice_per_turn():
 
 
 def test_two_bearings_carry_the_couple_over_their_distance():
-    result = tn.kinetostatics(
-        lines.row([20], load=100.0), supports=[("Shaft 1", -0.5, -0.1), ("Shaft 2", 0.1, 0.3)]
-    )
+    result = tn.kinetostatics(lines.row([20], load=100.0), supports=[("Shaft 1", -0.5, -0.1), ("Shaft 2", 0.1, 0.3)])
     couple = np.hypot(result.secondary_couple[:, 0], result.secondary_couple[:, 1])
     force = np.hypot(result.supports.force[:, 0], result.supports.force[:, 1])
     assert np.allclose(force[:2], couple[0] / 0.4, rtol=1e-12)

@@ -52,9 +52,7 @@ def test_layout_does_not_care_where_the_line_lies():
         plain = tn.layout(points, *ends)
         turn = Rotation.random(random_state=1)
         moved = tn.layout(turn.apply(points) + 3, turn.apply(ends[0]), turn.apply(ends[1]))
-        mirrored = tn.layout(
-            points * [1, -1, 1], ends[0] * [1, -1, 1], ends[1] * [1, -1, 1], right_handed=False
-        )
+        mirrored = tn.layout(points * [1, -1, 1], ends[0] * [1, -1, 1], ends[1] * [1, -1, 1], right_handed=False)
         for other in (moved, mirrored):
             assert np.allclose(other.angles, plain.angles, atol=1e-12)
             assert np.allclose(np.exp(1j * other.planes), np.exp(1j * plain.planes), atol=1e-12)

@@ -96,9 +96,7 @@ def _angle_about(axis: Array, zero: Array, arm: Array) -> float:
     ("betas", "fork_offset", "plane", "start"),
     [((0.4, 0.7), 0.5, -1.1, 0.2), ((0.9, 0.3), -2.0, 0.8, 1.0), ((0.5, 0.5), 0.0, 0.0, 0.3)],
 )
-def test_two_joints_in_space(
-    betas: tuple[float, float], fork_offset: float, plane: float, start: float
-) -> None:
+def test_two_joints_in_space(betas: tuple[float, float], fork_offset: float, plane: float, start: float) -> None:
     """Fork offsets and planes as described, against two crosses in space: arms square to each other, each
     square to its shaft; the second joint plane turned by ``plane`` about the intermediate shaft."""
     line = tn.Driveline(

@@ -77,9 +77,7 @@ def _taylor(a: float, q: float, zeta: float) -> tuple[mpmath.mpf, mpmath.mpf]:
             for y, rate in columns:
                 series = [y, rate]
                 for m in range(terms):
-                    force = a * series[m] - 2 * q * mpmath.fsum(
-                        cosine[j] * series[m - j] for j in range(m + 1)
-                    )
+                    force = a * series[m] - 2 * q * mpmath.fsum(cosine[j] * series[m - j] for j in range(m + 1))
                     series.append(-(2 * zeta * (m + 1) * series[m + 1] + force) / ((m + 1) * (m + 2)))
                 powers = [h**m for m in range(len(series))]
                 after.append(

@@ -31,9 +31,7 @@ def two_shafts(beta: float, load: float = 0.0) -> Chain:
 def steady_state(case: Chain, tau: np.ndarray) -> np.ndarray:
     """Deviations (time, 2) over one period of the nonlinear motion, after 150 periods from rest."""
     model = NonlinearChain(case)
-    run = solve_ivp(
-        model.slopes, (0, 150 * case.period), np.zeros(4), method="DOP853", rtol=1e-10, atol=1e-13
-    )
+    run = solve_ivp(model.slopes, (0, 150 * case.period), np.zeros(4), method="DOP853", rtol=1e-10, atol=1e-13)
     # Whole periods have passed: the equations are the same from τ = 0.
     end = (0, tau[-1])
     last = solve_ivp(model.slopes, end, run.y[:, -1], method="DOP853", rtol=1e-12, atol=1e-15, t_eval=tau)

@@ -129,11 +129,7 @@ def test_crossed_forks_are_the_worst() -> None:
     offsets = np.linspace(0, np.pi, 37)
     swing = [np.ptp(last_disk(three_disks(fork_offset=float(o)))[0]) for o in offsets]
     assert int(np.argmax(swing)) == 18
-    small = (
-        three_disks(fork_offset=np.pi / 2)
-        .replace("HookeJoint 1", angle=0.02)
-        .replace("HookeJoint 2", angle=0.02)
-    )
+    small = three_disks(fork_offset=np.pi / 2).replace("HookeJoint 1", angle=0.02).replace("HookeJoint 2", angle=0.02)
     assert np.ptp(last_disk(small)[0]) == pytest.approx(0.02**2 + 0.02**2, rel=1e-3)
 
 
@@ -165,8 +161,7 @@ def test_straight_joints_are_no_joints(number: int) -> None:
     chain = replace(CHAINS[number], teeth=[])
     bare = replace(chain, angle=[0.0] * (chain.size - 1))
     straight = [
-        e.model_copy(update={"angle": 0.0}) if isinstance(e, tn.HookeJoint) else e
-        for e in chain.line().elements
+        e.model_copy(update={"angle": 0.0}) if isinstance(e, tn.HookeJoint) else e for e in chain.line().elements
     ]
     here = multipliers(tn.Driveline(straight), chain.speed)
     assert set_distance(here, multipliers(bare.line(), chain.speed)) < 1e-11
@@ -268,9 +263,7 @@ def test_undamped_chains_are_symplectic(number: int) -> None:
 
 @pytest.mark.parametrize("kernel", ["dense", "chain"])
 @pytest.mark.parametrize(("angle", "speed"), [(0.3, 3.0), (0.7, 0.37), (1.1, 0.9), (1.1, 3.0)])
-def test_undamped_line_with_a_disk_behind_its_joint_is_marginal(
-    kernel: str, angle: float, speed: float
-) -> None:
+def test_undamped_line_with_a_disk_behind_its_joint_is_marginal(kernel: str, angle: float, speed: float) -> None:
     """Angle-dependent inertia gives M⁻¹C = J′w/J of mean zero: no damping, so marginal, not undecided."""
     line = tn.Driveline(
         [

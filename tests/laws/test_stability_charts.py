@@ -82,9 +82,7 @@ def test_angle_and_angle() -> None:
 
 
 def test_stiffness_and_speed() -> None:
-    chart = tn.stability_chart(
-        loaded_line(), x=("Shaft 3.stiffness", 1e3, 9e3, 9, "log"), y=("speed", 15.0, 80.0, 9)
-    )
+    chart = tn.stability_chart(loaded_line(), x=("Shaft 3.stiffness", 1e3, 9e3, 9, "log"), y=("speed", 15.0, 80.0, 9))
     assert chart.x == pytest.approx(np.geomspace(1e3, 9e3, 9))
     check_points(chart, lambda x, y: (loaded_line().replace("Shaft 3", stiffness=x), y))
 
@@ -109,9 +107,7 @@ def test_tube_length_and_inertia() -> None:
     chart = tn.stability_chart(
         loaded_line(), x=("Shaft 2.length", 0.2, 1.5, 7), y=("Disk 2.inertia", 0.1, 2.0, 7), speed=47.0
     )
-    check_points(
-        chart, lambda x, y: (loaded_line().replace("Shaft 2", length=x).replace("Disk 2", inertia=y), 47.0)
-    )
+    check_points(chart, lambda x, y: (loaded_line().replace("Shaft 2", length=x).replace("Disk 2", inertia=y), 47.0))
 
 
 def test_factor_of_damping_and_fork_offset() -> None:
@@ -125,9 +121,7 @@ def test_factor_of_damping_and_fork_offset() -> None:
 
     def build(x: float, y: float) -> tuple[tn.Driveline, float]:
         return (
-            tn.catalogue(
-                "three-shaft-cardan", angle_1=0.5, angle_2=0.5, damping_ratio=0.01 * x, fork_offset=y
-            ),
+            tn.catalogue("three-shaft-cardan", angle_1=0.5, angle_2=0.5, damping_ratio=0.01 * x, fork_offset=y),
             1.03,
         )
 
@@ -141,9 +135,7 @@ def test_common_damping_ratio() -> None:
     bare = tn.catalogue("two-shaft-cardan", damping_ratio=0.0)
     line = tn.Driveline(bare.elements, damping_ratio=0.01, damping_ratio_frequency=1.3)
     chart = tn.stability_chart(line, x=("speed", 0.3, 2.0, 9), y=("damping_ratio", 0.001, 0.1, 5, "log"))
-    check_points(
-        chart, lambda x, y: (tn.Driveline(bare.elements, damping_ratio=y, damping_ratio_frequency=1.3), x)
-    )
+    check_points(chart, lambda x, y: (tn.Driveline(bare.elements, damping_ratio=y, damping_ratio_frequency=1.3), x))
 
 
 GROUPS = {
@@ -171,9 +163,7 @@ def test_groups_of_the_paper(pair: tuple[str, str], scale: float) -> None:
         return
 
     def build(x: float, y: float) -> tuple[tn.Driveline, float]:
-        return tn.catalogue(
-            "two-shaft-cardan", **{**fixed, GROUPS[pair[0]][0]: x, GROUPS[pair[1]][0]: y}
-        ), speed
+        return tn.catalogue("two-shaft-cardan", **{**fixed, GROUPS[pair[0]][0]: x, GROUPS[pair[1]][0]: y}), speed
 
     check_points(chart, build, count=6)
 
@@ -312,9 +302,7 @@ def test_fine_charts_of_random_chains(shafts: int) -> None:
 def test_no_tongue_is_lost_between_nodes(angle: float) -> None:
     """A row of 3000 speeds through narrow tongues: every verdict as by the kernel alone."""
     line = tn.catalogue("two-shaft-cardan", inertia_of_disk_2=100.0, angle=angle)
-    chart = tn.stability_chart(
-        line, x=("speed", 0.1, 1.6, 3000), y=("HookeJoint 1.angle", angle - 0.01, angle, 3)
-    )
+    chart = tn.stability_chart(line, x=("speed", 0.1, 1.6, 3000), y=("HookeJoint 1.angle", angle - 0.01, angle, 3))
     radius, error = chain_radius(line, chart.x)
     sure = np.abs(radius - 1) > error + chart.error_estimate[-1]
     assert sure.mean() > 0.99

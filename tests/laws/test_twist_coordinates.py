@@ -87,9 +87,7 @@ def test_recursion_of_the_oracle_is_the_papers_matrix() -> None:
     )
 
     def at(tau: float) -> tuple[np.ndarray, np.ndarray]:
-        e, p = three_shafts(
-            np.array([tau]), 0.91, betas, zeta, (1.5, 10.0), alphas=(1.2, 0.7), mus=(0.6, 1.7)
-        )
+        e, p = three_shafts(np.array([tau]), 0.91, betas, zeta, (1.5, 10.0), alphas=(1.2, 0.7), mus=(0.6, 1.7))
         return e[0], p[0]
 
     assert set_distance(np.linalg.eigvals(twist_monodromy(chain)), floquet(at, 3, np.pi, rtol=1e-13)) < 1e-11

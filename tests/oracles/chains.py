@@ -71,9 +71,7 @@ class Chain:
             if angle:
                 rates.append(ratio)
             ratio /= gear
-        half_turns = next(
-            k for k in range(1, 1000) if all((k * r).denominator == 1 for r in rates[1:] or rates)
-        )
+        half_turns = next(k for k in range(1, 1000) if all((k * r).denominator == 1 for r in rates[1:] or rates))
         return half_turns * np.pi
 
     def torque(self) -> list[float]:
@@ -94,9 +92,7 @@ class Chain:
         elements: list[Any] = [tn.ConstantSpeed()]
         for i in range(self.size):
             elements.append(
-                tn.Shaft(
-                    stiffness=self.stiffness[i], damping=self.damping[i], fork_offset=self.fork_offset[i]
-                )
+                tn.Shaft(stiffness=self.stiffness[i], damping=self.damping[i], fork_offset=self.fork_offset[i])
             )
             elements.append(tn.Disk(inertia=self.inertia[i], load_torque=self.load[i]))
             if i < self.size - 1:
@@ -146,9 +142,7 @@ def joint_law(functions: Any, chi: Any, cosine: Any) -> tuple[Any, Any, Any, Any
     psi = chi - functions.atan(t * double_sine / (1 + t * double_cosine))
     eta = cosine / d
     slope = cosine * sine2 * double_sine / (d * d)
-    curve = (
-        cosine * sine2 * (2 * double_cosine / (d * d) + 2 * sine2 * double_sine * double_sine / (d * d * d))
-    )
+    curve = cosine * sine2 * (2 * double_cosine / (d * d) + 2 * sine2 * double_sine * double_sine / (d * d * d))
     return psi, eta, slope, curve
 
 
@@ -278,10 +272,7 @@ def precise_multipliers(matrix: NDArray[np.longdouble], digits: int = 30) -> Com
 
     with mpmath.workdps(digits):
         exact = mpmath.matrix(
-            [
-                [mpmath.mpf(float(v)) + mpmath.mpf(float(v - np.longdouble(float(v)))) for v in row]
-                for row in matrix
-            ]
+            [[mpmath.mpf(float(v)) + mpmath.mpf(float(v - np.longdouble(float(v)))) for v in row] for row in matrix]
         )
         values = mpmath.eig(exact, left=False, right=False)
         return np.array([complex(v) for v in values])

@@ -54,9 +54,7 @@ class NonlinearChain:
         torque = np.array(numbers["kappa"])[:, None] * theta + np.array(numbers["loss"])[:, None] * rate
         push = -torque - self.load[:, None]
         push[:-1] += gain[:-1] * torque[1:]
-        out = np.concatenate(
-            [wide[n:], push * np.array(numbers["over_inertia"])[:, None] - acceleration[:, None]]
-        )
+        out = np.concatenate([wide[n:], push * np.array(numbers["over_inertia"])[:, None] - acceleration[:, None]])
         return out.reshape(state.shape)
 
     def after_period(self, starts: Array, rtol: float = 1e-12) -> Array:

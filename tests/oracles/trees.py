@@ -61,15 +61,11 @@ class Tree:
         shafts = {i for i, e in enumerate(elements) if e.kind == "Shaft"}
         return sorted(heavy - fixed), shafts - heavy
 
-    def _points(
-        self, time: float, angle: Any
-    ) -> tuple[list[_Point], list[tuple[_Point, _Point, Any, Any, Any]]]:
+    def _points(self, time: float, angle: Any) -> tuple[list[_Point], list[tuple[_Point, _Point, Any, Any, Any]]]:
         """A point per element (its far end), and per compliance: near, far, elongation, k, c."""
         points: list[_Point] = []
         springs: list[tuple[_Point, _Point, Any, Any, Any]] = []
-        waiting: dict[
-            int, tuple[_Point, float, float, float]
-        ] = {}  # series shafts: near point, offset, 1/k, c/k²
+        waiting: dict[int, tuple[_Point, float, float, float]] = {}  # series shafts: near point, offset, 1/k, c/k²
         root = 0 in self.unknowns
         for i, element in enumerate(self.line.elements):
             parent = self.line.parents[i]
@@ -81,9 +77,7 @@ class Tree:
             before = points[parent] if parent is not None else points[0]
             if element.kind == "Shaft":
                 k, c = element.torsional_stiffness, element.damping_coefficient
-                near, offset, soft, lossy = waiting.get(
-                    parent if parent is not None else -1, (before, 0.0, 0.0, 0.0)
-                )
+                near, offset, soft, lossy = waiting.get(parent if parent is not None else -1, (before, 0.0, 0.0, 0.0))
                 offset, soft, lossy = offset + element.fork_offset, soft + 1 / k, lossy + c / k**2
                 if i in self.massless:
                     waiting[i] = (near, offset, soft, lossy)
@@ -100,9 +94,7 @@ class Tree:
             elif element.kind == "Ratio":
                 over = 1 / element.speed_ratio
                 mean = before.mean * over
-                points.append(
-                    _Point(before.owner, before.angle * over, before.r * over, before.r1 * over, mean)
-                )
+                points.append(_Point(before.owner, before.angle * over, before.r * over, before.r1 * over, mean))
             elif parent is not None:
                 points.append(before)
                 if parent in waiting:
@@ -149,9 +141,7 @@ class Tree:
                 out[near.owner] += torque * near.r
         return out
 
-    def derivatives(
-        self, time: float, angle: Array, rate: Array, acceleration: Array
-    ) -> tuple[Array, Array, Array]:
+    def derivatives(self, time: float, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
         """−∂residual/∂(acceleration, rate, angle): exact M, C, K about a state, by the complex step."""
         n, step, found = self.size, 1e-30, []
         for which in (2, 1, 0):

@@ -52,9 +52,7 @@ def test_single_slope_opens_a_shallow_band_about_half_the_second_mode(beta: floa
     assert all(radius("single", 100.0, s, beta) < 1 for s in outside)
     for speed in inside:
         assert (
-            tn.stability(
-                tn.catalogue("two-shaft-cardan", angle=beta, inertia_of_disk_2=100.0), speed
-            ).verdict.name
+            tn.stability(tn.catalogue("two-shaft-cardan", angle=beta, inertia_of_disk_2=100.0), speed).verdict.name
             == "STABLE"
         )
 

@@ -46,6 +46,4 @@ def refuse_speed(oscillator: str, speed: float | None) -> None:
     InputError : so.
     """
     if speed is not None:
-        raise InputError(
-            "belongs to a driveline", element=oscillator, key="speed", value=speed, remedy="leave it out"
-        )
+        raise InputError("belongs to a driveline", element=oscillator, key="speed", value=speed, remedy="leave it out")

@@ -196,9 +196,7 @@ def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settl
         if not np.isfinite(guess).all():
             break
         first = shooting.scale(guess, value)
-        root = solve(
-            lambda x: _square(shooting.residual(x, value)), guess[shooting.kept], first, tolerance=CLOSED
-        )
+        root = solve(lambda x: _square(shooting.residual(x, value)), guess[shooting.kept], first, tolerance=CLOSED)
         if root.converged and not _determined(root, first):
             words = (
                 "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "

@@ -14,9 +14,7 @@ from trunnion.errors import InputError
 
 
 def catalogue(
-    name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="Print this driveline as TOML.")
-    ] = None,
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Print this driveline as TOML.")] = None,
     as_json: Json = False,
 ) -> None:
     """List the published drivelines, or print one as a file to start from."""
@@ -43,9 +41,7 @@ def catalogue(
 
 
 def new(
-    starter: Annotated[
-        str | None, typer.Argument(metavar="[STARTER]", help="Without one, list what there is.")
-    ] = None,
+    starter: Annotated[str | None, typer.Argument(metavar="[STARTER]", help="Without one, list what there is.")] = None,
     path: Annotated[Path | None, typer.Argument(help="File to write; default: STARTER.toml here.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,

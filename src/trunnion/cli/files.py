@@ -23,9 +23,7 @@ def check_folder(folder: Path) -> None:
     while not there.exists() and there != there.parent:
         there = there.parent
     if not there.is_dir():
-        _refuse(
-            folder, "is a file, not a folder" if there == folder else f"cannot be made, {there} is a file"
-        )
+        _refuse(folder, "is a file, not a folder" if there == folder else f"cannot be made, {there} is a file")
     if not os.access(there, os.W_OK):
         _refuse(folder, "cannot be written to")
 

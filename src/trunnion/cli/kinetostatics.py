@@ -36,40 +36,28 @@ def kinetostatics(
     speed: Speed = None,
     unit: Unit = None,
     load_case: LoadCase = None,
-    elastic: Annotated[
-        bool, typer.Option("--elastic", help="Let the shafts twist under their torque.")
-    ] = False,
-    inertia: Annotated[
-        bool, typer.Option("--inertia", help="Count the inertia torques of the rigid line.")
-    ] = False,
+    elastic: Annotated[bool, typer.Option("--elastic", help="Let the shafts twist under their torque.")] = False,
+    inertia: Annotated[bool, typer.Option("--inertia", help="Count the inertia torques of the rigid line.")] = False,
     torque: Annotated[
         str, typer.Option("--output-torque", help='At the end of the line, beside its loads: "150 N*m".')
     ] = "0",
     friction: Annotated[
         str | None,
-        typer.Option(
-            "--friction", metavar="MU:PIN:ARM", help="Of the crosses: 0.005:12mm:40mm (pin and arm radius)."
-        ),
+        typer.Option("--friction", metavar="MU:PIN:ARM", help="Of the crosses: 0.005:12mm:40mm (pin and arm radius)."),
     ] = None,
     support: Annotated[
         list[str] | None,
-        typer.Option(
-            "--support", metavar="SHAFT:AT[:AT]", help="Bearings: 'Shaft 1:-300mm:-100mm'; repeat it."
-        ),
+        typer.Option("--support", metavar="SHAFT:AT[:AT]", help="Bearings: 'Shaft 1:-300mm:-100mm'; repeat it."),
     ] = None,
     length: Annotated[
         list[str] | None,
-        typer.Option(
-            "--length", metavar="SHAFT:LENGTH", help="Joint to joint, where it is no tube: 'Shaft 2:0.8m'."
-        ),
+        typer.Option("--length", metavar="SHAFT:LENGTH", help="Joint to joint, where it is no tube: 'Shaft 2:0.8m'."),
     ] = None,
     irregularity: Annotated[
         float, typer.Option("--limit", help="Irregularity of the output to be kept.", min=0.0)
     ] = 0.0027,
     phase: Annotated[bool, typer.Option("--phase", help="Also find the best fork offsets.")] = False,
-    pitch: Annotated[
-        str | None, typer.Option("--pitch", help='Spline pitch for --phase, such as "10 deg".')
-    ] = None,
+    pitch: Annotated[str | None, typer.Option("--pitch", help='Spline pitch for --phase, such as "10 deg".')] = None,
     turns: Annotated[int, typer.Option("--turns", help="Turns of the input.", min=1)] = 1,
     points: Annotated[int, typer.Option("--points", help="Points per turn.", min=8)] = 720,
     to: Annotated[

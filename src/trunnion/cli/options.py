@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from trunnion.driveline.parameters import Columns
     from trunnion.equations.coefficients import Assembly
 
-File = Annotated[
-    str, typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of the catalogue.")
-]
+File = Annotated[str, typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of the catalogue.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else.")]
 Unit = Annotated[
     str | None,
@@ -32,9 +30,7 @@ Speed = Annotated[
     ),
 ]
 LoadCase = Annotated[str | None, typer.Option("--load-case", help="Torques of this load case of the file.")]
-Points = Annotated[
-    str, typer.Option("--points", metavar="NXxNY", help="Points along x and y where not said there.")
-]
+Points = Annotated[str, typer.Option("--points", metavar="NXxNY", help="Points along x and y where not said there.")]
 
 AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30deg:300"'
 

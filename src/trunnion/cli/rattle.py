@@ -171,9 +171,7 @@ def sweep(
     _print("\n".join(map(str, found)), written)
 
 
-def _sweep_line(
-    line: Driveline, grids: list[Any], name: str, curve: str, to: list[Path] | None, as_json: bool
-) -> None:
+def _sweep_line(line: Driveline, grids: list[Any], name: str, curve: str, to: list[Path] | None, as_json: bool) -> None:
     """Torques of all springs of a line with several inertias."""
     from trunnion.analyses.piecewise_sweep import sweep as compute
 

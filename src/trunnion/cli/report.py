@@ -35,11 +35,7 @@ def print_overview(out: Console, seen: Overview) -> None:
     output.heading(out, "Natural frequencies, all joints straight")
     output.table(out, seen.natural_frequencies.table(frequency_unit(seen.line)))
     span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
-    able = [
-        row
-        for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True)
-        if r.opens
-    ]
+    able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
     output.heading(out, f"Resonance speeds {span} that can open: {len(able) or 'none'}")
     if able:
         output.table(out, [{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
@@ -71,9 +67,7 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
     across = quantity_axis(chart.x_label, chart.x_unit, unit)
     up = quantity_axis(chart.y_label, chart.y_unit, unit)
     counts = ", ".join(f"{n} {v}" for v in Verdict if (n := chart.count(v)))
-    lines = [
-        f"  {axis.said(values)}, {len(values)} points" for axis, values in ((across, chart.x), (up, chart.y))
-    ]
+    lines = [f"  {axis.said(values)}, {len(values)} points" for axis, values in ((across, chart.x), (up, chart.y))]
     if chart.speed is not None:
         lines.append(f"  at {show_speed(chart.speed, unit)}")
     lines.append(f"  {counts}")

@@ -94,9 +94,7 @@ def stability_chart(
     file: File,
     x: Annotated[
         str,
-        typer.Option(
-            "--x", metavar="PARAMETER:LOW:HIGH:POINTS[:log]", help="Or PARAMETER alone for the file's range."
-        ),
+        typer.Option("--x", metavar="PARAMETER:LOW:HIGH:POINTS[:log]", help="Or PARAMETER alone for the file's range."),
     ] = "speed",
     y: Annotated[str, typer.Option("--y", metavar="PARAMETER:LOW:HIGH:POINTS[:log]")] = "HookeJoint *.angle",
     speed: Speed = None,
@@ -171,9 +169,7 @@ def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) ->
 def resonance_speeds(
     file: File,
     orders: Annotated[int, typer.Option("--orders", help="Highest order k.", min=1, max=20)] = 2,
-    everywhere: Annotated[
-        bool, typer.Option("--all", help="Also those outside the file's speed_range.")
-    ] = False,
+    everywhere: Annotated[bool, typer.Option("--all", help="Also those outside the file's speed_range.")] = False,
     unit: Unit = None,
     as_json: Json = False,
 ) -> None:

@@ -51,9 +51,7 @@ def cardan_line(
             )
     c = [float(stiffness)] * (n - 1) if isinstance(stiffness, int | float) else [float(k) for k in stiffness]
     if len(c) != n - 1:
-        raise InputError(
-            f"has {len(c)} values for {n} joints", key="stiffness", value=c, remedy=f"give {n - 1}"
-        )
+        raise InputError(f"has {len(c)} values for {n} joints", key="stiffness", value=c, remedy=f"give {n - 1}")
     rigid = RIGID * max(c, default=1.0)
     elements: list[Element] = [ConstantSpeed(), Shaft(stiffness=rigid, fork_offset=start, name="input shaft")]
     for i in range(n):

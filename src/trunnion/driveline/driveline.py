@@ -69,9 +69,7 @@ class Driveline(BaseModel):
             raise refuse(error, type(self), data, element="driveline") from None
         if self.damping_ratio is not None and self.damping_ratio < 0:
             remark = "is negative and feeds energy into the line; write it positive unless that is meant"
-            warnings.warn(
-                InputRemark(f"driveline.damping_ratio = {self.damping_ratio:g}: {remark}"), stacklevel=2
-            )
+            warnings.warn(InputRemark(f"driveline.damping_ratio = {self.damping_ratio:g}: {remark}"), stacklevel=2)
 
     @field_validator("operation", mode="before")
     @classmethod
@@ -161,9 +159,7 @@ def _check_names(names: tuple[str, ...]) -> None:
     for name, count in Counter(names).items():
         if count > 1:
             places = " and ".join(str(i) for i, n in enumerate(names, start=1) if n == name)
-            raise InputError(
-                f"names elements {places}", element=name, key="name", remedy="rename one of them"
-            )
+            raise InputError(f"names elements {places}", element=name, key="name", remedy="rename one of them")
 
 
 def _parent(line: Driveline, place: int) -> int | None:

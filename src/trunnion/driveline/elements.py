@@ -54,16 +54,12 @@ Doubt = tuple[str, str, str]
 
 def is_name(value: object) -> bool:
     """Whether `value` can be a name: one line of text; no *, which stands for "all" in parameter paths."""
-    return (
-        isinstance(value, str) and value == value.strip() != "" and value.isprintable() and "*" not in value
-    )
+    return isinstance(value, str) and value == value.strip() != "" and value.isprintable() and "*" not in value
 
 
 def _name(value: object) -> object:
     if not is_name(value):
-        raise InputError(
-            "is not a name", value=value, remedy="write one line of text without * or outer blanks"
-        )
+        raise InputError("is not a name", value=value, remedy="write one line of text without * or outer blanks")
     return value
 
 
@@ -84,9 +80,7 @@ class Element(BaseModel):
     example: ClassVar[str] = ""
 
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
-    after: Name | None = Field(
-        default=None, description="earlier element it hangs on; default: the previous one"
-    )
+    after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
 
     def __init__(self, **data: Any) -> None:
         label = data["name"] if is_name(data.get("name")) else type(self).__name__
@@ -154,22 +148,14 @@ class Shaft(Element):
     stiffness: Stiffness | None = Field(default=None, description="torsional stiffness; or give the tube")
     damping: Damping = Field(default=0.0, description="viscous damping")
     outer_diameter: Length | None = Field(default=None, description="of the tube")
-    inner_diameter: Length | None = Field(
-        default=None, description="of the tube; 0 for a solid bar, as by default"
-    )
+    inner_diameter: Length | None = Field(default=None, description="of the tube; 0 for a solid bar, as by default")
     length: Length | None = Field(default=None, description="of the tube")
     shear_modulus: Pressure | None = Field(default=None, description="of the tube's material; steel 79.3 GPa")
-    density: Density | None = Field(
-        default=None, description="of the tube's material; 0: no inertia, as by default"
-    )
+    density: Density | None = Field(default=None, description="of the tube's material; 0: no inertia, as by default")
     young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
     loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
-    loss_factor_frequency: Frequency | None = Field(
-        default=None, description="at which the loss factor holds"
-    )
-    fork_offset: Angle = Field(
-        default=0.0, description="angle between the forks at the two ends; 0 is in line"
-    )
+    loss_factor_frequency: Frequency | None = Field(default=None, description="at which the loss factor holds")
+    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
 
     @model_validator(mode="before")
     @classmethod
@@ -188,9 +174,7 @@ class Shaft(Element):
             remedy = 'write the frequency at which it holds, for example "50 Hz"'
             raise InputError("is missing beside loss_factor", key="loss_factor_frequency", remedy=remedy)
         if self.loss_factor is None and self.loss_factor_frequency is not None:
-            raise InputError(
-                "is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say"
-            )
+            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
         if self.loss_factor is not None and self.damping != 0.0:
             remedy = "leave one of the two out"
             raise InputError("stands beside loss_factor", key="damping", value=self.damping, remedy=remedy)
@@ -385,9 +369,7 @@ class DoubleCardanJoint(_Joint):
         default=None,
         description="without centring: distance of the first cross to where the axes meet over the second's",
     )
-    yoke_length: Length | None = Field(
-        default=None, description="between the two crosses, for support forces"
-    )
+    yoke_length: Length | None = Field(default=None, description="between the two crosses, for support forces")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -416,9 +398,7 @@ class Ratio(Element):
 
     example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"
 
-    ratio: Dimensionless | None = Field(
-        default=None, description="input speed over output speed; negative reverses"
-    )
+    ratio: Dimensionless | None = Field(default=None, description="input speed over output speed; negative reverses")
     teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
     teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
 
@@ -426,9 +406,7 @@ class Ratio(Element):
     def _consistent(self) -> Self:
         _one_way(self, "ratio", ("teeth_in", "teeth_out"), ("teeth_in", "teeth_out"))
         if self.ratio == 0:
-            raise InputError(
-                "must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed"
-            )
+            raise InputError("must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed")
         return self
 
     @property
@@ -457,21 +435,13 @@ def _one_way(element: Element, direct: str, other: tuple[str, ...], needed: tupl
     if getattr(element, direct) is not None:
         if stated:
             remedy = f"leave out either {direct} or {', '.join(stated)}"
-            raise InputError(
-                f"stands beside {direct}", key=stated[0], value=getattr(element, stated[0]), remedy=remedy
-            )
+            raise InputError(f"stands beside {direct}", key=stated[0], value=getattr(element, stated[0]), remedy=remedy)
         return
     missing = [key for key in needed if getattr(element, key) is None]
     if stated and missing:
-        raise InputError(
-            f"is missing beside {stated[0]}", key=missing[0], remedy=f"needed are {', '.join(needed)}"
-        )
+        raise InputError(f"is missing beside {stated[0]}", key=missing[0], remedy=f"needed are {', '.join(needed)}")
     if missing:
-        remedy = (
-            f"write {element.example}, or {', '.join(needed)}"
-            if direct != "ratio"
-            else f"write {element.example}"
-        )
+        remedy = f"write {element.example}, or {', '.join(needed)}" if direct != "ratio" else f"write {element.example}"
         raise InputError("is missing", key=direct, remedy=remedy)
 
 
@@ -498,6 +468,4 @@ def _bore(element: Any) -> None:
     outer, inner = element.outer_diameter, element.inner_diameter
     if outer is not None and inner is not None and inner >= outer:
         problem = f"must be smaller than outer_diameter = {outer:g} m"
-        raise InputError(
-            problem, key="inner_diameter", value=inner, remedy="check the units, or swap the two"
-        )
+        raise InputError(problem, key="inner_diameter", value=inner, remedy="check the units, or swap the two")

@@ -105,20 +105,14 @@ def _read(path: Path) -> str:
         raw = path.read_bytes()
     except FileNotFoundError:
         there = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
-        remedy = (
-            nearest(path.name, there)
-            if there
-            else 'check the path, or start one with "trunnion new two-shaft"'
-        )
+        remedy = nearest(path.name, there) if there else 'check the path, or start one with "trunnion new two-shaft"'
         raise InputError("file not found", key=str(path), remedy=remedy) from None
     except IsADirectoryError:
         raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
     except OSError as error:
         if path.is_dir():  # Windows reports a folder as a denied permission
             raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
-        raise InputError(
-            f"cannot be read ({error.strerror})", key=str(path), remedy="check the file"
-        ) from None
+        raise InputError(f"cannot be read ({error.strerror})", key=str(path), remedy="check the file") from None
     if not raw.strip():
         raise InputError("is empty", key=str(path), remedy='start from "trunnion new two-shaft"')
     try:
@@ -162,18 +156,14 @@ def _check_format(table: dict[str, Any]) -> None:
         remedy = f"this version reads format = {FORMAT}; install a newer Trunnion"
         raise InputError("is a later format", key="format", value=number, remedy=remedy)
     if type(number) is not int or number != FORMAT:
-        raise InputError(
-            "is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}"
-        )
+        raise InputError("is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}")
 
 
 def _elements(tables: Any, source: str) -> list[Element]:
     if isinstance(tables, dict):
         raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
     if not isinstance(tables, list) or not tables:
-        remedy = (
-            'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
-        )
+        remedy = 'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
         raise InputError("has no elements", key="element", remedy=remedy)
     seen: Counter[str] = Counter()
     return [_element(table, place, seen, source) for place, table in enumerate(tables, start=1)]
@@ -181,9 +171,7 @@ def _elements(tables: Any, source: str) -> list[Element]:
 
 def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element:
     if not isinstance(table, dict):
-        raise InputError(
-            "is not a table", element=f"element {place}", value=table, remedy="write [[element]]"
-        )
+        raise InputError("is not a table", element=f"element {place}", value=table, remedy="write [[element]]")
     data = dict(table)
     kind = data.pop("type", None)
     name = data.get("name")
@@ -214,21 +202,15 @@ def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element
 
 def _operation(table: Any) -> Operation:
     if not isinstance(table, dict):
-        raise InputError(
-            "is not a table", key="operation", value=table, remedy="write [operation] on its own line"
-        )
+        raise InputError("is not a table", key="operation", value=table, remedy="write [operation] on its own line")
     data = dict(table)
     if "load_cases" in data:  # the name in Python; a file repeats [[operation.load_case]]
-        raise InputError(
-            "unknown key", element="operation", key="load_cases", remedy='did you mean "load_case"?'
-        )
+        raise InputError("unknown key", element="operation", key="load_cases", remedy='did you mean "load_case"?')
     cases = data.pop("load_case", [])
     if not isinstance(cases, list):
         remedy = "write [[operation.load_case]] with double brackets"
         raise InputError("is a single table", element="operation", key="load_case", remedy=remedy)
-    return Operation(
-        **data, load_cases=[_load_case(case, place) for place, case in enumerate(cases, start=1)]
-    )
+    return Operation(**data, load_cases=[_load_case(case, place) for place, case in enumerate(cases, start=1)])
 
 
 def _load_case(case: Any, place: int) -> LoadCase:

@@ -12,9 +12,7 @@ if TYPE_CHECKING:
 Number = TypeVar("Number", float, "NDArray[np.float64]")
 
 
-def tube_stiffness(
-    outer_diameter: Number, inner_diameter: Number, length: Number, shear_modulus: Number
-) -> Number:
+def tube_stiffness(outer_diameter: Number, inner_diameter: Number, length: Number, shear_modulus: Number) -> Number:
     """Torsional stiffness of a round tube [N m/rad], G·I_p/L with I_p = π(D⁴ − d⁴)/32.
 
     Parameters
@@ -36,9 +34,7 @@ def tube_inertia(outer_diameter: Number, inner_diameter: Number, length: Number,
     return density * _polar_area(outer_diameter, inner_diameter) * length
 
 
-def disk_inertia(
-    outer_diameter: Number, inner_diameter: Number, thickness: Number, density: Number
-) -> Number:
+def disk_inertia(outer_diameter: Number, inner_diameter: Number, thickness: Number, density: Number) -> Number:
     """Polar moment of inertia of a flat disk with a bore [kg m²]: a tube as long as the disk is thick."""
     return tube_inertia(outer_diameter, inner_diameter, thickness, density)
 

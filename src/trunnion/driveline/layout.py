@@ -193,9 +193,7 @@ def _bendable(angles: Array, joints: int) -> None:
         remedy = "no joint bends that far; check the order of the points"
         if j in (0, joints - 1) and angle > np.pi / 2 + 1e-9:
             which = "input_axis" if j == 0 else "output_axis"
-            remedy = (
-                f"axes and points contradict: {which} must point from drive to load, turn its sign"
-            )
+            remedy = f"axes and points contradict: {which} must point from drive to load, turn its sign"
         raise InputError(
             f"bends by {angle / DEGREE:.4g} deg, and must stay below 90 deg",
             element="layout",
@@ -209,9 +207,7 @@ def _centres(points: Any) -> Array:
     try:
         rows = [[_coordinate(x, LENGTH, "points") for x in point] for point in points]
     except TypeError:
-        raise InputError(
-            "are not points", element="layout", key="points", value=points, remedy=remedy
-        ) from None
+        raise InputError("are not points", element="layout", key="points", value=points, remedy=remedy) from None
     if not rows or any(len(row) != 3 for row in rows):
         raise InputError(
             "must have three coordinates each", element="layout", key="points", value=points, remedy=remedy
@@ -235,9 +231,7 @@ def _coordinate(value: Any, kind: Kind, key: str) -> float:
     try:
         return parse(value, kind)
     except InputError as error:
-        raise InputError(
-            error.problem, element="layout", key=key, value=error.value, remedy=error.remedy
-        ) from None
+        raise InputError(error.problem, element="layout", key=key, value=error.value, remedy=error.remedy) from None
 
 
 def combined_angle(vertical: float | str, horizontal: float | str) -> tuple[float, float]:

@@ -122,9 +122,7 @@ class Operation(BaseModel):
 
     speed: Speed | None = Field(default=None, description="input speed")
     speed_range: SpeedRange | None = Field(default=None, description="lowest and highest input speed")
-    angle_range: AngleRange | None = Field(
-        default=None, description="smallest and largest joint angle of interest"
-    )
+    angle_range: AngleRange | None = Field(default=None, description="smallest and largest joint angle of interest")
     speed_unit: Annotated[Literal["rpm", "Hz", "rad/s"], BeforeValidator(_speed_unit)] = Field(
         default="rpm", description="unit that speeds are printed in"
     )
@@ -148,15 +146,11 @@ class Operation(BaseModel):
         if self.speed_range and self.speed_range[0] < 0:
             raise InputError("must not go below zero", key="speed_range", remedy='start at "0 rpm" or above')
         if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
-            raise InputError(
-                "must stay below 90 deg", key="angle_range", remedy='write ["0 deg", "15 deg"], say'
-            )
+            raise InputError("must stay below 90 deg", key="angle_range", remedy='write ["0 deg", "15 deg"], say')
         names = [case.name for case in self.load_cases]
         for name in names:
             if names.count(name) > 1:
-                raise InputError(
-                    "names two load cases", key="load_case", value=name, remedy="rename one of them"
-                )
+                raise InputError("names two load cases", key="load_case", value=name, remedy="rename one of them")
         return self
 
     def load_case(self, name: str) -> LoadCase:

@@ -131,9 +131,7 @@ def _parse_text(text: str, kind: Kind) -> float:
     if not unit:
         if kind is RATIO:
             return float(number)
-        raise InputError(
-            "has no unit", value=text, remedy=f"{_advice(kind)}, or {number} without quotes for SI"
-        )
+        raise InputError("has no unit", value=text, remedy=f"{_advice(kind)}, or {number} without quotes for SI")
     for spelling, plain in _SPELLINGS.items():
         unit = unit.replace(spelling, plain)
     unit = re.sub(r"(?<=[a-z])(?=-?[0-9])", "^", unit)  # kg m2, min-1

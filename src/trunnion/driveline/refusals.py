@@ -50,9 +50,7 @@ def refuse(
             "unknown key", element=element, key=key, value=given[key], remedy=nearest(key, model.model_fields)
         )
     if first["type"] == "missing":
-        return InputError(
-            "is missing", element=element, key=key, remedy=f"write {example}" if example else ""
-        )
+        return InputError("is missing", element=element, key=key, remedy=f"write {example}" if example else "")
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         key = cause.key or key
@@ -64,9 +62,7 @@ def refuse(
             value=cause.value if value is None else value,
             remedy=cause.remedy,
         )
-    return InputError(
-        first["msg"][:1].lower() + first["msg"][1:], element=element, key=key, value=given.get(key)
-    )
+    return InputError(first["msg"][:1].lower() + first["msg"][1:], element=element, key=key, value=given.get(key))
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}

@@ -111,9 +111,7 @@ def _model(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _not_null(field: dict[str, Any]) -> dict[str, Any]:
-    plain = {
-        key: value for key, value in field.items() if key != "title" and (key, value) != ("default", None)
-    }
+    plain = {key: value for key, value in field.items() if key != "title" and (key, value) != ("default", None)}
     options = [option for option in plain.get("anyOf", []) if option != {"type": "null"}]
     if len(options) == 1:
         plain.pop("anyOf")

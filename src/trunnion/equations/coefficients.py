@@ -194,10 +194,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         for i in compliance.shafts:
             each[i] = shaft_stiffness(assembly, table, i)
         k = [each[i] for i in compliance.shafts]
-        c = [
-            _shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases)
-            for i in compliance.shafts
-        ]
+        c = [_shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
         stiffness[:, e], damping[:, e] = _series(k, c)
         twist[:, e] = torque[:, e] / stiffness[:, e]
         first = compliance.shafts[0]
@@ -219,9 +216,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             shift[:, s] = -table[:, column(here.element, "plane")]
             shift[:, s] -= _planes_in_front(assembly, table, here.element)
     joints = [topo.stations[j].element for j in topo.joints]
-    angle = (
-        np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
-    )
+    angle = np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,

@@ -105,9 +105,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
         scale=np.ascontiguousarray(scale.T),
         torque=np.ascontiguousarray(torque.T),
         member_inertia=np.ascontiguousarray((co.inertia[:, members] / inertia[:, owner]).T),
-        member_load=np.ascontiguousarray(
-            (sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T
-        ),
+        member_load=np.ascontiguousarray((sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
         frequency=np.sqrt(np.where(trace > 0, trace / n, 1.0)),
     )

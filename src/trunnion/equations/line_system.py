@@ -265,9 +265,7 @@ class LineSystem:
     def rigid(self, theta: float) -> Array:
         """State (2n,) of the line with rigid shafts, the input standing at ``theta`` [rad]."""
         topo = self.assembly.topology
-        co = self.assembly.coefficients(
-            self.assembly.table(1, self.speed), statically_twisted=False, free_play=True
-        )
+        co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
         base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
         plain = base_motion(topo, _straight(co), np.array([theta]), ratio_values(topo))
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]

@@ -106,9 +106,7 @@ def periodic_linear_system(
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     speed = float(coefficients.speed[0])
     if not (np.isfinite(speed) and speed > 0):
-        raise InputError(
-            "must be a positive speed", key="speed", value=speed, remedy="give rad/s, or tn.rpm(1500)"
-        )
+        raise InputError("must be a positive speed", key="speed", value=speed, remedy="give rad/s, or tn.rpm(1500)")
     period = 2 * np.pi * float(require_period(assembly.line, topo))
 
     def at(tau: Array) -> Matrices:

@@ -71,9 +71,7 @@ class NonlinearLine:
                 torque[i] -= r[s] * co.load[0, s] * np.sign(float(topo.speed_ratio[s]))
         for e, compliance in enumerate(topo.compliances):
             ref, near = topo.reference[compliance.far_group], compliance.near
-            f = co.stiffness[0, e] * (a[ref] - a[near] - self.offset[e]) + co.damping[0, e] * (
-                v[ref] - v[near]
-            )
+            f = co.stiffness[0, e] * (a[ref] - a[near] - self.offset[e]) + co.damping[0, e] * (v[ref] - v[near])
             far_i, near_i = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(near)]
             if far_i >= 0:
                 torque[far_i] -= f

@@ -155,9 +155,7 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
         raise InputError(
             f"joints are back in phase only after {float(turns):g} turns of the input "
             f"(at most {LONGEST_PERIOD} are followed)",
-            element=next(
-                n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio | GearPair)
-            ),
+            element=next(n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio | GearPair)),
             key="teeth_in/teeth_out",
             remedy="study the joints on each side of the ratio separately",
         )

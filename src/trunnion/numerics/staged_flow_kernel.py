@@ -143,8 +143,23 @@ def length(rows):
 
 @njit(cache=True, error_model="numpy")
 def carry(
-    t, span, w, stages, g_matrix, drag, pieces, by_parameter, constant_slope, frequencies, frequency_slope, force,
-    force_slope, push, q, v, f,
+    t,
+    span,
+    w,
+    stages,
+    g_matrix,
+    drag,
+    pieces,
+    by_parameter,
+    constant_slope,
+    frequencies,
+    frequency_slope,
+    force,
+    force_slope,
+    push,
+    q,
+    v,
+    f,
 ):
     """Move a tangent w (2m,) from time t over ``span`` within its stages; q, v, f, push are room to work in."""
     m, done = len(stages), 0.0
@@ -261,8 +276,29 @@ def locate(z, counts, guards, then, stages):
 
 @njit(cache=True, error_model="numpy")
 def advance(
-    start, end, z, stages, g_matrix, drag, constant, frequencies, force, constant_slope, frequency_slope, force_slope,
-    pieces, guards, then, tangents, moved, record, times, states, shown_stages, seen, final_rate,
+    start,
+    end,
+    z,
+    stages,
+    g_matrix,
+    drag,
+    constant,
+    frequencies,
+    force,
+    constant_slope,
+    frequency_slope,
+    force_slope,
+    pieces,
+    guards,
+    then,
+    tangents,
+    moved,
+    record,
+    times,
+    states,
+    shown_stages,
+    seen,
+    final_rate,
 ):
     """Move ``z`` (2m,), ``stages`` (m,) and ``tangents`` (columns, 2m) from ``start`` to ``end``.
 

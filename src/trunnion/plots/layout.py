@@ -133,9 +133,7 @@ def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> 
     return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed)
 
 
-def _joints(
-    train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float
-) -> list[_Joint]:
+def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float) -> list[_Joint]:
     motion = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 0))
     drawn = []
     for j, centre in zip(joints, centres, strict=True):
@@ -155,11 +153,7 @@ def _of_layout(layout: Layout, input_angle: float) -> _Scene:
     bent = np.flatnonzero(~layout.straight)
     # the line's own frame starts with x, −z, y: turn it onto the layout's first axis and first joint plane
     e = layout.axes[0]
-    v = (
-        np.cross(layout.axes[bent[0]], layout.axes[bent[0] + 1])
-        if len(bent)
-        else np.cross(e, [0.0, 0.0, 1.0])
-    )
+    v = np.cross(layout.axes[bent[0]], layout.axes[bent[0] + 1]) if len(bent) else np.cross(e, [0.0, 0.0, 1.0])
     v = _unit(v - (v @ e) * e)
     sense = 1.0 if layout.right_handed else -1.0  # angles that count about −e mirror the line
     turn = np.stack([e, sense * v, np.cross(e, v)], axis=1)
@@ -222,9 +216,7 @@ def _arrow(axes: Any, first: tuple[Array, Array], size: float, sense: float) -> 
 def _label(axes: Any, where: Array, text: str, colour: str, *, down: float) -> None:
     background = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.75, "pad": 1.0}
     place = where - np.array([0, 0, down])
-    axes.text(
-        *place, text, color=colour, fontsize=SMALL, ha="center", va="center", zorder=10, bbox=background
-    )
+    axes.text(*place, text, color=colour, fontsize=SMALL, ha="center", va="center", zorder=10, bbox=background)
 
 
 def _frame(axes: Any, scene: _Scene) -> None:

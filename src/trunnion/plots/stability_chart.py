@@ -81,9 +81,7 @@ def draw(
     return axes
 
 
-def _frame(
-    axes: Axes, chart: StabilityChart, x: Array, y: Array, across: QuantityAxis, up: QuantityAxis
-) -> None:
+def _frame(axes: Axes, chart: StabilityChart, x: Array, y: Array, across: QuantityAxis, up: QuantityAxis) -> None:
     for values, axis, set_scale, set_limits in (
         (x, axes.xaxis, axes.set_xscale, axes.set_xlim),
         (y, axes.yaxis, axes.set_yscale, axes.set_ylim),
@@ -149,9 +147,7 @@ def _others(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> list[Any]:
         mesh = np.ma.masked_where(~there, there.astype(float))
         axes.pcolormesh(edges(x), edges(y), mesh, cmap=ListedColormap([face]), rasterized=True)
         if min(there.shape) > 1:
-            drawn = axes.contourf(
-                x, y, there.astype(float), levels=[0.5, 1.5], colors="none", hatches=[hatch]
-            )
+            drawn = axes.contourf(x, y, there.astype(float), levels=[0.5, 1.5], colors="none", hatches=[hatch])
             drawn.set_edgecolor("#555555")
             drawn.set_linewidth(0.0)
         handles.append(Patch(facecolor=face, edgecolor="#555555", hatch=hatch, label=words))
@@ -187,9 +183,7 @@ def _operating(
             if ends[0] < ends[1]:
                 edge = ([*ends], [0, 0]) if along == "x" else ([0, 0], [*ends])
                 mixed = axes.get_xaxis_transform() if along == "x" else axes.get_yaxis_transform()
-                (bar,) = axes.plot(
-                    *edge, transform=mixed, color=ACCENT, lw=3, solid_capstyle="butt", clip_on=False
-                )
+                (bar,) = axes.plot(*edge, transform=mixed, color=ACCENT, lw=3, solid_capstyle="butt", clip_on=False)
                 bar.set_zorder(6)
                 if not handles:
                     handles.append(Line2D([], [], color=ACCENT, lw=3, label="operating range"))

@@ -20,9 +20,7 @@ DECADES = 4.0
 """Smallest amplitude shown, in decades below the largest."""
 
 
-def draw(
-    sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "rpm", operating: Operation | None = None
-) -> Axes:
+def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "rpm", operating: Operation | None = None) -> Axes:
     """Half peak-to-peak torque [N m], on a logarithmic axis since resonances span decades.
 
     Parameters

@@ -97,7 +97,5 @@ def catalogue(name: str, **changes: Any) -> Driveline | DoubleTripod | Piecewise
             try:
                 return entry.build(**changes)
             except TypeError as error:
-                raise InputError(
-                    str(error).split(") ", 1)[-1], element=name, remedy="see help(tn.catalogue)"
-                ) from None
+                raise InputError(str(error).split(") ", 1)[-1], element=name, remedy="see help(tn.catalogue)") from None
     raise InputError("is not in the catalogue", key=name, remedy=nearest(name, [e.name for e in _ENTRIES]))

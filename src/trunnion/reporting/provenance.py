@@ -27,9 +27,7 @@ def provenance(contents: Contents, source: Path | None, made: datetime) -> list[
     ]
     chart = contents.overview.chart
     if chart is not None:
-        worst = (
-            f"{np.nanmax(chart.error_estimate):.1e}" if np.isfinite(chart.error_estimate).any() else "unknown"
-        )
+        worst = f"{np.nanmax(chart.error_estimate):.1e}" if np.isfinite(chart.error_estimate).any() else "unknown"
         twisted = "statically twisted by the loads" if chart.statically_twisted else "untwisted"
         rows += [
             ("linearised about", f"the line turning evenly, {twisted}"),

@@ -73,9 +73,7 @@ def report(
     if unit is not None:
         speed_factor(unit)
     seen = (
-        line
-        if isinstance(line, Overview)
-        else overview(line, speed=speed, unit=unit, points=points, progress=progress)
+        line if isinstance(line, Overview) else overview(line, speed=speed, unit=unit, points=points, progress=progress)
     )
     contents = gather(seen)
     path = None if source is None else Path(source)
@@ -153,9 +151,7 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
     )
     shown = {
         "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
-        "modes": picture(
-            mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"
-        ),
+        "modes": picture(mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"),
         "speed_frequency": picture(diagram.figure.figure, "Speed–frequency diagram"),
     }
     if contents.turn is not None:

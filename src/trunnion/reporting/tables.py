@@ -107,9 +107,7 @@ def joints(line: Driveline) -> Table:
         alone = 100 * np.tan(beta) * np.sin(beta) if element.kind == "HookeJoint" else float("nan")
         lead = np.rad2deg(np.arcsin(np.tan(beta / 2) ** 2)) if element.kind == "HookeJoint" else float("nan")
         rows.append((name, element.kind, four(beta / DEGREE), four(alone), four(lead)))
-    return Table(
-        ("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows)
-    )
+    return Table(("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows))
 
 
 def irregularity(contents: Contents) -> Table | None:
@@ -149,9 +147,7 @@ def crossing_table(contents: Contents, speed_unit: str, frequency_unit: str) -> 
 def resonances(contents: Contents, unit: str) -> Table:
     """Parametric resonance speeds in the range that can open."""
     rows = [
-        (four(r.speed * speed_factor(unit)), r.kind, r.formula)
-        for r in contents.overview.resonance_speeds
-        if r.opens
+        (four(r.speed * speed_factor(unit)), r.kind, r.formula) for r in contents.overview.resonance_speeds if r.opens
     ]
     return Table((f"input speed [{unit}]", "kind", "formula"), tuple(rows[:MOST_RESONANCES]))
 
@@ -190,11 +186,7 @@ def under_load(contents: Contents) -> Table | None:
     for motion in contents.loaded:
         response, linear = motion.response, motion.response.comparison
         worst = int(response.torque_peak_to_peak.argmax())
-        rates = (
-            (four(linear.zero_twist.growth_rate), four(linear.static_twist.growth_rate))
-            if linear
-            else ("–", "–")
-        )
+        rates = (four(linear.zero_twist.growth_rate), four(linear.static_twist.growth_rate)) if linear else ("–", "–")
         rows.append(
             (
                 motion.case,
@@ -240,8 +232,7 @@ def bending(contents: Contents, unit: str) -> Table:
             four(b.critical_speed * speed_factor(unit)),
             four(b.input_speed * speed_factor(unit)),
             four(100 * high / b.input_speed),
-            shown(b.young_modulus, PRESSURE, digits=4)
-            + (" (from the shear modulus)" if b.assumed_modulus else ""),
+            shown(b.young_modulus, PRESSURE, digits=4) + (" (from the shear modulus)" if b.assumed_modulus else ""),
         )
         for b in contents.bending
     ]

@@ -82,9 +82,7 @@ class StabilityChart:
     remarks: tuple[str, ...]
     line: Driveline | None
     function: PatchedFunction = field(repr=False)
-    evaluate_point: Callable[[float, float], ChartPoint] | None = field(
-        default=None, repr=False, compare=False
-    )
+    evaluate_point: Callable[[float, float], ChartPoint] | None = field(default=None, repr=False, compare=False)
     resample: Resample | None = field(default=None, repr=False, compare=False)
     spot_check: SpotCheck | None = None
 
@@ -114,9 +112,7 @@ class StabilityChart:
                     remedy="compute a larger chart",
                 )
         if self.evaluate_point is None:
-            raise InputError(
-                "was read without its family and cannot be evaluated between pixels", element="chart"
-            )
+            raise InputError("was read without its family and cannot be evaluated between pixels", element="chart")
         return self.evaluate_point(float(x), float(y))
 
     def zoom(self, x: Sequence[float], y: Sequence[float]) -> StabilityChart:
@@ -210,9 +206,7 @@ class StabilityChart:
             writer.writerow(header)
             for i, y in enumerate(self.y.tolist()):
                 rows = zip(self.spectral_radius[i].tolist(), self.error_estimate[i].tolist(), strict=True)
-                for x, code, (radius, error) in zip(
-                    self.x.tolist(), self.verdict[i].tolist(), rows, strict=True
-                ):
+                for x, code, (radius, error) in zip(self.x.tolist(), self.verdict[i].tolist(), rows, strict=True):
                     writer.writerow([x, y, radius, error, words[code]])
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
@@ -223,9 +217,7 @@ class StabilityChart:
 
     def __str__(self) -> str:
         counts = ", ".join(f"{n} {v}" for v in Verdict if (n := self.count(v)))
-        lines = [
-            f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"
-        ]
+        lines = [f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"]
         if np.isfinite(self.spectral_radius).any():
             worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
             lines.append(
@@ -234,13 +226,9 @@ class StabilityChart:
                 f"{self.y_label} = {self.y[worst[0]]:.6g} {self.y_unit}"
             )
             middle = np.nanmedian(self.error_estimate)
-            lines.append(
-                f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)"
-            )
+            lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")
         if self.function.patches:
-            lines.append(
-                f"  {len(self.function.patches)} patches from {self.function.evaluations} integrations"
-            )
+            lines.append(f"  {len(self.function.patches)} patches from {self.function.evaluations} integrations")
         if self.spot_check is not None:
             lines.append(
                 f"  checked at {self.spot_check.points} random points by direct integration: differences up to "
@@ -261,14 +249,10 @@ def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
     except FileNotFoundError:
         raise InputError("does not exist", key="chart", value=str(path), remedy="check the path") from None
     except (OSError, ValueError):
-        raise InputError(
-            "is not a netCDF file", key="chart", value=str(path), remedy="give a saved chart"
-        ) from None
+        raise InputError("is not a netCDF file", key="chart", value=str(path), remedy="give a saved chart") from None
     if data.attrs.get("format") != FORMAT:
         remedy = f'it must say format = "{FORMAT}"; compute it again'
-        raise InputError(
-            "is not a stability chart of this version", key="chart", value=str(path), remedy=remedy
-        )
+        raise InputError("is not a stability chart of this version", key="chart", value=str(path), remedy=remedy)
     check = json.loads(data.attrs["spot_check"])
     speed = float(data.attrs["speed"])
     text = data.attrs["driveline"]
@@ -281,8 +265,7 @@ def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
         y_unit=data["y"].attrs["units"],
         spectral_radius=data["spectral_radius"].values,
         error_estimate=data["error_estimate"].values,
-        critical_multiplier=data["critical_multiplier_real"].values
-        + 1j * data["critical_multiplier_imaginary"].values,
+        critical_multiplier=data["critical_multiplier_real"].values + 1j * data["critical_multiplier_imaginary"].values,
         verdict=data["verdict"].values.astype(np.int8),
         speed=None if np.isnan(speed) else speed,
         period=float(data.attrs["period"]),

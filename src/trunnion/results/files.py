@@ -26,9 +26,7 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError("is a folder", key="output", value=str(target), remedy="give a file name")
     if not target.parent.is_dir():
         remedy = f"create the folder {target.parent}"
-        raise InputError(
-            "cannot be written, its folder does not exist", key="output", value=str(target), remedy=remedy
-        )
+        raise InputError("cannot be written, its folder does not exist", key="output", value=str(target), remedy=remedy)
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
     except OSError as error:

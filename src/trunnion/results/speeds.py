@@ -15,9 +15,7 @@ def speed_factor(unit: str) -> float:
         return PER_RADIAN_PER_SECOND[unit]
     except KeyError:
         known = ", ".join(PER_RADIAN_PER_SECOND)
-        raise InputError(
-            "is not a unit of speed", key="unit", value=unit, remedy=f"use one of {known}"
-        ) from None
+        raise InputError("is not a unit of speed", key="unit", value=unit, remedy=f"use one of {known}") from None
 
 
 def show_speed(speed: float, unit: str = "rad/s") -> str:

@@ -34,9 +34,7 @@ def verdicts(radius: ArrayLike, error: ArrayLike, undamped: ArrayLike = False) -
     """Codes from spectral radius and error estimate; ``undamped`` turns undecided into marginal."""
     radius, error = np.asarray(radius, dtype=float), np.asarray(error, dtype=float)
     straddling = np.where(undamped, Verdict.MARGINAL, Verdict.UNDECIDED)
-    code = np.where(
-        radius - error > 1, Verdict.UNSTABLE, np.where(radius + error < 1, Verdict.STABLE, straddling)
-    )
+    code = np.where(radius - error > 1, Verdict.UNSTABLE, np.where(radius + error < 1, Verdict.STABLE, straddling))
     return np.where(np.isfinite(radius) & np.isfinite(error), code, Verdict.FAILED).astype(np.int8)
 
 
