@@ -34,7 +34,8 @@ DASHED = (0, (4, 2))
 ARROW = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0}
 JUMP = "jump of a slow sweep"
 LOOSE = "not of one period"
-CONTACTS = {"none": "#56b4e9", "one-sided": "#e69f00", "two-sided": "#d55e00"}
+CONTACTS = {"none": "#a6d5f2", "one-sided": "#e08a00", "two-sided": "#8c2d04"}
+"""Darker with every side touched, so that they are told apart in grey too."""
 
 
 def draw_responses(
@@ -223,7 +224,7 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
     from matplotlib.colors import ListedColormap
 
     axes = axes or new_axes(6.3, 4.9)
-    colours = ["#eeeeee", "#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#d55e00"]
+    colours = ["#eeeeee", "#0072b2", "#f0b84c", "#004d3a", "#dba6c2", "#a03c00"]  # dark and light in turn
     count = len(basins.attractors)
     shades = ListedColormap([colours[0], *(colours[1 + i % 5] for i in range(max(count, 1)))])
     axes.pcolormesh(
@@ -232,6 +233,7 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
     )  # fmt: skip
     for i, orbit in enumerate(basins.attractors):
         words = f"{orbit.contact} contact, half peak-to-peak {orbit.peak_to_peak / 2:.3g}"
+        axes.plot(*orbit.start, "x", color="white", ms=10, mew=4.5)
         axes.plot(*orbit.start, "x", color=INK, ms=8, mew=1.8)
         axes.plot([], [], "s", color=colours[1 + i % 5], label=words)
     if np.any(basins.number < 0):
