@@ -171,3 +171,14 @@ def test_a_sweep_of_a_longer_line(run, here):
     content = json.loads(run(*call, "--direction", "up", "--json", "-o", "t.png").stdout)["sweeps"]
     low = [h - s for h, s in zip(high, content[0]["torque_peak_to_peak"]["clutch"], strict=True)]
     assert len(content) == 1 and np.all(np.isfinite(low)) and set(content[0]["contact"]) == {"mesh", "clutch"}
+
+
+def test_a_long_response_tells_how_far_it_is(run, here, monkeypatch):
+    """Shares on stderr while it is computed, rising to the end; nothing of it on stdout."""
+    monkeypatch.setattr("trunnion.cli.output.LONG", 0.0)
+    result = run("frequency-response", "gear-rattle", "--from", "0.8", "--to", "1.0", "--json", "-o", "r.png")
+    assert result.exit_code == 0, result.stderr
+    told = [line for line in result.stderr.splitlines() if line.startswith("frequency response: ")]
+    shares = [float(line.split()[2]) for line in told]
+    assert len(shares) > 20 and shares == sorted(shares) and shares[-1] == 100
+    json.loads(result.stdout)

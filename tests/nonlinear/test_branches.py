@@ -44,7 +44,12 @@ def test_dead_zone_grazings_and_folds() -> None:
 
 def test_a_branch_is_the_same_both_ways() -> None:
     system = tn.reference_system("dead-zone-oscillator")
-    one = tn.periodic_branch(system, "frequency", 0.42, 0.8, begin=0.6, start=[0.396, 0.19], longest_step=0.03)
+    shares: list[float] = []
+    one = tn.periodic_branch(
+        system, "frequency", 0.42, 0.8, begin=0.6, start=[0.396, 0.19], longest_step=0.03, progress=shares.append
+    )
+    # From inside the range the branch goes both ways, through folds; what is told of it only rises.
+    assert len(shares) > len(one.parameter) and shares == sorted(shares) and shares[0] >= 0 and shares[-1] == 1
     other = tn.periodic_branch(
         system, "frequency", 0.42, 0.8, start=one.start[np.argmin(one.parameter)], longest_step=0.03
     )

@@ -511,7 +511,7 @@ def test_commands_take_a_file(tmp_path: Path) -> None:
         PAIR.replace("backlash", 'transmission_error = [{ amplitude = "2 um" }]\nbacklash'), encoding="utf-8"
     )
     for arguments, words in (
-        (["sweep", str(file)], "is not swept"),
+        (["sweep", str(file)], "have no common period"),
         (["sweep", str(file), "--set", "a=1"], "belongs to"),
     ):
         result = CliRunner().invoke(app, arguments)
@@ -535,4 +535,6 @@ def test_report_of_a_line_with_backlash() -> None:
         operation=tn.Operation(speed="900 rpm"),
     )
     page = tn.report(line).html
+    # Nor does it break at its hyphen.
+    assert '<td class="whole">one-sided</td>' in page and ".whole { white-space: nowrap; }" in page
     assert "Backlash and stages" in page and "GearPair 1" in page and "one-sided" in page and "contact is lost" in page

@@ -114,7 +114,7 @@ def test_sweep_command(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (("sweep", "gear-ratle"), "did you mean"),
-        (("sweep", "duffing"), "is not swept"),
+        (("sweep", "duffing"), "has no gap to be swept over"),
         (("sweep", "gear-rattle", "--direction", "sideways"), "write up, down or both"),
         (("sweep", "gear-rattle", "--from", "2", "--to", "1"), "must be a rising range"),
         (("sweep", "gear-rattle", "--set", "half_gap"), "is not NAME=VALUE"),

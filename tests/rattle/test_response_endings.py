@@ -153,6 +153,16 @@ def test_curves_by_name_and_units_in_words() -> None:
             frequency_response(system, 0.8, 0.9, curve="torque")
 
 
+def test_the_exact_branch_has_the_curves_it_knows() -> None:
+    """Of one equation the swing of x; another name is refused in a line that says which there are."""
+    branch = piecewise_branch(gear_pair(), 0.8, 1.0)
+    assert branch.curves == ("x",) and branch.peak_to_peak.shape == branch.largest.shape == (len(branch.parameter), 1)
+    assert np.isfinite(branch.peak_to_peak).all() and np.isfinite(branch.largest).all()
+    assert all(np.isfinite(point.peak_to_peak).all() for point in branch.special)
+    with pytest.raises(InputError, match=r"^curve = 'v': is no curve of this branch; known: x$"):
+        branch.plot(curve="v")
+
+
 def test_the_usual_method_of_a_line_is_one_that_bears_its_contacts() -> None:
     shaft, disk = tn.Shaft(stiffness=1e3, damping=1.0), tn.Disk(inertia=0.1, load_torque=5.0)
     clutch = tn.PiecewiseShaft(breakpoints=[0.01], stiffnesses=[1e3, 2e3], damping=1.0)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Progress = Callable[[float], None]
 CLOSE = 1e-9
 """Size of the last correction of a point, in units of the scales."""
 STEP, LEAST_STEP = 0.1, 1e-8
@@ -37,6 +38,10 @@ UNTOLD = 1e-6
 """A spectral radius nearer to 1 than this is not told from it."""
 NOISE = 1e-8
 """A test function below this on both sides changes sign by rounding, as Π(σ_i σ_j − 1) does without damping."""
+FOLLOWING = 0.15
+"""Share of the time that following takes where a motion has contacts; the rest locates its special points."""
+LOCATING = 50.0
+"""Time to locate a grazing, over that of looking at two neighbours which have none between them."""
 BOUNDLESS = 30.0
 """Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
 
@@ -198,21 +203,24 @@ def follow_both_ways(
     most_points: int,
     tolerance: float = CLOSE,
     stop: Callable[[CurvePoint], bool] | None = None,
+    progress: Progress | None = None,
 ) -> tuple[list[tuple[CurvePoint, str]], Outcome]:
     """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome.
 
     ``stop`` ends the branch at the first point it is true of; that end is an outcome of kind "stopped".
+    ``progress`` is called with the share done.
     """
+    tell = progress or (lambda share: None)
     begin = float(first[-1])
     curves: list[Curve] = []
-    for direction in (-1.0, 1.0):
-        if begin <= low if direction < 0 else begin >= high:
-            continue
+    ways = [(d, end) for d, end in ((-1.0, low), (1.0, high)) if (end - begin) * d > 0]
+    for i, (direction, end) in enumerate(ways):
+        told = _part(tell, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
         curves.append(
             follow(
                 problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
                 first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
-                tolerance=tolerance, on_point=stop,
+                tolerance=tolerance, on_point=_watched(stop, told, begin, end),
             )
         )  # fmt: skip
         if curves[-1].ending is Ending.STOPPED:
@@ -221,12 +229,35 @@ def follow_both_ways(
             break  # the other way is the same way round
     outcomes = [_ending(problem, curve) for curve in curves]
     # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
-    walks = [_special_points(problem, curve) for curve in curves]
+    count, walks = len(curves), []
+    for i, curve in enumerate(curves):
+        ahead = FOLLOWING + (1 - FOLLOWING) * np.array([i, i + 1]) / count
+        walks.append(_special_points(problem, curve, _part(tell, *ahead)))
     whole = walks[-1]
     if len(walks) == 2 and walks[1]:
         whole = [*reversed(walks[0][1:]), *walks[1]]
     failed = [outcome for outcome in outcomes if not outcome.ok]
     return whole, failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
+
+
+def _part(tell: Progress, first: float, last: float) -> Progress:
+    """Progress of one stage of the work, which takes it from share ``first`` to ``last``."""
+    return lambda share: tell(float(first + (last - first) * share))
+
+
+def _watched(
+    stop: Callable[[CurvePoint], bool] | None, tell: Progress, begin: float, end: float
+) -> Callable[[CurvePoint], bool]:
+    """``stop``, telling of every point how far the curve has come; it turns back at folds, what is told does not."""
+    farthest = 0.0
+
+    def on_point(point: CurvePoint) -> bool:
+        nonlocal farthest
+        farthest = max(farthest, (point.parameter - begin) / (end - begin))
+        tell(farthest)
+        return stop is not None and stop(point)
+
+    return on_point
 
 
 def _ending(problem: Problem, curve: Curve) -> Outcome:
@@ -263,7 +294,7 @@ def _boundless(problem: Problem, curve: Curve) -> bool:
     return growing and float(np.ptp(late)) < 0.02 * float(np.ptp(z[:, -1]))
 
 
-def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, str]]:
+def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tuple[CurvePoint, str]]:
     """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
     folds = dict(curve.folds)
     tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
@@ -271,11 +302,13 @@ def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, st
         ("Neimark–Sacker", _torus),
         ("branch point", _branching),
     )
+    changes = [problem.changes(point) for point in curve.points]
+    ahead = np.cumsum(1 + LOCATING * (np.diff(changes) != 0))
     points = [(curve.points[0], "")] if curve.points else []
     for i, (here, there) in enumerate(zip(curve.points[:-1], curve.points[1:], strict=True)):
         found: list[tuple[CurvePoint, str]] = [(folds[i], "fold")] if i in folds else []
-        if problem.changes(here) != problem.changes(there):
-            before = problem.changes(here)
+        if changes[i] != changes[i + 1]:
+            before = changes[i]
             met = _located(problem, here, there, lambda p, n=before: float(problem.changes(p) == n) - 0.5)  # type: ignore[misc]
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
@@ -289,6 +322,7 @@ def _special_points(problem: Problem, curve: Curve) -> list[tuple[CurvePoint, st
         chord = (there.z - here.z) / problem.scale
         points += sorted(found, key=lambda f: float(chord @ ((f[0].z - here.z) / problem.scale)))
         points.append((there, ""))
+        tell(float(ahead[i] / ahead[-1]))
     return points
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
 from trunnion.analyses.exact_motion import start_state
 from trunnion.analyses.exact_orbit import ExactOrbit, Shooting, by_modulus, orbit_near, refuse_found_speed
 from trunnion.driveline.driveline import Driveline
@@ -59,6 +59,7 @@ def exact_branch(
     periods: int = 1,
     longest_step: float = 0.01,
     most_points: int = 4000,
+    progress: Progress | None = None,
 ) -> PeriodicBranch:
     """See ``piecewise_branch``, which has checked the range."""
     first = low if begin is None else float(begin)
@@ -69,7 +70,7 @@ def exact_branch(
     if not orbit.outcome.ok:
         return collect(problem, [], Outcome(False, "not found", f"no motion at {first:g} rad/s: {orbit.outcome}"))
     begins = np.append(orbit.start[shooting.kept], first)
-    whole, outcome = follow_both_ways(problem, begins, low, high, most_points, 1e-10)
+    whole, outcome = follow_both_ways(problem, begins, low, high, most_points, 1e-10, progress=progress)
     return collect(problem, whole, outcome)
 
 

@@ -233,9 +233,9 @@ def frequency_response(
         ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
-    options : of the method: ``begin``, ``start``, ``longest_step``, ``periods`` (exact); ``harmonics`` and the same
-        (harmonic balance); ``epsilon``, ``fit_range`` (multiple scales, averaging); ``points``, ``start``, ``least``,
-        ``most`` (sweeps).
+    options : of the method: ``begin``, ``start``, ``longest_step``, ``periods``, ``progress`` (exact, shooting);
+        ``harmonics`` and the same but the last (harmonic balance); ``epsilon``, ``fit_range`` (multiple scales,
+        averaging); ``points``, ``start``, ``least``, ``most`` (sweeps).
 
     Raises
     ------

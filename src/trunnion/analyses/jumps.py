@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 JUMP, ABRUPT = 0.25, 2.0
 """A change between neighbours is a jump if it is this share of the larger swing and that many times those beside."""
+STEEPENING = 4.0
+"""How many times steeper the flank of a resonance may get from step to step of a coarse grid."""
 
 
 def abrupt_changes(swing: NDArray[np.float64]) -> list[int]:
@@ -14,8 +16,9 @@ def abrupt_changes(swing: NDArray[np.float64]) -> list[int]:
     change = np.abs(np.diff(swing))
     if len(change) < 3:
         return []
-    # At an end both neighbours stand on one side: a single small one says little about what is usual.
-    left, right = np.concatenate([change[2:3], change[:-1]]), np.concatenate([change[1:], change[-3:-2]])
+    # At an end both neighbours stand on one side, so that a flank which goes on beyond it looks like a jump.
+    left = np.concatenate([change[2:3], change[:-2], STEEPENING * change[-2:-1]])
+    right = np.concatenate([STEEPENING * change[1:2], change[2:], change[-3:-2]])
     usual = np.maximum(left, right)
     abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
     return [int(i) for i in np.flatnonzero(abrupt)]

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
 from trunnion.analyses.periodic_orbit import extremes, periodic_orbit
 from trunnion.analyses.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
@@ -44,6 +44,7 @@ def periodic_branch(
     tolerance: float = TOLERANCE,
     longest_step: float = 0.01,
     most_points: int = MOST_POINTS,
+    progress: Progress | None = None,
 ) -> PeriodicBranch:
     """Follow the periodic motion of a line or a forced system while a parameter moves from ``low`` to ``high``.
 
@@ -58,6 +59,7 @@ def periodic_branch(
     periods : forcing periods in one period of the motion.
     longest_step : largest step of the parameter, as a share of its range; two special points closer together than
         a step may be missed.
+    progress : called as progress(share done).
 
     Returns
     -------
@@ -73,7 +75,7 @@ def periodic_branch(
     orbit = periodic_orbit(over.at(first), start=start, periods=periods, tolerance=tolerance)
     if not orbit.outcome.ok:
         return collect(problem, [], Outcome(False, orbit.outcome.kind, f"at {first:g}: {orbit.outcome.sentence}"))
-    whole, outcome = follow_both_ways(problem, np.append(orbit.start, first), low, high, most_points)
+    whole, outcome = follow_both_ways(problem, np.append(orbit.start, first), low, high, most_points, progress=progress)
     return collect(problem, whole, outcome)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.branch import STEP, PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
 from trunnion.analyses.closing import refuse_speed
 from trunnion.analyses.exact_branch import exact_branch
 from trunnion.analyses.piecewise_orbit import piecewise_orbit
@@ -49,6 +49,7 @@ def piecewise_branch(
     periods: int = 1,
     longest_step: float = 0.01,
     most_points: int = 4000,
+    progress: Progress | None = None,
 ) -> PeriodicBranch:
     """Exact periodic motions over the frequency from ``low`` to ``high``, stable and unstable.
 
@@ -62,6 +63,7 @@ def piecewise_branch(
     speed : of a driveline excited in time, where a viscous load depends on it.
     periods : forcing periods of the motion; 2 follows a motion of twice the period.
     longest_step : of the continuation, over the frequency range and over the size of the gap or of the motion.
+    progress : called as progress(share done).
 
     Returns
     -------
@@ -80,7 +82,7 @@ def piecewise_branch(
     if isinstance(oscillator, Driveline | Assembly):
         return exact_branch(
             oscillator, low, high, begin=first, start=start, speed=speed, periods=periods, longest_step=longest_step,
-            most_points=most_points,
+            most_points=most_points, progress=progress,
         )  # fmt: skip
     refuse_speed(oscillator.name, speed)
     orbit = piecewise_orbit(oscillator.but(frequency=first), start, periods=periods)
@@ -88,7 +90,9 @@ def piecewise_branch(
     problem = _Exact(oscillator, periods, size, (high - low) * longest_step / STEP)
     if not orbit.outcome.ok:
         return collect(problem, [], Outcome(False, "not found", f"no motion at ω = {first:g}: {orbit.outcome}"))
-    whole, outcome = follow_both_ways(problem, np.append(orbit.start, first), low, high, most_points, 1e-11)
+    whole, outcome = follow_both_ways(
+        problem, np.append(orbit.start, first), low, high, most_points, 1e-11, progress=progress
+    )
     return collect(problem, whole, outcome)
 
 

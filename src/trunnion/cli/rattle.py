@@ -76,10 +76,11 @@ def frequency_response(
     chosen = list(every) if method == ["all"] else (method or [known[0]])
     if "shooting" in chosen and methods_of(subject)[0] == "shooting":
         output.note("following the motions through their contacts, which may take minutes; a narrower range is quicker")
-    with output.compile_notice():
+    with output.progress("frequency response") as advance:
+        shares = _shares(advance, chosen)
         found = ResponseComparison(
             {
-                m: compute(subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics))
+                m: compute(subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics, shares[m]))
                 for m in chosen
             }
         )
@@ -278,7 +279,16 @@ def _values(parameters: list[str] | None) -> dict[str, float]:
     return values
 
 
-def _options(method: str, fit_range: float | None, harmonics: int | None) -> dict[str, Any]:
+def _shares(advance: Callable[[float], None], methods: list[str]) -> dict[str, Callable[[float], None]]:
+    """Progress of every method, one after the other."""
+    return {m: lambda share, i=i: advance((i + share) / len(methods)) for i, m in enumerate(methods)}  # type: ignore[misc]
+
+
+def _options(
+    method: str, fit_range: float | None, harmonics: int | None, progress: Callable[[float], None]
+) -> dict[str, Any]:
+    if method in ("exact", "shooting"):
+        return {"progress": progress}
     if method in ("averaging", "multiple scales") and fit_range is not None:
         return {"fit_range": fit_range}
     return {"harmonics": harmonics} if method == "harmonic balance" and harmonics is not None else {}

@@ -152,7 +152,7 @@ def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: st
     factor = speed_factor(unit) if unit else 1.0
     for one in sweeps:
         marks = _SweepMarks(one.frequency * factor, one.peak_to_peak / 2, one.contact, one.settled, one.up)
-        _draw_sweep_marks(axes, marks, first=one is sweeps[0])
+        _draw_sweep_marks(axes, marks)
     words = f"half peak-to-peak of x{f' [{length}]' if length else ''}"
     _label_sweeps(axes, f"frequency ω [{unit}]" if unit else "frequency ω", words, "contact, sweep")
     return axes
@@ -174,9 +174,9 @@ def draw_line_sweeps(
         marks = _SweepMarks(
             one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name), one.settled, one.up
         )
-        _draw_sweep_marks(axes, marks, first=one is sweeps[0])
+        _draw_sweep_marks(axes, marks)
     over = "speed" if line.clock == "speed" else "frequency"
-    _label_sweeps(axes, f"{over} [{unit}]", f"torque of {name}, peak to peak [N m]", f"contact of {name}, sweep")
+    _label_sweeps(axes, f"{over} [{unit}]", f"torque of {name}, peak to peak [N·m]", f"contact of {name}, sweep")
     return axes
 
 
@@ -190,7 +190,7 @@ class _SweepMarks(NamedTuple):
     up: bool
 
 
-def _draw_sweep_marks(axes: Axes, one: _SweepMarks, *, first: bool) -> None:
+def _draw_sweep_marks(axes: Axes, one: _SweepMarks) -> None:
     from trunnion.analyses.jumps import abrupt_changes
 
     x, size = one.x, one.size
@@ -203,7 +203,8 @@ def _draw_sweep_marks(axes: Axes, one: _SweepMarks, *, first: bool) -> None:
             axes.plot(x[here], size[here], shape, color=colour, ms=wide, mfc=inside, ls="", label=label)
     loose = ~one.settled
     if loose.any():
-        axes.plot(x[loose], size[loose], "_", color=INK, ms=8, mew=0.8, label=LOOSE if first else None, zorder=5)
+        known = LOOSE in axes.get_legend_handles_labels()[1]
+        axes.plot(x[loose], size[loose], "_", color=INK, ms=8, mew=0.8, label=None if known else LOOSE, zorder=5)
     for i in abrupt_changes(size):
         axes.annotate("", (x[i + 1], size[i + 1]), (x[i], size[i]), arrowprops={**ARROW, "color": INK})
         if JUMP not in axes.get_legend_handles_labels()[1]:
@@ -216,7 +217,10 @@ def _label_sweeps(axes: Axes, across: str, up: str, title: str) -> None:
     axes.set_ylim(bottom=0)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    axes.legend(title=title, fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="best")
+    # What belongs to both directions comes last.
+    entries = sorted(zip(*axes.get_legend_handles_labels(), strict=True), key=lambda e: e[1] in (LOOSE, JUMP))
+    handles, words = zip(*entries, strict=True)
+    axes.legend(handles, words, title=title, fontsize=SMALL, title_fontsize=SMALL, frameon=False, loc="best")
 
 
 def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -> Axes:
