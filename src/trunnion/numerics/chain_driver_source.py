@@ -149,17 +149,20 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
 
 _INTEGRATE = """\
 @njit(cache=True, nogil=True)
-def integrate(program, lanes, first, last, begin, length, tolerance, extra, most_steps, matrix, error, trace):
+def integrate(program, lanes, order, first, last, begin, length, tolerance, extra, most_steps, matrix, error, trace):
     n = len(program.parent)
     out = np.empty((LANES, 2 * n, 2 * n))
     block_error, block_trace = np.empty(LANES), np.empty(LANES)
+    picked = np.empty(LANES, np.int64)
     steps = 0
     for at in range(first, last, LANES):
-        block = gather(program, lanes, at)
+        for l in range(LANES):
+            picked[l] = order[min(at + l, last - 1)]
+        block = gather(program, lanes, picked)
 {propagate}        for l in range(min(LANES, last - at)):
-            matrix[at + l] = out[l]
-            error[at + l] = block_error[l]
-            trace[at + l] = block_trace[l]
+            matrix[picked[l]] = out[l]
+            error[picked[l]] = block_error[l]
+            trace[picked[l]] = block_trace[l]
     return steps
 """
 

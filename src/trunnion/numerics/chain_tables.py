@@ -103,17 +103,16 @@ class Block(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def gather(program, lanes, first):  # type: ignore[no-untyped-def]
-    """Lanes ``first`` … of the given ones as a block; the last lane is repeated to fill it."""
+def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
+    """The lanes ``picked`` (LANES,) of the given ones as a block."""
     joints, n = lanes.cosine.shape[0], len(program.parent)
-    last = lanes.frequency.shape[0] - 1
     joint = np.zeros(max(1, joints) * PER_JOINT)
     unknown = np.zeros(n * PER_UNKNOWN)
     members = lanes.member_inertia.shape[0]
     inertia, load = np.zeros((members, LANES)), np.zeros((members, LANES))
     alike = True
     for lane in range(LANES):
-        at = min(first + lane, last)
+        at, first = picked[lane], picked[0]
         nu = lanes.frequency[at]
         for j in range(joints):
             o = j * PER_JOINT + lane

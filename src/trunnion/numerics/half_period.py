@@ -36,70 +36,74 @@ _ENDS = np.array([0.0, 1.0])
 def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):  # type: ignore[no-untyped-def]
     """Z of lanes first…last from their propagators ``phi`` over ``half``, and their errors in place."""
     n = len(program.parent)
-    start, end, damping = np.empty(n), np.empty(n), np.empty(n)
-    spare = np.empty((2, 2 * n, 2 * n))
+    wide = 2 * n
+    half_phi, z = np.empty((wide, wide, LANES)), np.empty((wide, wide, LANES))
+    spare, factor = np.empty((2, wide, wide, LANES)), np.empty(LANES)
+    picked = np.empty(LANES, np.int64)
     for at in range(first, last, LANES):
-        block = gather(program, lanes, at)
+        count = min(LANES, last - at)
+        for lane in range(LANES):
+            picked[lane] = at + min(lane, count - 1)
+        block = gather(program, lanes, picked)
         table = empty_table(program, block)
         fill(program, block, begin, half, _ENDS, False, table)
-        for lane in range(min(LANES, last - at)):
-            for i in range(n):
-                start[i] = table[i * PER_TABLE + NEAR * LANES + lane]
-                end[i] = table[i * PER_TABLE + PER_ROW + NEAR * LANES + lane]
-                damping[i] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + lane]
-            nu = block.unknown[FREQUENCY * LANES + lane]
-            error[at + lane] *= whole_from_half(
-                program.parent, start, end, damping, nu, phi[at + lane], spare, matrix[at + lane]
-            )
+        for lane in range(LANES):
+            own = phi[picked[lane]]
+            for i in range(2 * n):
+                for j in range(2 * n):
+                    half_phi[i, j, lane] = own[i, j]
+        _whole_from_half(program.parent, block.unknown, table, half_phi, spare, z, factor)
+        for lane in range(count):
+            error[at + lane] *= factor[lane]
+            own = matrix[at + lane]
+            for i in range(2 * n):
+                for j in range(2 * n):
+                    own[i, j] = z[i, j, lane]
 
 
 @njit(cache=True, nogil=True)
-def whole_from_half(parent, near_start, near_end, damping, frequency, phi, spare, z):  # type: ignore[no-untyped-def]
-    """Fill ``z`` (2n, 2n) of one lane; returns the factor by which an error of φ enters it.
+def _whole_from_half(parent, unknown, table, phi, spare, z, factor):  # type: ignore[no-untyped-def]
+    """Fill ``z`` (2n, 2n, lanes) of a block and the factors (lanes,) by which an error of φ enters it.
 
-    near_start, near_end (n,): e_i at the ends of the half; damping (n,), frequency: that lane's d and ν;
-    spare (2, 2n, 2n) is scratch. Loops are written out because temporaries cost more than the work.
+    table: coefficients at the two ends of the half; spare (2, 2n, 2n, lanes) is scratch. The loops over lanes are
+    innermost so that the compiler can do them side by side.
     """
     n = len(parent)
     b, c = spare[0], spare[1]
-    for i in range(n):
-        for j in range(2 * n):
-            b[i, j] = phi[n + i, j]
-            b[n + i, j] = phi[i, j]
-    _add_damped(parent, near_end, damping, 1.0 / frequency, phi, 0, b)
-    square = 0.0
+    b[:n], b[n:] = phi[n:], phi[:n]
+    _add_damped(parent, unknown, table, 1, 1.0, phi, 0, b, 0)
+    factor[:] = 0.0
     for i in range(2 * n):
         for j in range(2 * n):
-            total = 0.0
+            for lane in range(LANES):
+                factor[lane] += phi[i, j, lane] ** 2
+                c[i, j, lane] = 0.0
             for k in range(2 * n):
-                total += phi[k, i] * b[k, j]
-            c[i, j] = total
-            square += phi[i, j] ** 2
-    for i in range(n):
-        for j in range(2 * n):
-            z[i, j] = c[n + i, j]
-            z[n + i, j] = c[i, j]
-    for i in range(n):
-        for j in range(2 * n):
-            b[i, j] = 0.0
-    _add_damped(parent, near_start, damping, 1.0 / frequency, c, n, b)
-    weight = 0.0
-    for i in range(n):
-        for j in range(2 * n):
-            z[n + i, j] -= b[i, j]
-        weight += abs(damping[i]) * (1 + max(near_start[i] ** 2, near_end[i] ** 2)) / frequency
-    return 2 * max(1.0, np.sqrt(square / (2 * n))) * (1 + weight) ** 2
+                for lane in range(LANES):
+                    c[i, j, lane] += phi[k, i, lane] * b[k, j, lane]
+    z[:n], z[n:] = c[n:], c[:n]
+    _add_damped(parent, unknown, table, 0, -1.0, c, n, z, n)
+    for lane in range(LANES):
+        weight = 0.0
+        for i in range(n):
+            o = i * PER_TABLE + NEAR * LANES + lane
+            steepest = max(table[o] ** 2, table[o + PER_ROW] ** 2)
+            weight += abs(unknown[i * PER_UNKNOWN + DAMPING * LANES + lane]) * (1 + steepest)
+        weight /= unknown[FREQUENCY * LANES + lane]
+        factor[lane] = 2 * max(1.0, np.sqrt(factor[lane] / (2 * n))) * (1 + weight) ** 2
 
 
 @njit(cache=True, nogil=True)
-def _add_damped(parent, near, damping, factor, x, row, out):  # type: ignore[no-untyped-def]
-    """Add S x · factor to the first n rows of ``out``; x are the n rows of its array from ``row`` on."""
+def _add_damped(parent, unknown, table, end, sign, x, row, out, to):  # type: ignore[no-untyped-def]
+    """Add ± S x/ν at one ``end`` of the half to n rows of ``out`` from ``to`` on; x are n rows from ``row`` on."""
     for i in range(len(parent)):
-        p, d = parent[i], damping[i] * factor
+        p, near, own = parent[i], i * PER_TABLE + end * PER_ROW + NEAR * LANES, i * PER_UNKNOWN + DAMPING * LANES
         for j in range(x.shape[1]):
-            twist = x[row + i, j]
-            if p >= 0:
-                twist -= near[i] * x[row + p, j]
-            out[i, j] += d * twist
-            if p >= 0:
-                out[p, j] -= near[i] * d * twist
+            for lane in range(LANES):
+                d = sign * unknown[own + lane] / unknown[FREQUENCY * LANES + lane]
+                if p >= 0:
+                    twist = x[row + i, j, lane] - table[near + lane] * x[row + p, j, lane]
+                    out[to + i, j, lane] += d * twist
+                    out[to + p, j, lane] -= table[near + lane] * d * twist
+                else:
+                    out[to + i, j, lane] += d * x[row + i, j, lane]

@@ -33,19 +33,19 @@ LONGEST, STEEPEST = 4.0, 0.7
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def all_columns(w, n, h, u, series):
-    wide, size = 2 * n, 2 * n * ROWS
-    begin_step(w, h)
+def all_columns(w, n, h, u):
+    wide = 2 * n
+    begin_step(w[:WORK], h)
     for c in range(wide):
+        column = w[c * WORK : (c + 1) * WORK]
+        if c > 0:
+            for l in range(SHARED):
+                column[l] = w[(c - 1) * WORK + l]
         for i in range(wide):
             at, o = STATE_ROW + i * ROWS, (c * wide + i) * LANES
             for l in range(LANES):
-                w[at + l] = u[o + l]
-        column_series(w, h)
-        column = series[c * size : (c + 1) * size]
-        state = w[STATE_ROW : STATE_ROW + size]
-        for l in range(size):
-            column[l] = state[l]
+                column[at + l] = u[o + l]
+        column_series(column, h)
 
 
 @njit(cache=True, nogil=True)
@@ -75,17 +75,20 @@ def length_of_step(squares, n, asked, last, grown):
 def propagate_block(program, block, begin, length, tolerance, most_steps, out, error, trace):
     n = len(program.parent)
     wide = 2 * n
-    w, u, series = np.zeros(WORK), np.zeros(wide * wide * LANES), np.empty(wide * wide * ROWS)
+    w, u = np.zeros(wide * WORK), np.zeros(wide * wide * LANES)
     joints, start = empty_series(program)
-    squares = w[SQUARE_ROW : SQUARE_ROW + SQUARES]
+    last_column = (wide - 1) * WORK
+    squares = w[last_column + SQUARE_ROW : last_column + SQUARE_ROW + SQUARES]
     last, grown, largest = np.empty(LANES), np.empty(LANES), np.ones(LANES)
     for i in range(wide):
         u[(i * wide + i) * LANES : (i * wide + i + 1) * LANES] = 1.0
-    for l in range(LANES):
-        w[FREQUENCY_ROW + l] = block.unknown[FREQUENCY * LANES + l]
-        for i in range(n):
-            w[STIFFNESS_ROW + i * LANES + l] = block.unknown[i * PER_UNKNOWN + STIFFNESS * LANES + l]
-            w[DAMPING_ROW + i * LANES + l] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + l]
+    for c in range(wide):
+        for l in range(LANES):
+            at = c * WORK + l
+            w[at + FREQUENCY_ROW] = block.unknown[FREQUENCY * LANES + l]
+            for i in range(n):
+                w[at + STIFFNESS_ROW + i * LANES] = block.unknown[i * PER_UNKNOWN + STIFFNESS * LANES + l]
+                w[at + DAMPING_ROW + i * LANES] = block.unknown[i * PER_UNKNOWN + DAMPING * LANES + l]
     error[:] = 0.0
     trace[:] = 0.0
     done, count = 0.0, 0
@@ -96,7 +99,7 @@ def propagate_block(program, block, begin, length, tolerance, most_steps, out, e
         for i in range(n):
             if NEAR_ROWS[i] >= 0:
                 near_rows(program, block, joints, i, w[NEAR_ROWS[i] : NEAR_ROWS[i] + ROWS])
-        all_columns(w, n, h, u, series)
+        all_columns(w, n, h, u)
         # No step is asked for less than its own rounding; otherwise steps would shrink for ever.
         asked = max(tolerance * h / length, ROUNDING)
         s, fall = length_of_step(squares, n, asked, last, grown)
@@ -116,7 +119,7 @@ def propagate_block(program, block, begin, length, tolerance, most_steps, out, e
             largest[l] = max(largest[l], grown[l])
         for i in range(n):
             add_damping_trace(w, i, h, s, trace)
-        evaluate(series, wide * wide, s, u)
+        evaluate(w, wide, s, u)
         done = length if s == left else done + s * h
         h *= s
     if done < length:

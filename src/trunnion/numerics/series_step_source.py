@@ -31,14 +31,15 @@ class _Rows:
         n = len(parent)
         self.jointed = [i for i in range(n) if parent[i] >= 0]
         self.near = {i: self._take(ORDER + 1) for i in self.jointed}
+        self.rate_damping = {i: self._take(1) for i in self.jointed}
+        self.square = self._take(LAST + 1)
+        self.shared = self.count
         self.stiffness = [self._take(1) for _ in range(n)]
         self.damping = [self._take(1) for _ in range(n)]
         self.frequency = self._take(1)
-        self.rate_damping = {i: self._take(1) for i in self.jointed}
         self.state = [self._take(ORDER + 1) for _ in range(2 * n)]
         self.twist = {i: self._take(ORDER + 1) for i in self.jointed}
         self.torque = {i: self._take(ORDER) for i in self.jointed}
-        self.square = self._take(LAST + 1)
 
     def _take(self, rows: int) -> int:
         self.count += rows
@@ -49,7 +50,7 @@ def series_step_source(parent: tuple[int, ...]) -> str:
     """Constants and functions of one step for a tree of ``len(parent)`` unknowns."""
     rows, n = _Rows(parent), len(parent)
     out = [
-        f"WORK = {rows.count} * LANES",
+        f"WORK, SHARED = {rows.count} * LANES, {rows.shared} * LANES",
         f"NEAR_ROWS = np.array({[rows.near.get(i, -1) * LANES for i in range(n)]})",
         f"STIFFNESS_ROW, DAMPING_ROW = {rows.stiffness[0]} * LANES, {rows.damping[0]} * LANES",
         f"FREQUENCY_ROW, STATE_ROW = {rows.frequency} * LANES, {rows.state[0]} * LANES",
@@ -61,11 +62,12 @@ def series_step_source(parent: tuple[int, ...]) -> str:
         out += _loop(_order(k, parent, rows))
     out += [*_function("begin_step(w, h)"), *_loop(_begin(rows))]
     out += [
-        *_function("evaluate(series, count, s, u)"),
-        "    for i in range(count):",
-        "        at = i * ROWS",
-        "        for l in range(LANES):",
-        f"            u[i * LANES + l] = {_horner('series', 'at', 's')}",
+        *_function("evaluate(w, wide, s, u)"),
+        "    for c in range(wide):",
+        "        for i in range(wide):",
+        "            at, o = c * WORK + STATE_ROW + i * ROWS, (c * wide + i) * LANES",
+        "            for l in range(LANES):",
+        f"                u[o + l] = {_horner('w', 'at', 's')}",
     ]
     # Gauss and Legendre over the step: d (1 + e²) with e from its series.
     nodes, weights = np.polynomial.legendre.leggauss(TRACE_NODES)
