@@ -38,8 +38,8 @@ MAGNUS = 64
 """Steps of the variational equation per period, besides the crossings, at least."""
 ADDED = 10.0
 """Damping added on the way to a first motion, over ω times the mass."""
-NEWTON = 3
-"""Corrections of a crossing found between two samples."""
+NEWTON, SETTLED = 3, 1e-8
+"""Corrections of a crossing found between two samples, at most; and the last one [rad], whose square is rounding."""
 GAUSS = np.sqrt(3.0) / 6
 
 
@@ -322,6 +322,8 @@ class _Balance:
             value, slope = self.at(both, phase)
             change = (value - np.array(spring.kinks)[which]) / np.where(slope == 0, 1.0, slope)
             phase = np.clip(phase - change, step * i, step * (i + 1))
+            if np.abs(change).max() < SETTLED:
+                break
         return np.sort(phase)
 
     def judged(self, point: CurvePoint) -> tuple[Complex, int]:

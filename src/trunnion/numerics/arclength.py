@@ -157,11 +157,13 @@ def correct(
     for count in range(MOST_CORRECTIONS):
         residual, jacobian = equations(y * scale)
         matrix = np.vstack([jacobian * scale, across])
-        right = -np.append(residual, across @ y - target)
+        # Both at once: the step, and the direction along the curve, on the side of ``across``.
+        right = np.zeros((len(y), 2))
+        right[:-1, 0], right[-1, 0], right[-1, 1] = -residual, target - across @ y, 1.0
         if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
             return None
         try:
-            change = np.linalg.solve(matrix, right)
+            change, tangent = np.linalg.solve(matrix, right).T
         except np.linalg.LinAlgError:
             return None
         size = float(np.linalg.norm(change))
@@ -169,8 +171,7 @@ def correct(
             return None
         y, before = y + change, size
         if size < tolerance:
-            tangent = _tangent(matrix, across)
-            return None if tangent is None else CurvePoint(y * scale, tangent, count + 1)
+            return CurvePoint(y * scale, tangent / np.linalg.norm(tangent), count + 1)
     return None
 
 
@@ -219,17 +220,6 @@ def _step(equations: Equations, point: CurvePoint, step: float, scale: Array, to
     predicted = point.z + step * point.tangent * scale
     found = correct(equations, predicted, point.tangent, scale=scale, tolerance=tolerance)
     return found if found is not None and found.tangent @ point.tangent > STRAIGHT else None
-
-
-def _tangent(matrix: Array, across: Array) -> Array | None:
-    """Unit vector along the curve on the side of ``across``, from the bordered Jacobian."""
-    right = np.zeros(len(across))
-    right[-1] = 1.0
-    try:
-        tangent = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        return None
-    return np.asarray(tangent / np.linalg.norm(tangent))
 
 
 def _turned(point: CurvePoint) -> CurvePoint:
