@@ -289,9 +289,11 @@ def _boundless(problem: Problem, curve: Curve) -> bool:
     if len(curve.points) < 8:
         return False
     z = curve.z / problem.scale
-    size, late = np.linalg.norm(z[:, :-1], axis=1), z[len(z) // 2 :, -1]
-    growing = bool(np.all(np.diff(size[len(z) // 2 :]) > 0)) and size[-1] > BOUNDLESS * size.min()
-    return growing and float(np.ptp(late)) < 0.02 * float(np.ptp(z[:, -1]))
+    size = np.linalg.norm(z[:, :-1], axis=1)
+    late, parameter = size[len(z) // 2 :], z[len(z) // 2 :, -1]
+    # A curve whose steps shrink grows too, but less and less: it is lost.
+    growing = bool(np.all(np.diff(late) > 0)) and late[-1] > max(2 * late[0], BOUNDLESS * size.min())
+    return growing and float(np.ptp(parameter)) < 0.02 * float(np.ptp(z[:, -1]))
 
 
 def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tuple[CurvePoint, str]]:
