@@ -33,6 +33,42 @@ def test_power_balance_rigid(seed):
     assert np.abs(supplied - used).max() < 1e-12 * np.abs(supplied).max()
 
 
+def loaded(**disk):
+    shaft = tn.Shaft(stiffness=1e9)
+    joint = tn.HookeJoint(angle=0.3)
+    return tn.Driveline([tn.ConstantSpeed(), shaft, joint, tn.Ratio(ratio=-2.0), shaft, tn.Disk(inertia=1, **disk)])
+
+
+@pytest.mark.parametrize("rigid", [True, False])
+@pytest.mark.parametrize(("viscous", "quadratic"), [(0.2, 0.0), (0.0, 0.05), (0.2, 0.05)])
+def test_loads_that_grow_with_the_speed(viscous, quadratic, rigid):
+    """Power supplied = cω² + q|ω|³ at every angle, behind a ratio that reverses too."""
+    line = loaded(viscous_load=viscous, quadratic_load=quadratic)
+    result = tn.kinetostatics(line, speed=10.0, rigid=rigid)
+    speed = np.abs(result.output_speed)
+    assert np.allclose(result.drive_torque * 10, viscous * speed**2 + quadratic * speed**3, rtol=1e-7)
+    assert result.power_residual < 1e-12
+    assert "no torque" not in str(result)
+    assert not result.findings
+
+
+def test_stages_take_the_loads_that_grow_with_the_speed():
+    """A PiecewiseShaft has the stiffness of the torque at mean speed."""
+    stages = tn.PiecewiseShaft(breakpoints=["-1 deg", "1 deg"], stiffnesses=[1e4, 1e3, 1e4])
+    line = [tn.ConstantSpeed(), stages, tn.HookeJoint(angle=0.2)]
+    said, meant = (
+        tn.kinetostatics(tn.Driveline([*line, tn.Disk(inertia=1, **load)]), speed=10.0, rigid=False)
+        for load in ({"viscous_load": 3.0, "quadratic_load": 0.2}, {"load_torque": 50.0})
+    )
+    assert np.mean(said.torque / said.twist) == pytest.approx(np.mean(meant.torque / meant.twist), rel=1e-12)
+
+
+def test_excitation_left_out_is_remarked():
+    shaken = tn.kinetostatics(loaded(load_torque=5.0, excitation=[{"order": 2, "amplitude": 3}]))
+    assert [f.gravity for f in shaken.findings] == [Gravity.CAUTION]
+    assert "Disk 1.excitation is left out" in str(shaken)
+
+
 @pytest.mark.parametrize("options", [{"rigid": False}, {"inertia": True}, {"friction": True}, {"all": True}])
 def test_power_balance_with_springs_inertias_and_friction(options):
     line = lines.random_line(4, 3, stiffness=[4000.0] * 5, inertias=[0.1] * 5)

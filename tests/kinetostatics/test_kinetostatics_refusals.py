@@ -103,6 +103,10 @@ REFUSED = {
     "vertical angle of 90 deg": (lambda: tn.combined_angle("90 deg", 0), "vertical", "less than 90 deg"),
     # angles of the literature
     "missing nu": (lambda: tn.cardan_line([0.1, 0.2], [], [0.0]), "nu", "give 1"),
+    "angles that are one number": (lambda: tn.cardan_line(0.3, 0.1, 0.1), "alpha = 0.3", "write alpha=["),
+    "angles that are a text": (lambda: tn.cardan_line([0.1, 0.2], "1 deg", [0.0]), "nu = '1 deg'", "not a list"),
+    "angle in newtons": (lambda: tn.cardan_line([0.1, 0.2], ["1 N"], [0.0]), "nu = '1 N'", "12 deg"),
+    "no angles": (lambda: tn.cardan_line([], [], []), "alpha", "no joint"),
     "angle of 90 deg": (
         lambda: tn.cardan_line([0.1, 1.6], [0.0], [0.0]),
         "HookeJoint.angle",
@@ -137,6 +141,11 @@ REFUSED = {
     ),
     # the question
     "speed of zero": (lambda: tn.kinetostatics(LINE, speed=0), "speed", "must be positive"),
+    "several speeds": (
+        lambda: tn.kinetostatics(LINE, speed=np.array([1.0, 2.0])),
+        "speed = array",
+        "must be a number",
+    ),
     "speed of words": (lambda: tn.kinetostatics(LINE, speed="fast"), "'fast'", "1500 rpm"),
     "infinite acceleration": (lambda: tn.kinetostatics(LINE, acceleration=np.inf), "acceleration", "finite"),
     "acceleration of words": (
@@ -223,6 +232,11 @@ REFUSED = {
         "Shaft 2.length",
         'lengths={"Shaft 2": 0.8}',
     ),
+    "bearing in a joint's centre": (
+        supports(("Shaft 1", -0.2, -0.1), ("Shaft 2", 0.0), ("Shaft 4", 0.1, 0.2)),
+        "Shaft 2.supports = 0",
+        "distance from that joint",
+    ),
     "bearing of nothing": (supports(("Shaft 9", 0.1)), "Shaft 9", "did you mean"),
     "bearing without place": (supports(("Shaft 1",)), "supports", "write supports="),
     "bearing as text": (supports("Shaft 1"), "supports", "write supports="),
@@ -245,12 +259,23 @@ REFUSED = {
         "Shaft between two Hooke's joints",
     ),
     "pitch of zero": (lambda: tn.phase_forks(LINE, 0), "pitch", "positive"),
+    "pitch that divides no turn": (
+        lambda: tn.phase_forks(LINE, "7 deg"),
+        "pitch = '7 deg'",
+        '"7.0588235 deg" (51 splines) or "6.9230769 deg" (52 splines)',
+    ),
+    "pitch of more than a turn": (lambda: tn.phase_forks(LINE, 7.0), "pitch = 7", '"360 deg" (1 spline)'),
     "pitch of a shaft without forks": (
         lambda: tn.phase_forks(LINE, {"Shaft 1": 0.1}),
         "Shaft 1",
         "did you mean",
     ),
     "error of zero": (lambda: tn.assembly_sensitivity(LINE, 0), "error", "positive"),
+    "error that bends a joint by 90 deg": (
+        lambda: tn.assembly_sensitivity(LINE, 2.0),
+        "error = 2: carries HookeJoint 2 (20 deg)",
+        'write "1 deg"',
+    ),
     "nothing to be sensitive": (
         lambda: tn.assembly_sensitivity(tn.Driveline([tn.Disk(inertia=1)])),
         "driveline",

@@ -83,6 +83,17 @@ def test_splines():
     assert free.irregularity <= mixed.irregularity <= found.irregularity
 
 
+@pytest.mark.parametrize(
+    ("pitch", "splines"), [("10 deg", 36), (2 * np.pi / 46, 46), ("7.826 deg", 46), ("24 deg", 15)]
+)
+def test_pitch_is_a_whole_part_of_a_turn(pitch, splines):
+    """Its rounding on a drawing is taken out."""
+    found = tn.phase_forks(lines.row([20, 18], planes=[0, 33]), pitch)
+    assert found.pitch == pytest.approx(2 * np.pi / splines, rel=1e-14)
+    places = np.array(list(found.offsets.values())) / found.pitch
+    assert places == pytest.approx(np.round(places), abs=1e-9)
+
+
 def test_phasing_with_a_tripod_is_sampled():
     """No matrix for a tripod: the search walks the turn instead, and still cancels the Hooke's joints."""
     line = tn.Driveline(

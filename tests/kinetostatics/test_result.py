@@ -205,6 +205,44 @@ def test_sketches(what):
         tn.sketch(subject, input_angle=0.3).canvas.draw()
 
 
+SIX = tn.layout(
+    [(0, 0, 0), (1, 0.1, -0.15), (2, 0.1, -0.05), (3, 0.3, -0.3), (4, 0.2, -0.1), (5, 0.3, -0.35)],
+    (1, 0, 0.1),
+    (1, 0, 0),
+)
+
+
+@pytest.mark.parametrize("subject", [SIX, LINE, tn.load("examples/truck.toml")], ids=["six", "two", "truck"])
+def test_labels_of_a_sketch_stay_apart(subject):
+    figure = tn.sketch(subject)
+    figure.canvas.draw()
+    boxes = [t.get_window_extent() for t in figure.texts]
+    assert len(boxes) >= 5
+    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+    assert all(b.x0 >= 0 and b.y0 >= 0 and b.x1 <= figure.bbox.x1 and b.y1 <= figure.bbox.y1 for b in boxes)
+
+
+def test_curves_of_many_forks_differ():
+    result = tn.kinetostatics(SIX.driveline(load_torque=100.0, fork_offsets=np.linspace(0.1, 1.3, 5)))
+    drawn = result.plot().axes[3].get_lines()
+    assert len(drawn) == 12
+    assert len({(c.get_color(), str(c._unscaled_dash_pattern), c.get_marker()) for c in drawn}) == 12
+    in_grey = [(str(plots._style(k)["linestyle"]), plots._style(k)["marker"]) for k in range(plots.STYLES)]
+    assert len(set(in_grey)) == plots.STYLES >= 16
+
+
+def test_pictures_speak_the_unit_of_the_text(result):
+    for draw in (plots.draw, plots.draw_polar):
+        assert "input 94.2478 rad/s" in draw(result).get_suptitle()
+        assert "input 900 rpm" in draw(result, unit="rpm").get_suptitle()
+
+
+def test_title_breaks_in_front_of_a_quantity():
+    title = plots.draw_polar(tn.kinetostatics(tn.catalogue("bicardan-elastic"))).get_suptitle()
+    assert "input 1 rad/s" in title
+    assert "\n" in title
+
+
 def test_names_in_the_package():
     for name in (
         "kinetostatics",

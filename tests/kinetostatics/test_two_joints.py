@@ -106,3 +106,9 @@ def test_formulas_of_the_cardan_literature():
         assert np.allclose(result.angle[i + 1], phi, atol=1e-12)
         assert np.allclose(result.speed[i + 1], w, atol=1e-12)
         assert np.allclose(result.acceleration[i + 1], eps, atol=1e-11)
+
+
+def test_angles_of_the_literature_may_be_texts():
+    said = tn.cardan_line(["10 deg", "12 deg"], ["5 deg"], ["7 deg"], start="3 deg", stiffness="20 kN*m/rad")
+    meant = tn.cardan_line(np.radians([10, 12]), np.radians([5]), (tn.deg(7),), start=tn.deg(3), stiffness=2e4)
+    assert said == meant

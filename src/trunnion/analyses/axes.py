@@ -24,6 +24,7 @@ POSITIVE = {
     "stiffness", "inertia", "outer_diameter", "length", "thickness", "shear_modulus",
     "damping_ratio_frequency", "loss_factor_frequency", "speed",
 }  # fmt: skip
+SPEED_LOADS = {"viscous_load", "quadratic_load"}
 
 
 @dataclass(frozen=True)
@@ -89,20 +90,25 @@ def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Ax
     return Axis(_points(str(name), low, high, points, scale), columns, scale, name)
 
 
-def moves_nothing(stability: Callable[[Array, Array], Array], x: Axis, y: Axis, of_x: bool) -> str | None:
-    """A sentence where an axis does not change the stability at all (compared at its ends and its middle).
+SHARES = np.mod(np.sqrt(5) / 2 * np.arange(7), 1.0)
+"""Places along an axis that share no period: equal steps would miss what repeats, as fork angles do."""
+
+
+def moves_nothing(stability: Callable[[Array, Array], Array], x: Axis, y: Axis, of_x: bool) -> bool:
+    """Whether an axis does not change the stability at all, compared at several places and values of the other.
 
     stability : (x, y) → quantities (points, …) that decide it, known to some 1e-12.
     """
-    own, other = (x, y) if of_x else (y, x)
-    if len(own.values) == 1:
-        return None
-    samples = own.values[[0, len(own.values) // 2, -1]]
-    fixed = np.full(3, other.values[len(other.values) // 2])
-    found = stability(samples, fixed) if of_x else stability(fixed, samples)
-    if np.all(np.abs(found - found[0]) <= 1e-10 * np.maximum(1, np.abs(found[0]))):
-        return f"{own.label} changes nothing in this line"
-    return None
+    own, other = (x.values, y.values) if of_x else (y.values, x.values)
+    if len(own) == 1:
+        return False
+    samples = own.min() + SHARES * np.ptp(own)
+    for share in (0.41, 0.13, 0.87):
+        fixed = np.full(len(SHARES), other.min() + share * np.ptp(other))
+        found = stability(samples, fixed) if of_x else stability(fixed, samples)
+        if not np.all(np.abs(found - found[0]) <= 1e-10 * np.maximum(1, np.abs(found[0]))):
+            return False
+    return True
 
 
 def _parameter(request: AxisRequest, key: str) -> str | Parameter:
@@ -156,12 +162,17 @@ def lowest_speed(assembly: Assembly) -> float:
 def _clip(assembly: Assembly, columns: Columns, low: float, high: float) -> tuple[float, float, str | None]:
     if 0 in columns.index:
         return _clip_speed(assembly, columns, low, high)
-    if columns.unit == "rad" and columns.label.endswith(".angle") and high > STEEPEST_ANGLE:
-        if low >= STEEPEST_ANGLE:
-            raise InputError("must start below 89°", element=columns.label, key="range", value=low)
-        said = f"the {columns.label} axis ends at 89° instead of {np.rad2deg(high):g}°: at 90° the joint locks"
-        return low, STEEPEST_ANGLE, said
-    return low, high, None
+    if not (columns.unit == "rad" and columns.label.endswith(".angle")):
+        return low, high, None
+    if low >= STEEPEST_ANGLE or high <= -STEEPEST_ANGLE:
+        raise InputError("must reach below 89°", element=columns.label, key="range", value=low)
+    clipped = float(np.clip(low, -STEEPEST_ANGLE, None)), float(np.clip(high, None, STEEPEST_ANGLE))
+    said = [
+        f"{verb} at {np.rad2deg(end):g}° instead of {np.rad2deg(asked):g}°"
+        for verb, asked, end in (("starts", low, clipped[0]), ("ends", high, clipped[1]))
+        if asked != end
+    ]
+    return *clipped, f"the {columns.label} axis {' and '.join(said)}: at 90° the joint locks" if said else None
 
 
 def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -> tuple[float, float, str | None]:
@@ -183,6 +194,8 @@ def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -
             value=high,
             remedy="stability() at single speeds still answers there",
         )
+    if low < 0:
+        raise InputError("cannot be negative", element=columns.label, key="range", value=low, remedy="start above zero")
     if low < least:
         said = f"the {columns.label} axis starts at {least:.4g} {columns.unit} ({turning:.4g} rpm) instead of {low:g}"
         return least, high, f"{said}: {why}"
@@ -196,6 +209,11 @@ def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
     for c in columns.index:
         key = assembly.packed.labels[c].rpartition(".")[2]
         worst = float(table[:, c].min())
+        if key in SPEED_LOADS:
+            raise InputError(
+                "depends on the speed, which the linear equations do not have", key=columns.label,
+                remedy="give the torque it takes as load_torque, its slope as damping; or use a nonlinear analysis",
+            )  # fmt: skip
         if key in POSITIVE and worst <= 0:
             raise InputError(
                 f"would make {assembly.packed.labels[c]} {worst:g}; it must be positive",
@@ -204,8 +222,12 @@ def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
                 value=float(values[0]),
                 remedy="raise the lower end of the axis",
             )
-        if key == "angle" and np.abs(table[:, c]).max() >= np.pi / 2:
-            raise InputError("must stay below 90°", element=columns.label, key="range", value=float(values[-1]))
+        if key == "angle" and (steepest := np.abs(table[:, c])).max() >= np.pi / 2:
+            raise InputError(
+                f"would bend {assembly.packed.labels[c].rpartition('.')[0]} by {np.rad2deg(steepest.max()):g}°; "
+                "it must stay below 90°",
+                element=columns.label, key="range", value=float(values[steepest.argmax()]),
+            )  # fmt: skip
         if key == "inner_diameter":
             outer = table[:, assembly.packed.labels.index(assembly.packed.labels[c].replace("inner", "outer"))]
             if np.any(table[:, c] >= outer) or worst < 0:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.numerics.characteristic import LARGEST, radii, radii_on_rows, roots_of
+from trunnion.numerics.characteristic import LARGEST, radii, radii_on_rows, roots_of, without_ones
 from trunnion.numerics.patches import Patch
+from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.verdict import verdicts
 
 Array = NDArray[np.float64]
@@ -31,11 +32,24 @@ def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
     See ``chart_families.quantities`` for what the quantities are.
     """
     m, trace = 2 * size, values[-1]
-    if m <= LARGEST and not rigid_body:
-        radius, error, critical = radii(values[:m], bounds[:m])
+    if m == 2 and rigid_body:
+        # One inertia that turns freely neither grows nor decays.
+        one = np.where(np.isfinite(values[0]), 1.0, np.nan)
+        radius, error, critical = one, 0.0 * one, one.astype(complex)
+    elif m <= LARGEST:
+        left = (values[:m], bounds[:m])
+        radius, error, critical = radii(*(without_ones(*left) if rigid_body else left))
     else:
         radius, error, critical = _largest(values.T, bounds.T, m, rigid_body)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
+
+
+def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
+    """Pixels (points,) from whole monodromy matrices, whose eigenvalues are better known than coefficients' roots."""
+    every, bound = multipliers(matrix, error)
+    radius, off = spectral_radius(every, bound)
+    critical = np.take_along_axis(every, np.abs(every).argmax(axis=1)[:, None], axis=1)[:, 0]
+    return Pixels(radius, off, critical, verdicts(radius, off, np.abs(trace) < 1e-12 * (matrix.shape[1] // 2)))
 
 
 def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_body: bool) -> Pixels:
@@ -58,10 +72,16 @@ def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_
     return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
 
 
-def multipliers_of(values: Array, size: int) -> Complex:
+def multipliers_of(values: Array, size: int, rigid_body: bool) -> Complex:
     """All multipliers of one point from its quantities, by falling modulus."""
     m = 2 * size
-    found = roots_of(values[:m]) if m <= LARGEST else np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    if m > LARGEST:
+        found = np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    elif rigid_body:
+        elastic = without_ones(values[:m, None], np.zeros((m, 1)))[0][:, 0]
+        found = np.concatenate([np.ones(2), roots_of(elastic)])
+    else:
+        found = roots_of(values[:m])
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
@@ -71,15 +91,11 @@ def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Ar
     Eigenvectors of the critical multiplier alone come from two steps of inverse iteration; a full
     decomposition would cost several times more.
     """
-    if m <= LARGEST:
-        every = np.array([multipliers_of(v, m // 2) for v in values])
-        matrix_error = bounds[:, :-1].max(axis=1)
-    else:
-        matrix = values[:, :-1].reshape(-1, m, m)
-        matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
-        every = np.full((len(values), m), np.nan, dtype=complex)
-        finite = np.isfinite(matrix).all(axis=(1, 2))
-        every[finite] = np.linalg.eigvals(matrix[finite])
+    matrix = values[:, :-1].reshape(-1, m, m)
+    matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
+    every = np.full((len(values), m), np.nan, dtype=complex)
+    finite = np.isfinite(matrix).all(axis=(1, 2))
+    every[finite] = np.linalg.eigvals(matrix[finite])
     if rigid_body:
         keep = np.argsort(np.abs(every - 1), axis=1)[:, 2:]
         every = np.take_along_axis(every, keep, axis=1)
@@ -87,12 +103,8 @@ def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Ar
     critical = np.take_along_axis(every, which, axis=1)[:, 0]
     apart = np.abs(every - critical[:, None])
     np.put_along_axis(apart, which, np.inf, axis=1)
-    nearest = apart.min(axis=1) if every.shape[1] > 1 else np.full(len(values), np.inf)
-    if m <= LARGEST:
-        condition = 1 / np.minimum(nearest, 1.0)
-    else:
-        condition = _condition(values[:, :-1].reshape(-1, m, m), critical)
-    moved = matrix_error * condition
+    nearest = apart.min(axis=1)
+    moved = matrix_error * _condition(matrix, critical)
     error = 2 * np.minimum(moved, np.sqrt(moved * np.maximum(nearest, matrix_error)))
     return np.abs(critical), error, critical
 

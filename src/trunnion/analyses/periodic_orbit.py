@@ -34,6 +34,10 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TOLERANCE = 1e-11
 SAMPLES = 512
+RUNAWAY = 1e-4
+"""Residual, in units of the states' scale, that no motion leaves which really closes."""
+MOST_SHARES = 12
+"""Repetitions within the period found that are looked for where there is no forcing."""
 MOST_STEPS = 200_000
 """Steps of one trial motion; one that needs more will not close."""
 SETTLING = (0, 40, 400)
@@ -72,6 +76,13 @@ class PeriodicOrbit:
     def growth_rate(self) -> float:
         """Growth of the fastest disturbance [1/s]; negative when it decays."""
         return float(np.log(self.spectral_radius) / self.period) if self.spectral_radius > 0 else -np.inf
+
+    @property
+    def _growth(self) -> str:
+        if self.spectral_radius > self.error_estimate:
+            return f"{self.growth_rate:+.6g} 1/s"
+        most = np.log(self.spectral_radius + self.error_estimate) / self.period
+        return f"below {most:+.3g} 1/s"
 
     @property
     def regime_changes(self) -> int:
@@ -151,7 +162,7 @@ class PeriodicOrbit:
                 f"{self.verdict} periodic motion of {self.system.name}, period {self.period:.8g} s{changes}: "
                 f"{MEANING[self.verdict]}",
                 f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
-                f"{self.growth_rate:+.6g} 1/s{tangents}",
+                f"{self._growth}{tangents}",
                 *rows,
                 f"  {self.outcome}",
             ]
@@ -344,7 +355,14 @@ def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
     jumps = system.regimes is not None and system.regimes.jump is not None and len(run.event_time) > 0
     defect = float("nan") if jumps else float(abs(log_det - divergence)) if sign > 0 else float("inf")
     time = shots.phase + length * np.arange(SAMPLES + 1) / SAMPLES
+    nearest = int(np.argmin(np.abs(values - 1)))
+    left = float(np.abs(root.residual[:n] / scale).max())
+    if shots.forced and left > RUNAWAY and abs(values[nearest] - 1) <= bound[nearest]:
+        # Relative to a motion that ran away, what is left is small.
+        return _failed(shots, root, _unbounded(system, x))
     words = f"closes to {root.size:.1e} after {root.iterations} iterations"
+    if (shares := _shares(shots, run, x, length)) > 1:
+        words += f"; it closes {shares} times in this period: the least period is {length / shares:.8g} s"
     return PeriodicOrbit(
         system=system,
         start=x,
@@ -365,15 +383,42 @@ def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
     )
 
 
-def _failed(shots: _Shots, root: Root) -> PeriodicOrbit:
+def _unbounded(system: System, x: Array) -> Outcome:
+    worst = int(np.argmax(np.abs(x / np.asarray(system.scale))))
+    return Outcome(
+        False,
+        "unbounded",
+        f"a multiplier is 1 and no motion closes ({system.states[worst]} runs away to {x[worst]:.1e}): undamped at "
+        "resonance the motion grows without bound; give damping or another frequency",
+    )
+
+
+def _shares(shots: _Shots, run: Trajectory, x: Array, length: float) -> int:
+    """How many times the motion repeats within ``length``."""
+    system = shots.system
+    most = MOST_SHARES
+    if shots.forced:
+        assert system.forcing_period is not None
+        most = round(length / system.forcing_period)
+    moved = np.ptp(run.state, axis=0) + 1e-300
+    for share in range(most, 1, -1):
+        if shots.forced and most % share:
+            continue
+        off = np.abs(run.at(np.array([shots.phase + length / share]))[0] - x)
+        if np.all(off <= 1e-5 * moved) and not np.all(moved <= 1e-9 * np.asarray(system.scale)):
+            return share
+    return 1
+
+
+def _failed(shots: _Shots, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
     system, n, nan = shots.system, shots.system.size, float("nan")
     assert shots.last is not None
     run = shots.last
-    if run.end is not End.REACHED:
+    if outcome is None and run.end is not End.REACHED:
         guards = system.regimes.guards if system.regimes else ()
         broken = outcome_of(system, run, shots.tolerance, guards)
         outcome = Outcome(False, broken.kind, f"a trial motion failed: {broken.sentence}")
-    else:
+    elif outcome is None:
         outcome = Outcome(
             False,
             "not converged",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.simulation import Simulation, simulate_system
+from trunnion.analyses.simulation import Simulation, positive_time, rising_times, simulate_system
 from trunnion.analyses.stability import operating_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
@@ -242,21 +242,20 @@ def _simulate_line(
     if not isinstance(profile, SpeedProfile):
         profile = SpeedProfile([0.0], [operating_speed(description, profile)])
     prepared = line_system(line, profile.speed[0])
-    wanted = None if times is None else np.asarray(times, dtype=float)
+    wanted = None if times is None else rising_times(times, 0.0)
     if turns is not None:
+        if duration is not None:
+            raise InputError("is given beside a duration", key="turns", value=turns, remedy="leave one of them out")
         if len(profile.time) > 1:
             raise InputError("goes with a constant speed", key="turns", value=turns, remedy="give a duration")
         duration = 2 * np.pi * turns / profile.speed[0]
-    if duration is None and wanted is not None and wanted.size:
+    if duration is None and wanted is not None:
         duration = float(wanted[-1])
-    if duration is None or not (np.isfinite(duration) and duration > 0):
-        raise InputError(
-            "must be a positive time", key="duration", value=duration, remedy="give seconds, or turns of the input"
-        )
+    duration = positive_time(duration, "give seconds, or turns of the input")
     state = prepared.rest() if start is None else prepared.system.checked(start, "start")
     row = prepared.assembly.table(1, profile.speed[0])[0]
     pieces: list[Simulation] = []
-    for end, course in profile.courses(float(duration)):
+    for end, course in profile.courses(duration):
         system = prepared.system
         if len(profile.time) > 1:
             numbers = prepared.numbers(row, course)

@@ -206,12 +206,7 @@ def _regimes(run: Trajectory, time: Array, first: int) -> Integers:
 def _span(
     system: System, duration: float | None, periods: float | None, start: float, times: ArrayLike | None
 ) -> tuple[float, Array | None]:
-    wanted = None if times is None else np.asarray(times, dtype=float)
-    if wanted is not None:
-        if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) <= 0):
-            raise InputError("must be a rising list of times", key="times", remedy="np.linspace(0, 1, 200), say")
-        if wanted[0] < start:
-            raise InputError("begins before start_time", key="times", value=float(wanted[0]))
+    wanted = None if times is None else rising_times(times, start)
     if periods is not None:
         if system.forcing_period is None:
             raise InputError(
@@ -221,10 +216,28 @@ def _span(
         duration = periods * system.forcing_period
     if duration is None and wanted is not None:
         return float(wanted[-1]), wanted
-    if duration is None or not (np.isfinite(duration) and duration > 0):
-        remedy = "give a duration in seconds, or periods"
+    return start + positive_time(duration, "give a duration in seconds, or periods"), wanted
+
+
+def rising_times(times: ArrayLike, start: float) -> Array:
+    """``times`` as an array that rises from ``start`` on."""
+    try:
+        wanted = np.asarray(times, dtype=float)
+    except (TypeError, ValueError):
+        wanted = np.zeros(0)
+    if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) <= 0):
+        raise InputError("must be a rising list of times", key="times", remedy="np.linspace(0, 1, 200), say")
+    if wanted[0] < start:
+        raise InputError("begins before start_time", key="times", value=float(wanted[0]))
+    return wanted
+
+
+def positive_time(duration: object, remedy: str) -> float:
+    """A duration [s], checked."""
+    number = isinstance(duration, int | float | np.number) and not isinstance(duration, bool)
+    if not number or not (np.isfinite(duration) and duration > 0):  # type: ignore[call-overload,operator]
         raise InputError("must be a positive time", key="duration", value=duration, remedy=remedy)
-    return start + float(duration), wanted
+    return float(duration)  # type: ignore[arg-type]
 
 
 def _start(system: System, start: ArrayLike | None) -> Array:

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
-from trunnion.analyses.chart_families import ChartFamily, LineFamily, OwnFamily
-from trunnion.analyses.chart_pixels import Pixels, judge, judge_rows, multipliers_of
+from trunnion.analyses.chart_families import ChartFamily, LineFamily, OwnFamily, PatchesAlone
+from trunnion.analyses.chart_pixels import Pixels, judge, judge_matrices, judge_rows, multipliers_of
 from trunnion.analyses.stability import operating_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -33,6 +33,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 SPOTS = 24
 """Random pixels at which a chart checks itself."""
+MOST_DOUBTS = 50_000
+"""Undecided pixels up to which each is integrated by itself."""
 
 
 def stability_chart(
@@ -75,6 +77,8 @@ def stability_chart(
         if isinstance(line, PeriodicLinearFamily)
         else _line_task(line, x, y, speed, statically_twisted)
     )
+    if isinstance(line, PeriodicLinearFamily) and speed is not None:
+        raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
     workers = threads or os.cpu_count() or 1
@@ -85,9 +89,10 @@ def stability_chart(
     tell(1.0)
     remarks = list(task.remarks)
     if function.stubborn:
-        remarks.append(
-            f"{function.stubborn} small regions did not converge as patches and were integrated pixel by pixel"
-        )
+        many = f"{function.stubborn} small regions" if function.stubborn > 1 else "1 small region"
+        remarks.append(f"{many} did not converge as patches: integrated pixel by pixel")
+    if isinstance(task.family, OwnFamily):
+        remarks += task.family.failures(x_axis.values, y_axis.values, pixels.verdict == Verdict.FAILED, tolerance)
     chart = StabilityChart(
         x=x_axis.values,
         y=y_axis.values,
@@ -142,20 +147,30 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
     base = float("nan") if swept else operating_speed(assembly.line, speed)
     family = LineFamily(assembly, across, up, base, twisted)
 
+    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line")) if s)
+    return _Task(family, across, up, None if swept else base, assembly.line, remarks)
+
+
+def _idle(family: ChartFamily, x: Axis, y: Axis, what: str) -> list[str]:
+    """Sentences about axes that change nothing."""
+
     def decisive(x: Array, y: Array) -> Array:
         return family.evaluate(x, y, 1e-12, 1)[0]
 
-    idle = [moves_nothing(decisive, across, up, True), moves_nothing(decisive, across, up, False)]
-    remarks = tuple(s for s in (said_x, said_y, *idle) if s)
-    return _Task(family, across, up, None if swept else base, assembly.line, remarks)
+    return [f"{own.label} changes nothing in this {what}" for own in (x, y) if moves_nothing(decisive, x, y, own is x)]
+
+
+def _middle(x: Array, y: Array) -> tuple[float, float]:
+    return float(np.median(x)), float(np.median(y))
 
 
 def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> _Task:
     across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
     if across.label == up.label:
         raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
-    middle = (float(np.median(across.values)), float(np.median(up.values)))
-    return _Task(OwnFamily(family, across.label, up.label, middle), across, up, None, None, ())
+    family.require_period(dict(zip((across.label, up.label), _middle(across.values, up.values), strict=True)))
+    own = OwnFamily(family, across.label, up.label, _middle(across.values, up.values))
+    return _Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
 
 
 def _patched(
@@ -205,7 +220,25 @@ def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, to
             found.critical,
             found.verdict,
         )
-    return Pixels(radius, error, critical, verdict)
+    pixels = Pixels(radius, error, critical, verdict)
+    _decide(family, pixels, x, y, tolerance, threads)
+    return pixels
+
+
+def _decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:
+    """Judge undecided pixels (y, x) anew, in place, from monodromy matrices of their own.
+
+    Stiff and soft shafts together make coefficients so large that their rounding hides roots which the matrix
+    still shows; there are few such pixels in most charts.
+    """
+    rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
+    if family.rigid_body or not 0 < len(rows) <= MOST_DOUBTS:
+        return
+    found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
+    better = found.error < pixels.error[rows, columns]
+    here = rows[better], columns[better]
+    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
+    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
 
 
 def _between(axis: Array, low: float, high: float) -> slice:
@@ -233,13 +266,16 @@ def _pointwise(
         else:
             values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.rigid_body)
+        grid = Pixels(found.radius[None], found.error[None], found.critical[None], found.verdict[None])
+        _decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
+        found = Pixels(grid.radius[0], grid.error[0], grid.critical[0], grid.verdict[0])
         return ChartPoint(
             x=x,
             y=y,
             spectral_radius=float(found.radius[0]),
             error_estimate=float(found.error[0]),
             verdict=Verdict(int(found.verdict[0])),
-            multipliers=multipliers_of(values[:, 0], family.size),
+            multipliers=multipliers_of(values[:, 0], family.size, family.rigid_body),
             interpolated=patch is not None,
         )
 
@@ -264,7 +300,8 @@ def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, 
     found = judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
     off = np.abs(found.radius - chart.spectral_radius[rows, columns])
     allowed = chart.error_estimate[rows, columns] + found.error
-    ratio = float(np.nanmax(off / allowed)) if np.isfinite(off).any() else float("nan")
+    # Without error and without estimate is not off.
+    ratio = float(np.nanmax(off / np.maximum(allowed, 1e-300))) if np.isfinite(off).any() else float("nan")
     check = SpotCheck(SPOTS, ratio, float(np.nanmax(off)) if np.isfinite(off).any() else float("nan"))
     if not ratio > 1:
         return replace(chart, spot_check=check)
@@ -278,28 +315,38 @@ def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, 
     )
 
 
-def load_chart(path: str | os.PathLike[str]) -> StabilityChart:
+def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | None = None) -> StabilityChart:
     """Read a chart that ``StabilityChart.save`` wrote; it answers ``at`` and ``zoom`` as before.
 
-    A chart of a family of your own is read without that function: regions that were not patched are then
-    out of reach of ``at``.
+    A chart of a family of your own is in the file without its function: give ``family`` again, or regions that
+    were not patched are out of reach of ``at`` and ``zoom``.
     """
     from trunnion.results.chart import read_chart
 
     chart = read_chart(path)
-    if chart.line is None:
+    assert chart.function is not None
+    own: ChartFamily | None
+    if family is not None:
+        own = OwnFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
+    elif chart.line is None:
+        own = PatchesAlone.of(chart.function, chart.period)
+    else:
+        own = _family_of_line(chart, chart.line)
+    if own is None:
         return chart
-    assembly = assemble(chart.line)
+    return replace(
+        chart,
+        evaluate_point=_pointwise(own, chart.function, chart.tolerance),
+        resample=_resampler(own, chart.function, chart.tolerance, os.cpu_count() or 1),
+    )
+
+
+def _family_of_line(chart: StabilityChart, line: Driveline) -> LineFamily:
+    assembly = assemble(line)
     ends = [
         (label, float(values.min()), float(values.max()), 2 if len(values) > 1 else 1)
         for label, values in ((chart.x_parameter, chart.x), (chart.y_parameter, chart.y))
     ]
     (across, _), (up, _) = axis(assembly, ends[0], "x"), axis(assembly, ends[1], "y")
     speed = float("nan") if chart.speed is None else chart.speed
-    family = LineFamily(assembly, across, up, speed, chart.statically_twisted)
-    assert chart.function is not None
-    return replace(
-        chart,
-        evaluate_point=_pointwise(family, chart.function, chart.tolerance),
-        resample=_resampler(family, chart.function, chart.tolerance, os.cpu_count() or 1),
-    )
+    return LineFamily(assembly, across, up, speed, chart.statically_twisted)

@@ -173,7 +173,7 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
         raise InputError("needs a chart with the speed along x that can still be evaluated", element="chart")
     asked = np.unique(np.clip(np.asarray(speeds, dtype=float), chart.x.min(), chart.x.max()))
     values = chart.y
-    parts = [chart.resample(asked, values)[3]] if len(asked) else []
+    parts = [chart.on(asked, values).verdict] if len(asked) else []
     speed = np.concatenate([asked, chart.x]) if own else asked
     verdict = np.concatenate([*parts, chart.verdict] if own else parts, axis=1)
     order = np.argsort(speed)

@@ -106,6 +106,9 @@ def progress(what: str) -> Iterator[Callable[[float], None]]:
             yield lambda share: bar.update(task, completed=share, total=1.0)
 
 
+COMPILING = "compiling once, a few seconds (up to half a minute on a slow machine)"
+
+
 @contextmanager
 def compile_notice() -> Iterator[None]:
     """Says so once if something has to be compiled, which otherwise looks like a hang."""
@@ -121,7 +124,7 @@ def compile_notice() -> Iterator[None]:
         def on_start(self, event: Any) -> None:
             if not self.said:
                 self.said = True
-                print("compiling once, a few seconds", file=sys.stderr, flush=True)
+                print(COMPILING, file=sys.stderr, flush=True)
 
         def on_end(self, event: Any) -> None:
             pass

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -78,6 +79,10 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
             f"  largest spectral radius {radius:.6g} ± {error:.1e} at "
             f"{across.value(float(chart.x[j]))}, {up.value(float(chart.y[i]))}"
         )
+        middle, worst = np.nanmedian(chart.error_estimate), np.nanmax(chart.error_estimate)
+        lines.append(f"  error estimate {middle:.1e} (median), {worst:.1e} (worst)")
+    if (checked := chart.check_sentence) is not None:
+        lines.append(f"  {checked}")
     return "\n".join([*lines, *(f"  {remark}" for remark in chart.remarks)])
 
 
@@ -153,9 +158,17 @@ def chart_json(chart: StabilityChart, unit: str, written: Sequence[Path]) -> dic
         "speed_unit": unit,
         "counts": {str(v): chart.count(v) for v in Verdict},
         "unstable_share": chart.unstable_share,
+        "error_estimate": _error_json(chart),
+        "spot_check": None if chart.spot_check is None else asdict(chart.spot_check),
         "remarks": list(chart.remarks),
         "written": [str(path) for path in written],
     }
+
+
+def _error_json(chart: StabilityChart) -> dict[str, float] | None:
+    if chart.count(Verdict.FAILED) == chart.verdict.size:
+        return None
+    return {"median": float(np.nanmedian(chart.error_estimate)), "worst": float(np.nanmax(chart.error_estimate))}
 
 
 def modes_json(modes: NaturalFrequencies, unit: str) -> dict[str, Any]:

@@ -9,28 +9,34 @@ relation (2), φ⁰_j1 = β_ij + φ⁰_i2 − ν_ij − 90°, is χ_j = ψ_i + 9
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import pi
+from numbers import Real
+from typing import Any
+
+import numpy as np
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Shaft
+from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, Kind, parse
 from trunnion.errors import InputError
 
+Angles = Sequence[float | str]
 RIGID = 1e3
 """Stiffness of the end shafts over that of the stiffest one between the joints."""
 
 
 def cardan_line(
-    alpha: Sequence[float],
-    nu: Sequence[float],
-    beta: Sequence[float],
+    alpha: Angles,
+    nu: Angles,
+    beta: Angles,
     *,
-    start: float = 0.0,
-    stiffness: Sequence[float] | float = 1e6,
-    load_torque: float = 0.0,
+    start: float | str = 0.0,
+    stiffness: Sequence[float | str] | float | str = 1e6,
+    load_torque: float | str = 0.0,
     name: str | None = None,
 ) -> Driveline:
-    """A driveline from S2's angles [rad].
+    """A driveline from S2's angles [rad, or text with a unit].
 
     Parameters
     ----------
@@ -40,36 +46,48 @@ def cardan_line(
     stiffness : c_ij of the shafts between the joints [N m/rad], one for each or one for all.
     load_torque : at the output [N m].
     """
-    n = len(alpha)
-    for key, values in (("nu", nu), ("beta", beta)):
-        if len(values) != n - 1:
-            raise InputError(
-                f"has {len(values)} values for {n} joints",
-                key=key,
-                value=list(values),
-                remedy=f"give {n - 1}",
-            )
-    c = [float(stiffness)] * (n - 1) if isinstance(stiffness, int | float) else [float(k) for k in stiffness]
-    if len(c) != n - 1:
-        raise InputError(f"has {len(c)} values for {n} joints", key="stiffness", value=c, remedy=f"give {n - 1}")
+    n = len(_numbers(alpha, "alpha"))
+    if not n:
+        raise InputError("has no joint", key="alpha", remedy='write alpha=["12 deg", "12 deg"], say')
+    turned, inclined = _one_per_shaft(nu, "nu", n), _one_per_shaft(beta, "beta", n)
+    one = isinstance(stiffness, str | Real)
+    c = _one_per_shaft([stiffness] * (n - 1) if one else stiffness, "stiffness", n, STIFFNESS)
+    given: Sequence[Any] = alpha  # as written, so that a refusal shows "95 deg"
+    first, load = _numbers([start], "start")[0], _numbers([load_torque], "load_torque", TORQUE)[0]
     rigid = RIGID * max(c, default=1.0)
-    elements: list[Element] = [ConstantSpeed(), Shaft(stiffness=rigid, fork_offset=start, name="input shaft")]
+    elements: list[Element] = [ConstantSpeed(), Shaft(stiffness=rigid, fork_offset=first, name="input shaft")]
     for i in range(n):
-        plane = -beta[i - 1] if i else 0.0
-        elements.append(HookeJoint(angle=alpha[i], plane=plane))
+        plane = -inclined[i - 1] if i else 0.0
+        elements.append(HookeJoint(angle=given[i], plane=plane))
         if i < n - 1:
-            elements.append(Shaft(stiffness=c[i], fork_offset=-nu[i], name=f"intermediate shaft {i + 1}"))
-    elements += [Shaft(stiffness=rigid, name="output shaft"), Disk(inertia=1.0, load_torque=load_torque)]
+            elements.append(Shaft(stiffness=c[i], fork_offset=-turned[i], name=f"intermediate shaft {i + 1}"))
+    elements += [Shaft(stiffness=rigid, name="output shaft"), Disk(inertia=1.0, load_torque=load)]
     return Driveline(elements, name=name)
 
 
-def initial_phases(
-    alpha: Sequence[float], nu: Sequence[float], beta: Sequence[float], start: float = 0.0
-) -> list[float]:
+def _one_per_shaft(values: object, key: str, joints: int, kind: Kind = ANGLE) -> list[float]:
+    found = _numbers(values, key, kind)
+    if len(found) != joints - 1:
+        raise InputError(
+            f"has {len(found)} values for {joints} joints", key=key, value=found, remedy=f"give {joints - 1}"
+        )
+    return found
+
+
+def _numbers(values: Any, key: str, kind: Kind = ANGLE) -> list[float]:
+    if isinstance(values, str | Mapping) or not np.iterable(values):
+        raise InputError("is not a list", key=key, value=values, remedy=f'write {key}=["{kind.example}"], say')
+    try:
+        return [parse(value, kind) for value in values]
+    except InputError as error:
+        raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+
+
+def initial_phases(alpha: Angles, nu: Angles, beta: Angles, start: float | str = 0.0) -> list[float]:
     """φ⁰_i1 of every joint [rad] by S2's relation (2), unwrapped: what it starts from at input angle 0."""
     from trunnion.joints import hooke
 
-    phases = [start]
-    for a, v, b in zip(alpha[:-1], nu, beta, strict=True):
+    phases = _numbers([start], "start")
+    for a, v, b in zip(_numbers(alpha, "alpha")[:-1], _numbers(nu, "nu"), _numbers(beta, "beta"), strict=True):
         phases.append(b + float(hooke.output_angle(phases[-1], a)) - v - pi / 2)
     return phases

@@ -282,6 +282,24 @@ def _companion(e, roots):  # type: ignore[no-untyped-def]
         roots[i] = found[i]
 
 
+def without_ones(values: Array, bounds: Array) -> tuple[Array, Array]:
+    """Coefficients (m − 2, count) of the polynomial divided by (σ − 1)², and their bounds.
+
+    A line that turns freely has that pair exactly. Near a whole number of elastic cycles four roots meet at 1, and
+    no choice among computed roots tells them apart.
+    """
+    m, count = values.shape
+    signs = (-1.0) ** np.arange(m + 1)[:, None]
+    quotient = signs * np.concatenate([np.ones((1, count)), values])
+    off = np.concatenate([np.zeros((1, count)), bounds])
+    for _ in range(2):
+        quotient, off = np.cumsum(quotient, axis=0), np.cumsum(off, axis=0)
+    left, uncertain = (signs * quotient)[1 : m - 1], off[1 : m - 1]
+    # Both have the same product of roots, which is known best.
+    left[-1:], uncertain[-1:] = values[m - 1 : m], bounds[m - 1 : m]
+    return np.ascontiguousarray(left), np.ascontiguousarray(uncertain)
+
+
 def roots_of(values: Array) -> Complex:
     """All multipliers from one row of coefficients e₁…e_m."""
     signs = (-1.0) ** np.arange(1, len(values) + 1)

@@ -31,12 +31,6 @@ def chain_kernel(parent: tuple[int, ...], extra: bool) -> ModuleType:
     return _load(*_name(parent, extra))
 
 
-def chain_kernel_is_compiled(parent: tuple[int, ...], extra: bool) -> bool:
-    """False when the first use of this kernel will spend some seconds compiling."""
-    name, _ = _name(parent, extra)
-    return any((_folder() / "__pycache__").glob(f"{name}.integrate-*.nbi"))
-
-
 def _name(parent: tuple[int, ...], extra: bool) -> tuple[str, tuple[tuple[int, ...], bool] | None]:
     if len(parent) > SMALL:
         return "chain_wide", None
@@ -66,6 +60,9 @@ def kernel_file(source: str, *used: str) -> ModuleType:
 @cache
 def _load(name: str, small: tuple[tuple[int, ...], bool] | None) -> ModuleType:
     source = chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
+    # In a console or a notebook somebody waits; programs and commands say so in their own way.
+    if hasattr(sys, "ps1") and not any((_folder() / "__pycache__").glob(f"{name}.integrate-*.nbi")):
+        print("trunnion: compiling once, some seconds", file=sys.stderr, flush=True)
     return _module(name, source, _digest())
 
 

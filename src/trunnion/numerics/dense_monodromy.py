@@ -84,7 +84,7 @@ def propagate(
         coarse = fine
     raise ComputationError(
         f"the motion over one period did not settle in {steps} steps; "
-        "the coefficients vary too fast or are not smooth: raise the tolerance or the speed"
+        "the coefficients vary too fast or are not smooth: raise the tolerance or, of a driveline, the speed"
     )
 
 

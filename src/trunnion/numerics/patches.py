@@ -148,7 +148,7 @@ def build(
             if pixels <= direct_below or spent:
                 direct.append(part)
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
-                stubborn += spent
+                stubborn += spent or depth > 0
             else:
                 sampled.append((part, depth))
         todo = []

@@ -31,8 +31,23 @@ DASHES: tuple[Any, ...] = (
     "-",
     (0, (8, 2)),
 )
+PATTERNS: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (2.2, 2)),
+    (0, (7, 1.3, 1, 1.3, 1, 1.3)),
+    (0, (11, 3)),
+)
+MARKERS = ("", "o", "s", "^")
+"""Seven patterns, each with one colour, then again with markers and the next colours: 28 styles, told apart in grey."""
+STYLES = len(PATTERNS) * len(MARKERS)
+MARKS_PER_TURN = 8
 SAME = 1e-9
 """Curves closer than this share of their size count as one."""
+UNBROKEN = "\u00a0"
+"""Space at which a title does not break, as between a number and its unit."""
 LEGEND_ROW = 0.24
 """Height of a row of a legend [inches]."""
 
@@ -46,7 +61,7 @@ class _Curve:
     style: int
 
 
-def draw(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
+def draw(result: Kinetostatics, *, unit: str = "rad/s") -> Figure:
     """Speeds, accelerations, torques and secondary couples over the input angle."""
     figure = _figure(8.6, 7.2)
     axes = figure.subplots(2, 2, sharex=True)
@@ -74,7 +89,7 @@ def draw(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
     return figure
 
 
-def draw_polar(result: Kinetostatics, *, unit: str = "rpm") -> Figure:
+def draw_polar(result: Kinetostatics, *, unit: str = "rad/s") -> Figure:
     """Speeds, secondary couples and, where there are any, support forces around the turn."""
     panels: list[tuple[str, list[_Curve]]] = []
     names, ratio, _, _ = _shafts(result)
@@ -142,7 +157,8 @@ def _title(result: Kinetostatics, unit: str) -> str:
     name = f"{result.line.name}: " if result.line.name else ""
     kind = "rigid shafts" if result.rigid else "elastic shafts"
     inertia = ", with inertia torques" if result.inertia else ""
-    return f"{name}{kind}{inertia}, input {show_speed(result.input_speed, unit)}"
+    speed = f"input {show_speed(result.input_speed, unit)}".replace(" ", UNBROKEN)
+    return f"{name}{kind}{inertia}, {speed}"
 
 
 def head(figure: Figure, title: str) -> None:
@@ -150,7 +166,8 @@ def head(figure: Figure, title: str) -> None:
     import textwrap
 
     letters = int(72 * figure.get_figwidth() / (0.56 * TITLE))
-    figure.suptitle(textwrap.fill(title, letters), fontsize=TITLE, color=INK, x=0.01, ha="left")
+    wrapped = textwrap.fill(title, letters).replace(UNBROKEN, " ")
+    figure.suptitle(wrapped, fontsize=TITLE, color=INK, x=0.01, ha="left")
 
 
 def _shafts(result: Kinetostatics) -> tuple[tuple[str, ...], Array, Array, Array]:
@@ -199,8 +216,20 @@ def _closed(result: Kinetostatics, y: Array) -> tuple[Array, Array]:
 
 
 def _line(axes: Axes, x: Array, y: Array, curve: _Curve) -> None:
-    k = curve.style % len(COLOURS)
-    axes.plot(x, y, color=COLOURS[k], linestyle=DASHES[k], linewidth=1.6, label=curve.name)
+    every = max((len(x) - 1) // MARKS_PER_TURN, 1)
+    marks = (5 * curve.style * every // 7 % every, every)  # those of different curves side by side
+    axes.plot(x, y, **_style(curve.style), linewidth=1.6, markevery=marks, label=curve.name)
+
+
+def _style(k: int) -> dict[str, Any]:
+    """Colour, pattern and marker of curve ``k``."""
+    cycle = k // len(PATTERNS)
+    return {
+        "color": COLOURS[(k + 3 * cycle) % len(COLOURS)],
+        "linestyle": PATTERNS[k % len(PATTERNS)],
+        "marker": MARKERS[cycle % len(MARKERS)],
+        "markersize": 4.5,
+    }
 
 
 def _panel(axes: Axes, result: Kinetostatics, curves: Sequence[_Curve], label: str) -> None:
@@ -221,9 +250,10 @@ def _panel(axes: Axes, result: Kinetostatics, curves: Sequence[_Curve], label: s
 
 
 def _legend(figure: Any, axes: Axes, where: str, title: str, columns: int = 1) -> None:
-    legend = figure.legend(
-        *axes.get_legend_handles_labels(), loc=where, title=title, ncols=columns, alignment="left", **_LEGEND
-    )
+    handles, labels = axes.get_legend_handles_labels()
+    if len(handles) > STYLES:
+        title += f" (styles repeat after {STYLES})"
+    legend = figure.legend(handles, labels, loc=where, title=title, ncols=columns, alignment="left", **_LEGEND)
     legend.get_title().set_fontsize(SMALL)
     legend.get_title().set_color(FAINT)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHAFT_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 PLANE_COLOUR = "#888888"
+TOP = 0.93
+"""Share of the picture's height below its title."""
+SIDES = np.array([-1.0, 1.0])
 UNKNOWN_LENGTH = 1.0
 """Length [m] drawn for a shaft of unknown length where no other is known."""
 
@@ -40,6 +44,24 @@ class _Joint:
     normal: Array
     arms: tuple[Array, Array] | None
     angle: float
+
+
+@dataclass(frozen=True)
+class _Label:
+    """What is written beside a point in space, and on which side of it if there is room (1: above)."""
+
+    anchor: Array
+    text: str
+    colour: str
+    side: float
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A label's box (x0, y0, x1, y1) and the points of its leader, in pixels."""
+
+    box: Array
+    leader: Array
 
 
 @dataclass(frozen=True)
@@ -72,12 +94,13 @@ def sketch(
     axes: Any = figure.add_subplot(projection="3d")
     axes.set_proj_type("ortho")
     size = 0.16 * float(np.mean([np.linalg.norm(b - a) for a, b in scene.ends]))
+    labels: list[_Label] = []
     for k, ((start, end), name) in enumerate(zip(scene.ends, scene.names, strict=True)):
         colour = SHAFT_COLOURS[k % len(SHAFT_COLOURS)]
         front = start + (size * _unit(end - start) if k else 0.0)
         back = end - (size * _unit(end - start) if k < len(scene.ends) - 1 else 0.0)
         axes.plot(*np.stack([front, back], axis=1), color=colour, linewidth=4, solid_capstyle="butt")
-        _label(axes, (start + end) / 2, name, colour, down=2.2 * size)
+        labels.append(_Label((start + end) / 2, name, colour, -1.0))
     for k, joint in enumerate(scene.joints):
         _plane(axes, joint, size)
         if joint.arms:
@@ -85,7 +108,7 @@ def sketch(
                 _fork(axes, joint.centre, arm, axis, size, SHAFT_COLOURS[(k + side) % len(SHAFT_COLOURS)])
         else:
             axes.plot(*joint.centre[:, None], marker="o", color=INK, markersize=7)
-        _label(axes, joint.centre, f"{joint.name}\n{joint.angle / DEGREE:.4g}°", INK, down=-2.6 * size)
+        labels.append(_Label(joint.centre, f"{joint.name}\n{joint.angle / DEGREE:.4g}°", INK, 1.0))
     _arrow(axes, scene.ends[0], size, scene.sense)
     _frame(axes, scene)
     title = subject.name if isinstance(subject, Driveline) and subject.name else "layout"
@@ -93,6 +116,7 @@ def sketch(
     if scene.guessed:
         note = "lengths between joints not all known: not to scale"
         figure.text(0.01, 0.01, note, fontsize=SMALL, color=FAINT)
+    _write_labels(figure, axes, scene, size, labels)
     return figure
 
 
@@ -101,7 +125,7 @@ def _figure() -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.6, 5.2))
-    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=0.93)
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=TOP)
     FigureCanvasAgg(figure)
     return figure
 
@@ -213,10 +237,83 @@ def _arrow(axes: Any, first: tuple[Array, Array], size: float, sense: float) -> 
         axes.plot(*np.stack([tip, barb], axis=1), color=INK, linewidth=1.2)
 
 
-def _label(axes: Any, where: Array, text: str, colour: str, *, down: float) -> None:
-    background = {"facecolor": "#ffffff", "edgecolor": "none", "alpha": 0.75, "pad": 1.0}
-    place = where - np.array([0, 0, down])
-    axes.text(*place, text, color=colour, fontsize=SMALL, ha="center", va="center", zorder=10, bbox=background)
+def _write_labels(figure: Figure, axes: Any, scene: _Scene, size: float, labels: list[_Label]) -> None:
+    """Labels in the plane of the picture, where they meet neither the line nor each other."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patheffects import withStroke
+
+    figure.draw_without_rendering()  # settles the projection and the size of the texts
+    drawn = _pixels(axes, _outline(scene, size))
+    reach = _fork_pixels(axes, size)
+    inside = figure.bbox.width, figure.bbox.height * TOP
+    halo = [withStroke(linewidth=2.5, foreground="#ffffff")]
+    placed: list[_Place] = []
+    for label in labels:
+        text = figure.text(0, 0, label.text, color=label.colour, fontsize=SMALL, ha="center", va="center")
+        text.set(linespacing=1.1, path_effects=halo)
+        extent = text.get_window_extent()
+        anchor = _pixels(axes, label.anchor[None])[0]
+        choices = _choices(anchor, np.array([extent.width, extent.height]), reach, label.side)
+        best = min(choices, key=lambda place: _conflicts(place, drawn, placed, inside))
+        placed.append(best)
+        middle = (best.box[:2] + best.box[2:]) / 2
+        text.set_position(tuple(figure.transFigure.inverted().transform(middle)))
+        if np.linalg.norm(best.leader[-1] - best.leader[0]) > 0.6 * extent.height:
+            ends = figure.transFigure.inverted().transform(best.leader[[0, -1]])
+            figure.add_artist(Line2D(*ends.T, color=FAINT, linewidth=0.7))
+
+
+def _choices(anchor: Array, extent: Array, reach: float, side: float) -> list[_Place]:
+    """Places of a box above and below its point, the nearest on the wanted side first."""
+    found = []
+    for row, turn, shift in product(range(14), (1.0, -1.0), (0.0, -0.4, 0.4, -0.8, 0.8)):
+        up = side * turn
+        away = reach + 4 + extent[1] / 2 + 0.5 * row * extent[1]
+        middle = anchor + np.array([shift * extent[0], up * away])
+        near = np.array([np.clip(anchor[0], *(middle[0] + extent[0] / 2 * SIDES)), middle[1] - up * extent[1] / 2])
+        leader = np.linspace(anchor + reach * _unit(near - anchor), near, 24)
+        cost = row + 5 * (turn < 0) + 8 * abs(shift)
+        found.append((cost, _Place(np.concatenate([middle - extent / 2, middle + extent / 2]), leader)))
+    return [place for _, place in sorted(found, key=lambda pair: pair[0])]
+
+
+def _conflicts(place: _Place, drawn: Array, placed: list[_Place], inside: tuple[float, float]) -> float:
+    """What a place runs into: points of the line, labels and their leaders, the picture's edge."""
+    x0, y0, x1, y1 = place.box
+    count = float(np.sum(_within(drawn, place.box, 4)))
+    count += 1000.0 * (x0 < 2 or y0 < 2 or x1 > inside[0] - 2 or y1 > inside[1])
+    for other in placed:
+        a0, b0, a1, b1 = other.box
+        count += 100.0 * (x0 < a1 + 4 and a0 < x1 + 4 and y0 < b1 + 2 and b0 < y1 + 2)
+        count += float(np.sum(_within(other.leader, place.box, 3)) + np.sum(_within(place.leader, other.box, 3)))
+    return count
+
+
+def _within(points: Array, box: Array, margin: float) -> NDArray[np.bool_]:
+    return np.asarray(np.all((points > box[:2] - margin) & (points < box[2:] + margin), axis=1))
+
+
+def _outline(scene: _Scene, size: float) -> Array:
+    """Points of what is drawn and not to be written over: shafts, forks, shafts carried straight on, the arrow."""
+    lines = [np.linspace(a, b, 80) for a, b in scene.ends]
+    lines += [np.linspace(j.centre, j.centre + 3.45 * size * j.before, 30) for j in scene.joints]
+    ball = 0.8 * size * np.vstack([np.eye(3), -np.eye(3)])
+    first = scene.ends[0][0] + 0.25 * (scene.ends[0][1] - scene.ends[0][0])
+    return np.vstack([*lines, *(centre + ball for centre in (first, *(j.centre for j in scene.joints)))])
+
+
+def _pixels(axes: Any, points: Array) -> Array:
+    from mpl_toolkits.mplot3d import proj3d
+
+    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
+    return np.asarray(axes.transData.transform(np.stack([x, y], axis=1)))
+
+
+def _fork_pixels(axes: Any, size: float) -> float:
+    """How far forks reach from a joint's centre in the picture."""
+    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0], axes.get_zlim()[0]])
+    across = _pixels(axes, corner + 0.62 * size * np.eye(3)) - _pixels(axes, corner[None])
+    return float(np.max(np.linalg.norm(across, axis=1)))
 
 
 def _frame(axes: Any, scene: _Scene) -> None:

@@ -62,7 +62,8 @@ class StabilityChart:
 
     ``verdict`` holds the int8 codes of ``Verdict``; a failed point keeps its place as NaN. ``speed`` [rad/s]
     is the fixed input speed where no axis is the speed; ``period`` [rad] of input angle; ``remarks`` say what
-    was clipped or enlarged; ``function`` are the patches behind the pixels.
+    was clipped or enlarged; ``function`` are the patches behind the pixels; ``error_factor`` is what a failed
+    spot check multiplied all error estimates by, those of ``at`` and ``zoom`` too.
     """
 
     x: Array
@@ -85,6 +86,7 @@ class StabilityChart:
     evaluate_point: Callable[[float, float], ChartPoint] | None = field(default=None, repr=False, compare=False)
     resample: Resample | None = field(default=None, repr=False, compare=False)
     spot_check: SpotCheck | None = None
+    error_factor: float = 1.0
 
     @property
     def x_label(self) -> str:
@@ -104,6 +106,8 @@ class StabilityChart:
         InputError : the point lies outside the box.
         """
         for label, value, axis in ((self.x_label, x, self.x), (self.y_label, y, self.y)):
+            if not isinstance(value, int | float | np.number):
+                raise InputError("must be one number", key=label, value=value, remedy="ask point by point, or zoom")
             if not axis.min() <= value <= axis.max():
                 raise InputError(
                     f"lies outside the chart, which covers {axis.min():.6g} to {axis.max():.6g}",
@@ -113,28 +117,38 @@ class StabilityChart:
                 )
         if self.evaluate_point is None:
             raise InputError("was read without its family and cannot be evaluated between pixels", element="chart")
-        return self.evaluate_point(float(x), float(y))
+        point = self.evaluate_point(float(x), float(y))
+        if self.error_factor == 1.0:
+            return point
+        error = point.error_estimate * self.error_factor
+        code = verdicts(np.array(point.spectral_radius), np.array(error), np.array(point.verdict is Verdict.MARGINAL))
+        return replace(point, error_estimate=error, verdict=Verdict(int(code)))
 
-    def zoom(self, x: Sequence[float], y: Sequence[float]) -> StabilityChart:
+    def zoom(self, x: Sequence[float | str], y: Sequence[float | str]) -> StabilityChart:
         """The same chart on other pixels: ``x`` and ``y`` are (low, high, points) inside its box.
 
-        Patches are only evaluated anew; nothing is integrated where there are patches.
+        Pixels are spaced as the chart's own, or as ``"linear"`` or ``"log"`` at the end says. Patches are only
+        evaluated anew; nothing is integrated where there are patches.
         """
-        across = _inside(self.x, x, self.x_label)
-        up = _inside(self.y, y, self.y_label)
+        return self.on(_inside(self.x, x, self.x_label), _inside(self.y, y, self.y_label))
+
+    def on(self, x: Array, y: Array) -> StabilityChart:
+        """The same chart on pixels at rising values ``x`` and ``y`` inside its box."""
         if self.resample is None:
             raise InputError("was read without its family and cannot be resampled", element="chart")
-        radius, error, critical, verdict = self.resample(across, up)
-        return replace(
-            self, x=across, y=up, spectral_radius=radius, error_estimate=error, critical_multiplier=critical,
-            verdict=verdict,
+        radius, error, critical, verdict = self.resample(x, y)
+        plain = replace(
+            self, x=x, y=y, spectral_radius=radius, error_estimate=error, critical_multiplier=critical,
+            verdict=verdict, error_factor=1.0,
         )  # fmt: skip
+        return plain if self.error_factor == 1.0 else plain.with_errors_times(self.error_factor)
 
     def with_errors_times(self, factor: float) -> StabilityChart:
         """The same chart with all error estimates enlarged and the verdicts drawn from them anew."""
         error = self.error_estimate * factor
         marginal = self.verdict == Verdict.MARGINAL
-        return replace(self, error_estimate=error, verdict=verdicts(self.spectral_radius, error, marginal))
+        verdict = verdicts(self.spectral_radius, error, marginal)
+        return replace(self, error_estimate=error, verdict=verdict, error_factor=self.error_factor * factor)
 
     def count(self, verdict: Verdict) -> int:
         """Number of points with that verdict."""
@@ -173,6 +187,7 @@ class StabilityChart:
                 "x_parameter": _parameter_text(self.x_parameter),
                 "y_parameter": _parameter_text(self.y_parameter),
                 "speed": float("nan") if self.speed is None else self.speed,
+                "error_factor": self.error_factor,
                 "spot_check": json.dumps(asdict(self.spot_check) if self.spot_check else None),
             },
         )
@@ -222,19 +237,29 @@ class StabilityChart:
             worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
             lines.append(
                 f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
-                f"{self.x_label} = {self.x[worst[1]]:.6g} {self.x_unit}, "
-                f"{self.y_label} = {self.y[worst[0]]:.6g} {self.y_unit}"
+                f"{self.x_label} = {self.x[worst[1]]:.6g}{_unit(self.x_unit)}, "
+                f"{self.y_label} = {self.y[worst[0]]:.6g}{_unit(self.y_unit)}"
             )
             middle = np.nanmedian(self.error_estimate)
             lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")
         if self.function.patches:
-            lines.append(f"  {len(self.function.patches)} patches from {self.function.evaluations} integrations")
-        if self.spot_check is not None:
+            count, from_ = len(self.function.patches), self.function.evaluations
             lines.append(
-                f"  checked at {self.spot_check.points} random points by direct integration: differences up to "
-                f"{self.spot_check.worst_ratio:.2g} of their estimates"
+                f"  {count} patch{'es' if count > 1 else ''}" + (f" from {from_} integrations" if from_ else "")
             )
+        if (checked := self.check_sentence) is not None:
+            lines.append(f"  {checked}")
         return "\n".join([*lines, *(f"  note: {r}" for r in self.remarks)])
+
+    @property
+    def check_sentence(self) -> str | None:
+        """What the chart's check of itself at random points found."""
+        if self.spot_check is None:
+            return None
+        return (
+            f"checked at {self.spot_check.points} random points by direct integration: differences up to "
+            f"{self.spot_check.worst_ratio:.2g} of their estimates"
+        )
 
     __repr__ = __str__
 
@@ -275,6 +300,7 @@ def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
         line=loads(text) if text else None,
         function=_function_of(data),
         spot_check=SpotCheck(**check) if check else None,
+        error_factor=float(data.attrs.get("error_factor", 1.0)),
     )
 
 
@@ -301,18 +327,41 @@ def _edges(boxes: list[Box]) -> Array:
     return np.array([[b.u0, b.u1, b.v0, b.v1] for b in boxes], dtype=float).reshape(len(boxes), 4)
 
 
-def _inside(axis: Array, request: Sequence[float], label: str) -> Array:
-    if len(request) != 3:
-        raise InputError("must be (low, high, points)", key=label, value=tuple(request))
-    low, high, points = float(request[0]), float(request[1]), int(request[2])
-    if not (axis.min() <= low < high <= axis.max()) or points < 1:
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and bool(np.isfinite(value))
+
+
+def _is_log(axis: Array) -> bool:
+    """Whether pixels stand at equal ratios."""
+    if len(axis) < 3 or axis[0] <= 0:
+        return False
+    return np.allclose(axis, np.geomspace(axis[0], axis[-1], len(axis)), rtol=1e-9, atol=0)
+
+
+def _inside(axis: Array, request: Sequence[float | str], label: str) -> Array:
+    scale = request[3] if len(request) == 4 else "log" if _is_log(axis) else "linear"
+    numbers = request[:3]
+    if len(request) not in (3, 4) or not all(map(_is_number, numbers)) or scale not in ("linear", "log"):
+        remedy = 'numbers, then "linear" or "log" if you like'
+        raise InputError("must be (low, high, points)", key=label, value=tuple(request), remedy=remedy)
+    low, high, points = float(numbers[0]), float(numbers[1]), int(numbers[2])
+    if points != numbers[2]:
+        raise InputError("must be a whole number of points", key=label, value=numbers[2])
+    if scale == "log" and low <= 0:
+        raise InputError("cannot start at or below zero", element=label, key="log axis", value=low)
+    rising = low < high or (low == high and points == 1)
+    if not (axis.min() <= low and rising and high <= axis.max()) or points < 1:
         raise InputError(
             f"does not lie inside the chart, which covers {axis.min():.6g} to {axis.max():.6g}",
             key=label,
             value=(low, high, points),
             remedy="give low < high inside it and at least one point",
         )
-    return np.linspace(low, high, points)
+    return np.geomspace(low, high, points) if scale == "log" else np.linspace(low, high, points)
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else f" {unit}"
 
 
 def _label(parameter: str | Parameter) -> str:

@@ -52,7 +52,13 @@ class PeriodicLinearFamily:
         cases = max((np.size(v) for v in values.values()), default=1)
         given: dict[str, Array] = {k: np.asarray(v, dtype=float) for k, v in self.parameters.items()} | dict(values)
         full = {k: np.broadcast_to(v, (cases,))[:, None] for k, v in given.items()}
-        parts = self.coefficients(np.asarray(tau)[None, :], **full)
+        try:
+            parts = self.coefficients(np.asarray(tau)[None, :], **full)
+        except TypeError as failure:
+            if "argument" not in str(failure):
+                raise
+            remedy = f"it is called as coefficients(tau, {', '.join(full)})"
+            raise InputError(f"failed: {failure}", element="family", key="coefficients", remedy=remedy) from None
         shape = (cases, np.size(tau), self.size, self.size)
         try:
             m, c, k = (np.broadcast_to(np.asarray(p, dtype=float), shape) for p in parts)
@@ -66,8 +72,24 @@ class PeriodicLinearFamily:
             ) from None
         return m, c, k
 
+    def require_period(self, values: Mapping[str, float]) -> None:
+        """Refuse a member whose coefficients do not repeat after ``period``."""
+        given = {k: np.array([float(v)]) for k, v in {**self.parameters, **values}.items()}
+        tau = self.period * np.mod(0.123 + np.sqrt(2) * np.arange(7), 1.0)
+        for name, now, later in zip(
+            "MCK", self.matrices(tau, given), self.matrices(tau + self.period, given), strict=True
+        ):
+            finite = np.isfinite(now) & np.isfinite(later)
+            off = np.abs(np.where(finite, later - now, 0.0))
+            if off.max() > 1e-6 * (1e-300 + np.abs(np.where(finite, now, 0.0)).max()):
+                raise InputError(
+                    f"is not a period of {name}, which differs by {off.max():.3g} one period later",
+                    element="family", key="period", value=self.period, remedy="give the common period in τ",
+                )  # fmt: skip
+
     def system(self, **values: float) -> PeriodicLinearSystem:
         """One member as a ``PeriodicLinearSystem``, for ``stability``."""
+        self.require_period(values)
         given = {k: np.array([float(v)]) for k, v in {**self.parameters, **values}.items()}
 
         def at(tau: Array) -> Matrices:

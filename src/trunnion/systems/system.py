@@ -126,7 +126,7 @@ class System:
         compiled : False spares the seconds of compiling function and regimes, for what is called a few times.
         """
         states = _state_names(states)
-        values = {k: float(v) for k, v in (parameters or {}).items()}
+        values = {k: _number(v, name or "System", k) for k, v in (parameters or {}).items()}
         size = len(states)
         weight = np.ones(size) if scale is None else np.asarray(scale, dtype=float)
         if weight.shape != (size,):
@@ -139,7 +139,7 @@ class System:
             units=tuple(units),
             parameter_units=dict(parameter_units or {}),
             period=period,
-            start=None if start is None else np.asarray(start, dtype=float),
+            start=start,  # type: ignore[arg-type]
             scale=weight,
             exact_tangents=jacobian is not None,
             regimes=regimes,
@@ -148,7 +148,25 @@ class System:
         )
         # Compiled last, so that a slip of the pen is answered at once.
         rate = rate_function(function, jacobian, size, tuple(values), weight, compiled=compiled)
-        return replace(draft, rate=rate)
+        made = replace(draft, rate=rate)
+        made.require_period()
+        return made
+
+    def require_period(self) -> None:
+        """Refuse a forcing period after which the right-hand side is another one."""
+        if self.forcing_period is None:
+            return
+        assert self.scale is not None
+        state = 0.3 * self.scale if self.start is None else self.start
+        for time in self.forcing_period * np.mod(0.123 + np.sqrt(2) * np.arange(5), 1.0):
+            now, later = (self.rate_at(t, state) for t in (time, time + self.forcing_period))
+            off = np.abs(later - now) / self.scale
+            if np.isfinite(off).all() and off.max() > 1e-6 * (1e-300 + float(np.abs(now / self.scale).max())):
+                raise InputError(
+                    f"is not a period: x' is {off.max():.3g} off one period after t = {time:.4g}",
+                    element=self.name, key="period", value=self.forcing_period,
+                    remedy="give the period of t in f [s], or none if no one period holds",
+                )  # fmt: skip
 
     @property
     def size(self) -> int:
@@ -163,7 +181,13 @@ class System:
     @cached_property
     def forcing_period(self) -> float | None:
         """The forcing period at these parameters [s]; None for an autonomous system."""
-        value = self.period(self.parameters) if callable(self.period) else self.period
+        try:
+            value = self.period(self.parameters) if callable(self.period) else self.period
+        except ZeroDivisionError:
+            given = ", ".join(f"{k} = {v:g}" for k, v in self.parameters.items() if v == 0)
+            words = f"divides by zero with {given or 'these parameters'}"
+            remedy = "give a frequency above zero; leave the period out if f has no t"
+            raise InputError(words, element=self.name, key="period", remedy=remedy) from None
         if value is not None and not (np.isfinite(value) and value > 0):
             remedy = "give a positive number or a function of the parameters; leave it out if f has no t"
             raise InputError("must be positive", element=self.name, key="period", value=float(value), remedy=remedy)
@@ -266,7 +290,11 @@ class System:
 
     def checked(self, state: ArrayLike, key: str = "state") -> Array:
         """``state`` as an array (n,); InputError unless it is n finite numbers."""
-        value = np.asarray(state, dtype=float)
+        try:
+            value = np.asarray(state, dtype=float)
+        except (TypeError, ValueError):
+            words = f"must be {self.size} numbers in the order {', '.join(self.states)}"
+            raise InputError(words, element=self.name, key=key, value=state) from None
         if value.shape != (self.size,) or not np.all(np.isfinite(value)):
             raise InputError(
                 f"must be {self.size} finite numbers ({', '.join(self.states)})",
@@ -289,6 +317,13 @@ class System:
             f"{self.name}: {self.size} states ({', '.join(self.states)}), {kind}; {values or 'no parameters'}"
             f"; tangents {tangents}{regimes}{speed}"
         )
+
+
+def _number(value: object, element: str, key: str) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError("must be one number", element=element, key=key, value=value) from None
 
 
 def _state_names(states: Sequence[str] | int) -> tuple[str, ...]:

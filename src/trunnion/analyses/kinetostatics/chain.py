@@ -3,7 +3,7 @@
 A *step* leads from the station in front of an element to the one behind it. A *member* is everything that
 turns about one axis between two joints; its axis changes at every joint. A *train* is a run of members tied
 by joints; a Ratio ends it, because where its gears put the next axis is not part of the description. A GearPair is
-a Ratio here, rigid and in contact; a PiecewiseShaft has the stiffness torque/twist of the static load.
+a Ratio here, rigid and in contact; a PiecewiseShaft has the stiffness torque/twist of the loads at mean speed.
 """
 
 from __future__ import annotations
@@ -58,7 +58,8 @@ class Step:
 
     ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the
     tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and ``far_inertia``
-    [kg m²] sit at the two stations; ``ratio`` is input speed over output speed.
+    [kg m²] sit at the two stations; ``ratio`` is input speed over output speed; ``load``, ``viscous_load`` and
+    ``quadratic_load`` are a Disk's.
     """
 
     link: Link
@@ -74,6 +75,8 @@ class Step:
     near_inertia: float = 0.0
     far_inertia: float = 0.0
     load: float = 0.0
+    viscous_load: float = 0.0
+    quadratic_load: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -145,18 +148,19 @@ def period_turns(chain: Chain) -> int:
     return period
 
 
-def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:
+def chain(line: Driveline, lengths: dict[str, float] | None = None, speed: float = 0.0) -> Chain:
     """Sort ``line`` into steps and members.
 
     Parameters
     ----------
     lengths : joint-to-joint distance [m] by Shaft name, where the Shaft is not a tube of known length.
+    speed : of the input [rad/s], for the loads that grow with it.
 
     Raises
     ------
     InputError : the far end is prescribed as well as the near end.
     """
-    draft = _Draft(line, lengths or {})
+    draft = _Draft(line, lengths or {}, speed)
     for i in range(len(line.elements)):
         draft.add(i)
     members = tuple(
@@ -174,8 +178,8 @@ class _OpenMember:
 
 
 class _Draft:
-    def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
-        self.line, self.lengths = line, lengths
+    def __init__(self, line: Driveline, lengths: dict[str, float], speed: float) -> None:
+        self.line, self.lengths, self.speed = line, lengths, speed
         self.steps = [Step(Link.ROOT, -1, "drive", 0)]
         self.members = [_OpenMember(-1, 0, [], 0.0)]
         self.behind: list[int] = []
@@ -194,13 +198,15 @@ class _Draft:
             self.members[member].shafts.append(name)
             self.members[member].length += self.lengths.get(name, element.length or 0.0)
         elif isinstance(element, PiecewiseShaft):
-            stiffness = _under_load(self.line, i)
+            stiffness = _under_load(self.line, i, self.speed)
             here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, stiffness=stiffness)
             self.members[member].shafts.append(name)
             self.members[member].length += self.lengths.get(name, 0.0)
         elif isinstance(element, Disk):
-            inertia, load = element.moment_of_inertia, element.load_torque
-            here = self._step(Link.RIGID, here, name, member, far_inertia=inertia, load=load)
+            here = self._step(
+                Link.RIGID, here, name, member, far_inertia=element.moment_of_inertia, load=element.load_torque,
+                viscous_load=element.viscous_load, quadratic_load=element.quadratic_load,
+            )  # fmt: skip
         elif isinstance(element, HookeJoint):
             here = self._joint(Link.HOOKE, here, name, angle=element.angle, plane=element.plane)
         elif isinstance(element, IdealJoint):
@@ -241,12 +247,14 @@ class _Draft:
         return len(self.steps) - 1
 
 
-def _under_load(line: Driveline, place: int) -> float:
-    """Torque over twist of a shaft with stages under the static load; its stiffest stage without load."""
+def _under_load(line: Driveline, place: int, speed: float) -> float:
+    """Torque over twist of a shaft with stages under the loads at mean speed; its stiffest stage without load."""
     torque = 0.0
     for i, element in enumerate(line.elements):
         if isinstance(element, Disk):
-            torque -= element.load_torque * _ratio_between(line, place, i)
+            turning = speed * _ratio_between(line, 0, i)
+            load = element.load_torque + (element.viscous_load + element.quadratic_load * turning) * turning
+            torque -= load * _ratio_between(line, place, i)
     packed = pack(line)
     law = stage_law(line, place, packed.column, packed.table(1))
     twist = float(law.under(np.array([torque]), free=True)[0][0])

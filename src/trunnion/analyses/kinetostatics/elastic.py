@@ -7,6 +7,7 @@ the twist itself times η′: a few hundredths for steel shafts, so that some te
 
 Inertia torques are those of the rigid line: quasi-static, right as long as the excitation, twice the shaft
 speed, stays well below the lowest elastic natural frequency ω₁ (they are too small by about 1 − (2Ω/ω₁)²).
+Loads that grow with the speed take that of the rigid line too: the twist changes it by its own rate only.
 Damping in the shafts is left out.
 """
 
@@ -46,15 +47,15 @@ class Drive:
 
 def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Motion, Torques, dict[int, Array]]:
     """Motion, torques and twists (jets by Shaft step [rad], far end minus near end; none if rigid)."""
-    inertial = rigid_accelerations(chain, drive, 0 if rigid else MOTION_ORDER) if drive.inertia else None
+    rates = _rigid_rates(chain, drive, 0 if rigid else MOTION_ORDER)
     if rigid:
         motion = walk(chain, drive.jet(MOTION_ORDER))
-        return motion, _torques(chain, motion, drive, 0, inertial), {}
+        return motion, _torques(chain, motion, drive, 0, rates), {}
     twist: dict[int, Array] = {}
     change = np.inf
     for _ in range(ROUNDS):
         motion = walk(chain, drive.jet(MOTION_ORDER), twist)
-        found = _torques(chain, motion, drive, MOTION_ORDER, inertial)
+        found = _torques(chain, motion, drive, MOTION_ORDER, rates)
         new = {i: -found.spring[i] / chain.steps[i].stiffness for i in chain.shafts}
         before, change = change, _change(new, twist, drive.speed)
         twist = new
@@ -73,20 +74,28 @@ def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Motio
     return walk(chain, drive.jet(MOTION_ORDER), mean)
 
 
-def rigid_accelerations(chain: Chain, drive: Drive, order: int) -> list[Array]:
-    """Jets of the acceleration of every station [rad/s²], shafts rigid."""
-    motion = walk(chain, drive.jet(order + 2))
-    return [jets.rate(jets.rate(a)) for a in motion.angle]
+@dataclass(frozen=True)
+class _Rates:
+    """Jets of the speed and acceleration of every station [rad/s, rad/s²], shafts rigid."""
+
+    speeds: list[Array]
+    accelerations: list[Array]
 
 
-def _torques(chain: Chain, motion: Motion, drive: Drive, order: int, inertial: list[Array] | None) -> Torques:
+def _rigid_rates(chain: Chain, drive: Drive, order: int) -> _Rates:
+    speeds = [jets.rate(a) for a in walk(chain, drive.jet(order + 2)).angle]
+    return _Rates(speeds, [jets.rate(speed) for speed in speeds])
+
+
+def _torques(chain: Chain, motion: Motion, drive: Drive, order: int, rates: _Rates) -> Torques:
     return torques(
         chain,
         motion,
         order,
         output_torque=drive.output_torque,
         pin_moment=drive.pin_moment,
-        inertial=inertial,
+        speeds=rates.speeds,
+        inertial=rates.accelerations if drive.inertia else None,
     )
 
 

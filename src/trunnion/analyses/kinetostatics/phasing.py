@@ -32,6 +32,8 @@ SAME = 1e-13
 """Difference of irregularities that counts as none."""
 POINTS = 96
 """Angles per turn where the output has to be sampled."""
+WHOLE = 0.01
+"""How far from whole a turn over a pitch may be: 7.826 deg is 46 splines, as drawings round it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +89,7 @@ def phase_forks(line: Driveline, pitch: float | str | Mapping[str, float | str] 
 
     Raises
     ------
-    InputError : no shaft between two such joints, or a pitch that is not positive.
+    InputError : no shaft between two such joints, or a pitch that does not divide a turn.
     """
     train = chain(line)
     free = phased_shafts(train)
@@ -234,4 +236,19 @@ def _pitches(train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[s
             raise InputError(error.problem, key="pitch", value=value, remedy=error.remedy) from None
         if not pitches[name] > 0:
             raise InputError("must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines')
+        pitches[name] = _whole_splines(pitches[name], value)
     return np.array([pitches[n] for n in names])
+
+
+def _whole_splines(pitch: float, given: object) -> float:
+    """The pitch of the whole number of splines that is meant, free of its rounding."""
+    count = 2 * np.pi / pitch
+    whole = round(count)
+    if whole and abs(count - whole) <= WHOLE:
+        return 2 * np.pi / whole
+    fewer = max(int(count), 1)
+    nearest_first = sorted((fewer, fewer + 1), key=lambda n: abs(360 / n - pitch / DEGREE))
+    near = [f'"{360 / n:.8g} deg" ({n} spline{"s" * (n > 1)})' for n in nearest_first]
+    raise InputError(
+        f"does not divide a turn: {count:.6g} splines", key="pitch", value=given, remedy=f"write {' or '.join(near)}"
+    )

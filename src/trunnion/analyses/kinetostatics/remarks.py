@@ -5,6 +5,7 @@ from __future__ import annotations
 from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
 from trunnion.analyses.kinetostatics.elastic import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
+from trunnion.driveline.elements import Disk
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
@@ -18,6 +19,7 @@ def remarks(chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, 
     if drive.inertia:
         found += _resonance(chain, drive, rigid)
     found += _repeats(chain, turns)
+    found += _left_out(chain)
     if supports is not None:
         found += [
             Finding(
@@ -61,6 +63,19 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
             f"elastic natural frequency is {lowest:.4g} rad/s (trusted up to a third of it), so {effect}; "
             "ask stability() for the linear response",
         )
+    ]
+
+
+def _left_out(chain: Chain) -> list[Finding]:
+    """Torques that shake Disks, which a turn without vibration has no place for."""
+    return [
+        Finding(
+            Gravity.CAUTION,
+            f"{name}.excitation is left out: torques here are those of steady running; ask "
+            "periodic_response() or simulate() for what it does",
+        )
+        for name, element in zip(chain.line.names, chain.line.elements, strict=True)
+        if isinstance(element, Disk) and element.excitation
     ]
 
 

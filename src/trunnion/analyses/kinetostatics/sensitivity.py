@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.kinetostatics.chain import Link, chain
+from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
 from trunnion.analyses.kinetostatics.measures import equivalent_angle
 from trunnion.analyses.kinetostatics.phasing import irregularity_of, phased_shafts
 from trunnion.driveline.driveline import Driveline
@@ -75,6 +75,7 @@ def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> Assemb
     hooke, shafts = train.of(Link.HOOKE), phased_shafts(train)
     if not hooke:
         raise InputError("has no Hooke's joint", element="driveline", remedy="its output is as even as its input")
+    _refuse_reaching_90(train, hooke, size, error)
     places = [("angle", i) for i in hooke] + [("plane", i) for i in hooke[1:]] + [("fork_offset", i) for i in shafts]
 
     def spread(signs: Array) -> Array:
@@ -98,3 +99,16 @@ def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> Assemb
         nominal=float(spread(np.zeros((1, len(places))))[0]),
         worst=float(max(spread(together).max(), spread(single).max(), spread(-single).max())),
     )
+
+
+def _refuse_reaching_90(train: Chain, hooke: tuple[int, ...], size: float, error: float | str) -> None:
+    """An error that bends a joint by 90° or more describes no joint."""
+    i = max(hooke, key=lambda j: abs(train.steps[j].angle))
+    bent = abs(train.steps[i].angle)
+    if bent + size >= np.pi / 2 - 1e-9:
+        raise InputError(
+            f"carries {train.steps[i].name} ({bent / DEGREE:.4g} deg) to 90 deg or beyond",
+            key="error",
+            value=error,
+            remedy='numbers are radians: write "1 deg", say',
+        )

@@ -52,7 +52,7 @@ def _output(r: Kinetostatics) -> list[str]:
 
 def _torques(r: Kinetostatics) -> list[str]:
     if not np.any(r.drive_torque):
-        return ["  no torque: no Disk has a load_torque and no output_torque is given"]
+        return ["  no torque: no Disk has a load and no output_torque is given"]
     low, high = extremes(r.drive_torque)
     line = f"  drive torque {low:.6g} to {high:.6g} N*m"
     if np.any(r.power_loss):

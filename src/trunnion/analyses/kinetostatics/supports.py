@@ -200,12 +200,25 @@ class _Statics:
                 total[m] += self.frames[m][1:].T @ local
         return total
 
+    def _refuse_at_joint(self, loose: set[int]) -> None:
+        """Blame a single bearing at a joint's centre, where it has no lever, rather than a neighbour it lets down."""
+        for m in sorted(loose):
+            if [abs(x) < 1e-9 for x in self.placed.get(m, ())] == [True]:
+                raise InputError(
+                    "lies at the centre of the joint that positions count from, where it cannot carry a couple",
+                    element=self._shaft(m),
+                    key="supports",
+                    value=self.placed[m][0],
+                    remedy="write its distance from that joint, or give the shaft two bearings",
+                )
+
     def _determinate(self, matrix: Array) -> None:
         """Refuse lines that are not held, or held twice."""
         left, values, right = np.linalg.svd(matrix)
         rank = int(np.sum(values > 1e-9 * values[0]))
         if rank < len(self.rows):
             loose = np.abs(left[:, rank:]).sum(axis=1)
+            self._refuse_at_joint({m for m, share in zip(self.owner, loose, strict=True) if share > 1e-9})
             m = self.owner[int(loose.argmax())]
             count = len(self.placed.get(m, ()))
             own = ("no bearing", "one bearing", "its bearings")[count]

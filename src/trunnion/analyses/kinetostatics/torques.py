@@ -45,6 +45,7 @@ def torques(
     *,
     output_torque: float = 0.0,
     pin_moment: float = 0.0,
+    speeds: list[Array] | None = None,
     inertial: list[Array] | None = None,
 ) -> Torques:
     """Torques of the loads, and of the inertias where their accelerations are given.
@@ -54,6 +55,7 @@ def torques(
     order : of the jets of torque; those of ``motion`` must be at least as high.
     output_torque : [N m] at the end of the line, beside the Disks' own loads; positive resists rotation.
     pin_moment : κ′ of the crosses.
+    speeds : jet of the speed of every station [rad/s], for the loads that grow with it.
     inertial : jet of the acceleration of every station [rad/s²].
     """
     zero = np.zeros_like(motion.angle[-1][: order + 1])
@@ -64,7 +66,10 @@ def torques(
         step = chain.steps[i]
         torque = out[i]
         if step.link is Link.RIGID:
-            torque = torque + jets.constant(np.sign(chain.mean_ratio(i)) * step.load, torque)
+            sense = float(np.sign(chain.mean_ratio(i)))
+            torque = torque + jets.constant(sense * step.load, torque)
+            if speeds is not None:
+                torque = torque + _speed_load(step, speeds[i][: order + 1], sense)
         if inertial is not None and step.far_inertia:
             torque = torque + step.far_inertia * inertial[i][: order + 1]
         if step.link is Link.SHAFT:
@@ -83,6 +88,11 @@ def torques(
         if step.parent >= 0:
             out[step.parent] = out[step.parent] + torque
     return Torques(into, out, spring)
+
+
+def _speed_load(step: Step, speed: Array, sense: float) -> Array:
+    """Jet of cω + qω|ω|; joints below 90° never turn the sense of rotation."""
+    return step.viscous_load * speed + sense * step.quadratic_load * jets.multiply(speed, speed)
 
 
 def refuse_locking(chain: Chain, pin_moment: float) -> None:

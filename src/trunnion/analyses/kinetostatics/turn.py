@@ -51,7 +51,7 @@ def kinetostatics(
     line : the driveline; its first element is driven, whatever it is.
     speed, acceleration : of the input, the same at every angle [rad/s, rad/s²].
     rigid : shafts do not twist; False solves the twist under the torque at every angle.
-    output_torque : at the end of the line [N m], beside the Disks' load_torque; positive resists rotation.
+    output_torque : at the end of the line [N m], beside the Disks' own loads; positive resists rotation.
     inertia : count the inertia torques of the rigid line.
     friction : in the bearings of every cross.
     supports : (shaft, position, position) or (shaft, position) each [m]; see ``supports.support_forces``.
@@ -63,7 +63,7 @@ def kinetostatics(
     InputError : an argument out of its range, a prescribed output, bearings that cannot carry the load.
     ComputationError : shafts so soft that the twist does not settle.
     """
-    drive_speed = parse(speed, SPEED)
+    drive_speed = _number(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
     _whole("turns", turns, 1)
@@ -75,7 +75,7 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
-    train = chain(line, _lengths(line, lengths))
+    train = chain(line, _lengths(line, lengths), drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
