@@ -10,6 +10,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.analyses.certify_chaos import ChaosCertificate
+from trunnion.analyses.chaos_subject import clocks
 from trunnion.systems.reference import (
     dead_zone_oscillator,
     driven_pendulum,
@@ -98,6 +99,49 @@ def test_which_criteria_discriminate() -> None:
     assert not rest.criteria[1].holds and rest.criteria[1].discriminates
     free = tn.certify_chaos(van_der_pol(0.0), duration=500.0, sweep=False)
     assert free.criteria[2].discriminates  # its volumes grow where |x| < 1
+
+
+def test_conservative_systems_preserve_volumes() -> None:
+    def cubic(t, x, p):  # type: ignore[no-untyped-def]
+        return x[1], -x[0] - x[0] ** 3
+
+    free = System.from_function(cubic, ["x", "v"], start=[1.0, 0.0])
+    for found in (
+        tn.certify_chaos(free, duration=500.0, sweep=False),
+        tn.certify_chaos(mathieu_oscillator(2.0, 0.2), 300, sweep=False),
+    ):
+        third = found.criteria[2]
+        assert (third.holds, third.discriminates) == (False, False) and "preserved" in third.why
+    assert "shrink at 0.05 1/s" in tn.certify_chaos(ueda(), 200, sweep=False).criteria[2].why
+
+
+def test_at_rest_on_a_saddle() -> None:
+    def saddle(t, x, p):  # type: ignore[no-untyped-def]
+        return x[1], 0.5 * x[0] - 0.02 * x[1]
+
+    system = System.from_function(saddle, ["x", "v"], start=[0.0, 0.0])
+    found = tn.certify_chaos(system, duration=2000.0, starts=1, sweep=False)
+    assert found.verdict == "undecided" and "unstable equilibrium" in found.reasons[0]
+    second = found.criteria[1]
+    assert (second.holds, second.discriminates) == (False, True) and "unstable equilibrium" in second.why
+    both = tn.certify_chaos(system, duration=2000.0, sweep=False)
+    assert both.verdict == "undecided" and len(both.reasons) == 3
+    assert both.reasons[1].startswith("start 1: ") and "unstable" in both.reasons[1]
+    assert both.reasons[2].startswith("start 2: ") and "blows up" in both.reasons[2]
+
+
+def test_a_phase_as_a_state_needs_no_jacobian() -> None:
+    def rate(t, x, p):  # type: ignore[no-untyped-def]
+        return x[1], -0.05 * x[1] - x[0] ** 3 + 7.5 * np.cos(x[2]), p.frequency
+
+    for compiled in (True, False):
+        system = System.from_function(
+            rate, ["x", "v", "phase"], parameters={"frequency": 1.0}, start=[0.0, 0.0, 0.0], compiled=compiled
+        )
+        assert clocks(system, np.random.default_rng(0).normal(size=(4, 3))) == {2: 1.0}
+        if compiled:
+            found = tn.certify_chaos(system, duration=8000.0, sweep=False)
+            assert found.verdict == "chaotic", str(found)
 
 
 def test_too_short_says_how_long() -> None:

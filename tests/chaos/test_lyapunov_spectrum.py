@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -166,11 +168,39 @@ def test_endings() -> None:
     assert blown.exponents[0] == pytest.approx(0.0995364, abs=1e-6)
 
 
+def test_differenced_tangents_of_a_motion_that_runs_away() -> None:
+    """x′ = x and a linear saddle, whose states outgrow any fixed step of differences long before the end."""
+
+    def alone(t, x, p):  # type: ignore[no-untyped-def]
+        return (x[0] * p.r,)
+
+    def saddle(t, x, p):  # type: ignore[no-untyped-def]
+        return x[1], 0.5 * x[0] - 0.02 * x[1]
+
+    growing = System.from_function(alone, ["x"], parameters={"r": 1.0}, start=[1.0])
+    found = tn.lyapunov_spectrum(growing)
+    assert found.exponents == pytest.approx([1.0], abs=1e-6)
+    assert found.outcome.kind == "blow-up" and found.transient == 0
+    assert tn.lyapunov_spectrum(growing, duration=100.0, transient=0).largest == pytest.approx(1.0, abs=1e-6)
+    told = tn.certify_chaos(growing, sweep=False)
+    assert told.verdict == "unbounded"
+    assert not told.criteria[1].holds and "grow at 1 1/s" in told.criteria[2].why
+    found = tn.lyapunov_spectrum(System.from_function(saddle, ["x", "v"], start=[0.1, 0.0]))
+    assert found.exponents == pytest.approx(np.sort(np.roots([1.0, 0.02, -0.5]))[::-1], abs=1e-6)
+
+
+def test_a_sum_that_is_not_the_divergence_has_not_converged() -> None:
+    found = tn.lyapunov_spectrum(replace(linear_oscillator(), divergence=-2.0), 200)
+    assert (found.outcome.ok, found.outcome.kind) == (False, "not converged")
+    assert "jacobian" in str(found.outcome)
+
+
 BAD = {
     "no exponents": (lambda: tn.lyapunov_spectrum(ueda(), exponents=0), "exponents"),
     "too many exponents": (lambda: tn.lyapunov_spectrum(ueda(), exponents=3), "2 or less"),
     "two lengths": (lambda: tn.lyapunov_spectrum(ueda(), 10, duration=5.0), "periods"),
     "periods of lorenz": (lambda: tn.lyapunov_spectrum(lorenz(), 10), "autonomous"),
+    "too many samples": (lambda: tn.lyapunov_spectrum(lorenz(), duration=1e12), "samples"),
     "no time": (lambda: tn.lyapunov_spectrum(lorenz(), duration=0.0), "duration"),
     "half a period": (lambda: tn.lyapunov_spectrum(ueda(), 0.5), "periods"),  # type: ignore[arg-type]
     "a start too long": (lambda: tn.lyapunov_spectrum(ueda(), start=[1.0, 2.0, 3.0]), "start"),

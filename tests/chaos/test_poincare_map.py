@@ -129,3 +129,30 @@ def test_prints_and_draws(tmp_path) -> None:  # type: ignore[no-untyped-def]
     assert "does not repeat" in str(found)
     axes = found.plot()
     assert axes.get_xlabel() == "x" and len(axes.lines[0].get_xdata()) == 500
+
+
+def test_a_coordinate_that_acts_off_phase_only_is_no_angle() -> None:
+    """sin² t is 0 at t = 0, where the equations do not contain x at all."""
+
+    def rate(t, x, p):  # type: ignore[no-untyped-def]
+        return x[1], -0.1 * x[1] - np.sin(t) ** 2 * (x[0] - 10.0) + np.cos(t)
+
+    system = tn.System.from_function(rate, ["x", "v"], period=2 * np.pi, start=[6.0, 0.0])
+    found = tn.poincare_map(system, 20)
+    assert found.angles == () and found.repeat == 1
+    assert found.wrapped[-1, 0] == pytest.approx(8.76118, abs=1e-5)
+
+
+def test_no_map_of_a_free_line() -> None:
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=0.5, load_torque=-50.0),
+            tn.HookeJoint(angle="20 deg"),
+            tn.Shaft(stiffness=1e4, damping=2),
+            tn.Disk(inertia=1.0, viscous_load=0.3),
+        ]
+    )
+    for analysis in (tn.poincare_map, tn.certify_chaos):
+        with pytest.raises(tn.InputError, match="starts free") as caught:
+            analysis(line, 50, speed=100.0)
+        assert "\n" not in str(caught.value)

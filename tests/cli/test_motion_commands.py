@@ -68,8 +68,35 @@ def test_run_up(run, here):
     assert all((here / name).stat().st_size > 500 for name in ("a.csv", "b.png", "c.nc"))
 
 
+FAILED = [
+    ("poincare-map", "mathieu"),
+    ("lyapunov-spectrum", "ueda", "--periods", "1"),
+    ("simulate", "mathieu", "--duration", "3000"),
+]
+
+
+@pytest.mark.parametrize("call", FAILED, ids=" ".join)
+def test_what_a_failed_motion_left_is_kept(run, here, call):
+    result = run(*call, "-o", "a.png", "--json")
+    data = json.loads(result.stdout)
+    assert result.exit_code == 1 and data["written"] == ["a.png"] and (here / "a.png").exists()
+    assert f"error: {data['says']}" in result.stderr and "UserWarning" not in result.stderr
+
+
+def test_a_period_to_guess_and_no_unit_1(run, here):
+    result = run("periodic-response", "rossler", "--period", "5.9 s")
+    assert result.exit_code == 0 and "period 5.881" in result.stdout and "± 8.33608\n" in result.stdout
+
+
 REFUSALS = [
     (("simulate", "lorenzz"), 2, "neither a file nor a name"),
+    (("simulate", "Lorenz"), 2, 'did you mean "lorenz"?'),
+    (("certify-chaos", "dead-zone"), 2, 'did you mean "dead-zone-oscillator"?'),
+    (("simulate", "duffing", "--turns", "5"), 2, "--turns"),
+    (("periodic-response", "rossler", "--period", "5 kg"), 2, "not the unit of a time"),
+    (("periodic-response", "line.toml", "--period", "1"), 2, "belongs to reference systems"),
+    (("run-up", "line.toml", "--from", "0 rpm"), 2, "--from = '0 rpm'"),
+    (("lyapunov-spectrum", "ueda", "-o", "q.csv"), 2, ".png, .pdf, .svg, .nc"),
     (("simulate", "duffing", "--set", "x"), 2, "NAME=VALUE"),
     (("simulate", "duffing", "--set", "speed=1"), 2, "parameters are: damping"),
     (("simulate", "duffing", "--speed", "3"), 2, "belongs to drivelines"),

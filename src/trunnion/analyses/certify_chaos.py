@@ -33,6 +33,7 @@ from trunnion.analyses.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
 from trunnion.analyses.poincare_map import PoincareMap, poincare_map
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.numerics.integration import End
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -46,6 +47,7 @@ POINTS = 3000
 """Points of the Poincaré map."""
 BLOCKS, GROWN = 8, 2.0
 """A motion whose largest state rises in each of so many blocks, by this factor in all, is unbounded."""
+UNSTABLE = "at rest on an unstable equilibrium"
 AT_REST = 1e-7
 """Size of a motion over its scale that counts as rest."""
 SWEPT, SWEEP_POINTS, SWEEP_PERIODS = 0.1, 25, 400
@@ -76,7 +78,8 @@ class Witness:
 class ChaosCertificate:
     """A verdict with its evidence.
 
-    verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion; repeat: forcing periods, or returns
+    verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion, "at rest on an unstable equilibrium"
+    of an undecided one; repeat: forcing periods, or returns
     to the section, after which a periodic motion closes, and period [s], its time; reasons: one sentence each;
     criteria (37)–(39); spectrum, map, zero_one, sweep (or None): the evidence.
     """
@@ -177,11 +180,17 @@ def certify_chaos(
     if not same:
         told = "; ".join(f"start {i} {w.kind or w.verdict}" for i, w in enumerate(witnesses, start=1))
         verdict, kind = Verdict.UNDECIDED, ""
-        reasons = (f"the starts do not agree ({told}): certify each with starts=1, or over a longer time", *reasons)
+        each = (f"start {i}: {reason}" for i, w in enumerate(witnesses, start=1) for reason in w.reasons)
+        reasons = (f"the starts do not agree ({told}): certify each with starts=1, or over a longer time", *each)
     elif not spectrum.agree:
         reasons = (*reasons, "the starts agree on this and differ in their exponents: there may be several attractors")
     repeat = first.map.repeat if first.map is not None and kind == "periodic" else 0
-    judged = criteria(system, spectrum, clock=bool(running), at_rest=kind == "at rest") if spectrum.samples >= 2 else ()
+    judged: tuple[Criterion, ...] = ()
+    if spectrum.samples >= 2:
+        judged = criteria(
+            system, spectrum, clock=bool(running), at_rest=any(w.kind in ("at rest", UNSTABLE) for w in witnesses),
+            bounded=all(w.verdict is not Verdict.UNBOUNDED for w in witnesses),
+        )  # fmt: skip
     swept = None
     if request is not None and verdict is not Verdict.UNBOUNDED:
         swept = lyapunov_sweep(
@@ -213,10 +222,12 @@ def _witness(
 ) -> Witness:
     run, interval = spectrum.runs[i], spectrum.interval
     ending = spectrum.outcome.kind
-    if ending in ("blow-up", "not finite") or (len(run.growth) < run.wanted and ending == "step too small"):
+    # Another start's end is not this one's.
+    stopped = run.end is not End.REACHED
+    if stopped and ending in ("blow-up", "not finite", "step too small"):
         reason = f"the motion cannot be followed for ever: {spectrum.outcome}"
         return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
-    if not spectrum.outcome.ok and ending not in ("too short", "not converged"):
+    if stopped:
         return Witness(None, None, Verdict.UNDECIDED, "", (str(spectrum.outcome),))
     turning = angles(system, run.states[:: max(len(run.states) // 8, 1)][:8])
     if len(run.growth) < FEWEST:
@@ -230,10 +241,16 @@ def _witness(
     exponent, width = spectrum.by_start[i][0], spectrum.by_start_half_width[i][0]
     width = max(width, spectrum.sum_error if np.isfinite(spectrum.sum_error) else 0.0)
     forced = system.forcing_period is not None
-    if not forced and not running and np.all(size <= AT_REST * scale) and exponent < 0:
+    rests = not forced and not running and bool(np.all(size <= AT_REST * scale))
+    if rests and exponent < 0:
         return Witness(
             None, None, Verdict.REGULAR, "at rest",
             (f"the motion has come to rest; disturbances die out at {-exponent:.4g} 1/s",),
+        )  # fmt: skip
+    if rests and exponent > width:
+        return Witness(
+            None, None, Verdict.UNDECIDED, UNSTABLE,
+            (f"the motion is {UNSTABLE}: disturbances grow at {exponent:.4g} 1/s; start beside it",),
         )  # fmt: skip
     mapped = _map(system, spectrum, i, section, points, running, turning, size)
     if not mapped.outcome.ok:

@@ -12,6 +12,8 @@ from trunnion.systems.system import System
 Array = NDArray[np.float64]
 SAME = 1e-9
 """Change of a rate over its size that counts as none."""
+PHASES = 7
+"""Phases of the forcing at which a system is looked at; an odd number meets no two zeros of a half-period."""
 NEIGHBOUR = 1e-2
 """How far from the first start the others are, in units of the system's scale plus the start itself."""
 
@@ -21,7 +23,8 @@ def as_system(subject: System | Driveline, speed: float | None = None) -> System
 
     Raises
     ------
-    InputError : neither, or a speed given for a system.
+    InputError : neither, a speed given for a system, or a line that starts free: it has no period to strobe at,
+        and its rotation is not bounded.
     """
     if isinstance(subject, System):
         if speed is not None:
@@ -32,7 +35,13 @@ def as_system(subject: System | Driveline, speed: float | None = None) -> System
         from trunnion.analyses.stability import operating_speed
         from trunnion.equations.line_system import line_system
 
-        return line_system(subject, operating_speed(subject, speed)).system
+        prepared = line_system(subject, operating_speed(subject, speed))
+        if prepared.assembly.topology.free:
+            raise InputError(
+                "starts free: its speed follows from its torques and is not periodic in time", element="driveline",
+                remedy="put a ConstantSpeed in front, or simulate it",
+            )  # fmt: skip
+        return prepared.system
     raise InputError(
         "is neither a System nor a Driveline", key="subject", value=type(subject).__name__,
         remedy="write tn.System.from_function(…), or load a driveline",
@@ -61,15 +70,15 @@ def first_starts(system: System, start: ArrayLike | None, count: int) -> Array:
 def angles(system: System, states: Array) -> tuple[int, ...]:
     """States that count as angles: adding 2π to one changes no rate at any of the sampled ``states`` (m, n).
 
-    A state that the equations do not contain at all (the rotation of a free line) counts as one, too.
+    A state that the equations do not contain at all counts as one, too.
     """
-    rates = np.array([_rate(system, x) for x in states])
+    rates = _rates(system, states)
     size = np.abs(rates).max(axis=0) + 1e-300
     found = []
     for i in range(system.size):
         turned = np.array(states, dtype=float)
         turned[:, i] += 2 * np.pi
-        again = np.array([_rate(system, x) for x in turned])
+        again = _rates(system, turned)
         if np.all(np.abs(again - rates) <= SAME * size):
             found.append(i)
     return tuple(found)
@@ -77,8 +86,8 @@ def angles(system: System, states: Array) -> tuple[int, ...]:
 
 def clocks(system: System, states: Array) -> dict[int, float]:
     """States that run evenly whatever the others do, and their rates [1/s]: a phase written as a state."""
-    rates = np.array([_rate(system, x) for x in states])
-    matrices = [system.jacobian(0.0, x, system.regime_at(0.0, x)) for x in states]
+    rates = _rates(system, states)
+    matrices = [system.jacobian(t, x, system.regime_at(t, x)) for t in phases(system) for x in states]
     return {
         i: float(rates[0, i])
         for i in range(system.size)
@@ -88,8 +97,15 @@ def clocks(system: System, states: Array) -> dict[int, float]:
     }
 
 
-def _rate(system: System, state: Array) -> Array:
-    return system.rate_at(0.0, state, system.regime_at(0.0, state))
+def phases(system: System) -> list[float]:
+    """Times [s] all around the forcing: at any single one a factor of it may vanish."""
+    period = system.forcing_period
+    return [0.0] if period is None else [period * k / PHASES for k in range(PHASES)]
+
+
+def _rates(system: System, states: Array) -> Array:
+    """Rates (phases · m, n) at ``states`` (m, n)."""
+    return np.array([system.rate_at(t, x, system.regime_at(t, x)) for t in phases(system) for x in states])
 
 
 def whole_number(key: str, value: object, least: int, most: int | None = None) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.integration_outcomes import outcome_of
+from trunnion.analyses.integration_outcomes import GROWN, outcome_of
 from trunnion.numerics.integration import integrate
 from trunnion.numerics.tangents import Motion
 from trunnion.results.outcome import Outcome
@@ -36,7 +36,7 @@ def usual_time(system: System, state: Array, tolerance: float, steps: int = 32) 
     """A time in which the motion of an autonomous system gets about once around, rounded to one figure.
 
     Where a system comes to rest the integrator's steps grow without bound, so the fastest rate of its linear
-    part bounds the time too.
+    part bounds the time too: at the end of a trial, or at the start if the trial runs away.
     """
     trial = integrate(
         system.equations, 0.0, 1e9, state, regime=system.regime_at(0.0, state), tolerance=tolerance,
@@ -44,7 +44,10 @@ def usual_time(system: System, state: Array, tolerance: float, steps: int = 32) 
     )  # fmt: skip
     half = trial.length[trial.steps // 4 :]
     interval = steps * float(np.median(half)) if len(half) else 1.0
-    matrix = system.jacobian(0.0, trial.state[-1], trial.final_regime)
+    last = trial.state[-1]
+    away = not np.all(np.abs(last) <= GROWN * np.maximum(np.abs(state), np.asarray(system.scale)))
+    last, regime = (state, system.regime_at(0.0, state)) if away else (last, trial.final_regime)
+    matrix = system.jacobian(0.0, last, regime)
     if np.all(np.isfinite(matrix)):
         fastest = float(np.max(np.abs(np.linalg.eigvals(matrix))))
         interval = min(interval, 2 * np.pi / fastest) if fastest > 0 else min(interval, 1.0)

@@ -47,6 +47,10 @@ SLOW = 1e-3
 """Growth per sample below which all exponents count as this large when widths are compared to them."""
 LEFT_OUT = 10
 """The default effort leaves out one in so many samples at the beginning, besides the transient."""
+MOST = 10_000_000
+"""Samples that fit into memory."""
+DWARFED, MISSED = 10.0, 0.01
+"""Half-width, and error of the sum, over the largest exponent in size, above which nothing has converged."""
 FEWEST = 4 * BATCHES
 """Samples below which batch means say nothing."""
 ROUNDING = 0.01
@@ -102,6 +106,10 @@ def lyapunov_spectrum(
 
     with ThreadPoolExecutor(len(motions) if system.compiled else 1) as pool:
         early = list(pool.map(lambda m: m.run(skipped), motions))
+        if any(e.end is not End.REACHED for e in early):
+            # What does not outlive its transient is measured from the start.
+            skipped, motions = 0, [_motion(system, x, count, interval, tolerance) for x in states]
+            early = [m.run(0) for m in motions]
         runs = [_begun(s, count) for s in early]
         total = asked or FIRST
         while True:
@@ -143,9 +151,11 @@ def _effort(
         raise InputError("must be a positive time", key="duration", value=duration)
     interval = period if period is not None else _interval(system, state, tolerance)
     if periods is not None:
-        return whole_number("periods", periods, 1), interval
+        return whole_number("periods", periods, 1, MOST), interval
     if duration is None:
         return None, interval
+    if duration > MOST * interval:
+        raise InputError(f"makes more than {MOST} samples of {interval:.3g} s", key="duration", value=duration)
     return max(int(round(duration / interval)), 1), interval
 
 
@@ -269,6 +279,18 @@ def _outcome(
             True, "starts differ",
             "the starts lead to motions with different exponents: several attractors, or one that takes longer to "
             "be seen whole; look at by_start",
+        )  # fmt: skip
+    if result.sum_error > MISSED * _size(result):
+        return Outcome(
+            False, "not converged",
+            f"the exponents add up to {result.sum:.4g} 1/s where the mean divergence is {result.divergence:.4g} 1/s: "
+            "the tangents were not resolved; give a jacobian, or a smaller tolerance",
+        )  # fmt: skip
+    if result.half_width[0] > DWARFED * _size(result):
+        return Outcome(
+            False, "not converged",
+            f"after {samples} samples the interval of the largest exponent is ± {result.half_width[0]:.2g} 1/s, larger "
+            "than any exponent; average over more periods",
         )  # fmt: skip
     width, largest = 2 * result.half_width[0], abs(result.exponents[0])
     if precision is not None and not _known(result, precision, RESOLVED):

@@ -23,6 +23,7 @@ from trunnion.numerics.integration import End, Trajectory, integrate
 from trunnion.numerics.newton import Root, solve
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.outcome import Outcome
+from trunnion.results.units import with_unit
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.system import System
 
@@ -152,7 +153,7 @@ class PeriodicOrbit:
         changes = f", {self.regime_changes} changes of regime" if self.system.regimes else ""
         tangents = "" if self.system.exact_tangents else "; tangents differenced"
         rows = [
-            f"  {name}: {mean:.6g} ± {peak / 2:.6g} {unit}"
+            with_unit(f"  {name}: {mean:.6g} ± {peak / 2:.6g}", unit)
             for name, mean, peak, unit in zip(
                 self.system.states, self.mean, self.peak_to_peak, self.system.units, strict=True
             )

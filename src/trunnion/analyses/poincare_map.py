@@ -21,6 +21,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.integration import End, integrate
 from trunnion.numerics.tangents import Motion
 from trunnion.results.outcome import Outcome
+from trunnion.results.units import with_unit
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
@@ -92,9 +93,10 @@ class PoincareMap:
         return draw_map(self, axes, **options)
 
     def __str__(self) -> str:
-        head = f"Poincaré map of {self.system.name}: {len(self.points)} points, {self.section}"
+        count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"
+        head = f"Poincaré map of {self.system.name}: {count}, {self.section}"
         rows = [
-            f"  {name}: {column.min():.6g} … {column.max():.6g} {unit}"
+            with_unit(f"  {name}: {column.min():.6g} … {column.max():.6g}", unit)
             for name, unit, column in zip(self.system.states, self.system.units, self.wrapped.T, strict=True)
             if len(column)
         ]

@@ -13,6 +13,7 @@ from trunnion.analyses.integration_outcomes import outcome_of
 from trunnion.errors import InputError
 from trunnion.numerics.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
 from trunnion.results.outcome import Outcome
+from trunnion.results.units import with_unit
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
@@ -119,7 +120,7 @@ class Simulation:
     def __str__(self) -> str:
         low, high = self.time_range
         rows = [
-            f"  {name}: {self.state[:, i].min():.6g} … {self.state[:, i].max():.6g} {unit}, "
+            with_unit(f"  {name}: {self.state[:, i].min():.6g} … {self.state[:, i].max():.6g}", unit) + ", "
             f"at the end {self.final[i]:.10g}"
             for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
         ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.motion import START, Output, Set, Tolerance, _check, _print, _state, _write
+from trunnion.cli.motion import START, Set, Tolerance, _check, _print, _state, _write
 from trunnion.cli.options import Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
 from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
@@ -33,6 +33,11 @@ Transient = Annotated[int | None, typer.Option("--transient", help="Periods to l
 Section = Annotated[
     str | None,
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
+]
+ENDINGS = (".png", ".pdf", ".svg", ".nc")
+Output = Annotated[
+    list[Path] | None,
+    typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
 ]
 TRIPOD = "double-tripod"
 
@@ -59,7 +64,7 @@ def lyapunov_spectrum(
     from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check(to)
+    _check_endings(to)
     with output.compile_notice():
         result = compute(
             system, periods, duration=duration, start=_state(start), starts=starts, transient=transient,
@@ -68,6 +73,7 @@ def lyapunov_spectrum(
     written = _files(to, _stem(file), "exponents", result.data, lambda: result.plot())
     if not as_json:
         _print(str(result), written)
+        output.finish(result.outcome, written)
         return
     content = {
         "system": system.name,
@@ -84,6 +90,7 @@ def lyapunov_spectrum(
         "written": [str(path) for path in written],
     }
     output.write_json("lyapunov-spectrum", content)
+    output.finish(result.outcome, written)
 
 
 def poincare_map(
@@ -108,15 +115,15 @@ def poincare_map(
     from trunnion.analyses.poincare_map import poincare_map as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check(to)
+    _check_endings(to)
     with output.compile_notice():
         result = compute(
             system, points, section=_section(section), every=every, start=_state(start),
             transient=500 if transient is None else transient, tolerance=tolerance,
         )  # fmt: skip
-    result.outcome.require()
     written = _files(to, _stem(file), "map", result.data, lambda: result.plot())
     if not as_json:
+        output.finish(result.outcome, written)
         _print(str(result), written)
         return
     content = {
@@ -130,6 +137,7 @@ def poincare_map(
         "written": [str(path) for path in written],
     }
     output.write_json("poincare-map", content)
+    output.finish(result.outcome, written)
 
 
 def certify_chaos(
@@ -158,7 +166,7 @@ def certify_chaos(
     from trunnion.analyses.certify_chaos import certify_chaos as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check(to)
+    _check_endings(to)
     with output.compile_notice():
         result = compute(
             system, periods, duration=duration, section=_section(section), start=_state(start), starts=starts,
@@ -201,7 +209,7 @@ def _subject(
         return _with(SYSTEMS[file](), parameters)
     from trunnion.analyses.chaos_subject import as_system
 
-    line = read_line(file, load_case)
+    line = read_line(file, load_case, (*SYSTEMS, TRIPOD))
     return _with(as_system(line, read_speed(speed, read_unit(line, unit))), parameters)
 
 
@@ -253,18 +261,23 @@ def _stem(file: str) -> str:
     return file_stem(file.replace(":", "-"))
 
 
+def _check_endings(to: list[Path] | None) -> None:
+    """As ``_check``, for commands that write no tables."""
+    for path in to or []:
+        if path.suffix.lower() not in ENDINGS and not path.is_dir():
+            raise InputError(
+                "is not written by this command",
+                key="--output",
+                value=str(path),
+                remedy=f"end it in one of {', '.join(ENDINGS)}",
+            )
+    _check(to)
+
+
 def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
     """The files asked for, or a picture and the data in the default folder."""
     from trunnion.results.files import folder_written_whole
 
-    for path in to or []:
-        if path.suffix.lower() == ".csv":
-            raise InputError(
-                "is not written by this command",
-                key="output",
-                value=str(path),
-                remedy="end it in .png, .pdf, .svg or .nc",
-            )
     if to:
         return [_write(path, data, draw) for path in to]
     with folder_written_whole(DEFAULT_FOLDER) as temporary:

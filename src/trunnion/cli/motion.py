@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.options import (
+    File,
+    Json,
+    LoadCase,
+    Speed,
+    Unit,
+    file_stem,
+    read_line,
+    read_speed,
+    read_time,
+    read_unit,
+    reference_systems,
+)
 from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
 
@@ -59,23 +71,25 @@ def simulate(
     with output.compile_notice():
         system = _system(file, parameters)
         if system is not None:
-            _no_speed(speed or to_speed or load_case)
+            _only_for_lines(("--speed", speed), ("--to-speed", to_speed), ("--load-case", load_case))
+            _only_for_lines(("--turns", turns), remedy="use --duration, in seconds")
             _check(to)
             seconds = 100.0 if duration is None else duration
             result: Any = compute(system, seconds, start=_state(start), tolerance=tolerance)
             written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot())
         else:
-            line = read_line(file, load_case)
+            line = read_line(file, load_case, reference_systems())
             unit = read_unit(line, unit)
             _check(to)
-            profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit), duration)
+            profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
             length = None if duration is not None else 20.0 if turns is None else turns
             result = compute(line, duration, speed=profile, turns=length, start=_state(start), tolerance=tolerance)
             written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
     if as_json:
         output.write_json("simulate", _simulation_json(result, written))
-        return
-    _print(str(result), written)
+    else:
+        _print(str(result), written)
+    output.finish(result.outcome, written)
 
 
 def periodic_response(
@@ -84,6 +98,9 @@ def periodic_response(
     ],
     speed: Speed = None,
     periods: Annotated[int, typer.Option("--periods", help="Of the excitation in one of the motion.", min=1)] = 1,
+    period: Annotated[
+        str | None, typer.Option("--period", help='Guess for a system without excitation: "1.5 s", or a number in s.')
+    ] = None,
     start: START = None,
     parameters: Set = None,
     unit: Unit = None,
@@ -101,13 +118,18 @@ def periodic_response(
     with output.compile_notice():
         system = _system(file, parameters)
         if system is not None:
-            _no_speed(speed or load_case)
-            result = compute(system, start=_state(start), periods=periods)
+            _only_for_lines(("--speed", speed), ("--load-case", load_case))
+            guess = read_time(period, "--period")
+            _check(to)
+            result = compute(system, start=_state(start), period=guess, periods=periods)
         else:
-            line = read_line(file, load_case)
+            line = read_line(file, load_case, reference_systems())
             unit = read_unit(line, unit)
+            if period is not None:
+                remedy = "leave it out; the speed of a driveline gives it"
+                raise InputError("belongs to reference systems", key="--period", value=period, remedy=remedy)
+            _check(to)
             result = compute(line, read_speed(speed, unit), start=_state(start), periods=periods)
-        _check(to)
     result.outcome.require()
     shown = unit or "rad/s"
     of_line = isinstance(result, PeriodicResponse)
@@ -143,8 +165,8 @@ def run_up(
     """
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
-    low, high = _range(line, read_speed(first, unit), read_speed(last, unit))
-    rate = read_speed(acceleration, unit)
+    low, high = _range(line, read_speed(first, unit, "--from"), read_speed(last, unit, "--to"))
+    rate = read_speed(acceleration, unit, "--acceleration")
     assert rate is not None
     from trunnion.analyses.run_up import run_up as compute
     from trunnion.analyses.run_up import safe_accelerations
@@ -191,9 +213,10 @@ def _system(name: str, parameters: list[str] | None) -> System | None:
     return reference_system(name, **values)
 
 
-def _no_speed(given: str | None) -> None:
-    if given is not None:
-        raise InputError("belongs to drivelines", key="--speed", value=given, remedy="use --set for a reference system")
+def _only_for_lines(*given: tuple[str, object], remedy: str = "use --set for a reference system") -> None:
+    for key, value in given:
+        if value is not None:
+            raise InputError("belongs to drivelines", key=key, value=value, remedy=remedy)
 
 
 def _is_number(text: str) -> bool:

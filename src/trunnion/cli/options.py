@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -35,13 +36,20 @@ Points = Annotated[str, typer.Option("--points", metavar="NXxNY", help="Points a
 AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30deg:300"'
 
 
-def read_line(file: str, load_case: str | None = None) -> Driveline:
-    """The driveline in a file, or of the catalogue where no such file exists."""
-    line = _file_or_catalogue(file)
+def read_line(file: str, load_case: str | None = None, besides: Sequence[str] = ()) -> Driveline:
+    """The driveline in a file, or of the catalogue where no such file exists; ``besides`` are also names to tell."""
+    line = _file_or_catalogue(file, besides)
     return line if load_case is None else line.with_load(load_case)
 
 
-def _file_or_catalogue(file: str) -> Driveline:
+def reference_systems() -> Sequence[str]:
+    """Names that stand for equations of motion, not for drivelines."""
+    from trunnion.systems.reference import SYSTEMS
+
+    return tuple(SYSTEMS)
+
+
+def _file_or_catalogue(file: str, besides: Sequence[str]) -> Driveline:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import load
     from trunnion.driveline.refusals import nearest
@@ -57,8 +65,8 @@ def _file_or_catalogue(file: str) -> Driveline:
             remedy = f"use it with {rattle if file == 'gear-rattle' else chaos} or reproduce {file}"
             raise InputError("is no driveline but equations of motion", key="FILE", value=file, remedy=remedy)
         return line
-    problem = "is neither a file nor a name of the catalogue"
-    raise InputError(problem, key="FILE", value=file, remedy=nearest(file, names))
+    problem = "is neither a file nor a name of the catalogue" + (" or of a reference system" if besides else "")
+    raise InputError(problem, key="FILE", value=file, remedy=nearest(file, [*names, *besides]))
 
 
 def file_stem(file: str) -> str:
@@ -87,6 +95,29 @@ def read_speed(text: str | None, unit: str, key: str = "--speed") -> float | Non
     if not speed > 0:
         raise InputError("must be positive", key=key, value=text, remedy='write "1500 rpm", say')
     return speed
+
+
+def read_time(text: str | None, key: str) -> float | None:
+    """``"20 ms"``, or a bare number of seconds, as a positive time in seconds."""
+    if text is None:
+        return None
+    from trunnion.driveline.quantities import Kind, parse
+
+    try:
+        time = float(text) if _is_number(text) else parse(text, Kind("time", "s", "2.5 s"))
+    except InputError as error:
+        raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
+    if not (math.isfinite(time) and time > 0):
+        raise InputError("must be a positive time", key=key, value=text, remedy='write "2.5 s", say')
+    return time
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def read_axis(text: str, assembly: Assembly, unit: str, points: int, key: str) -> tuple[object, ...]:

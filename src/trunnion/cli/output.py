@@ -9,9 +9,11 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
+from trunnion.errors import ComputationError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from trunnion.results.finding import Finding
+    from trunnion.results.outcome import Outcome
 
 LONG = 10.0
 """Seconds between lines of progress where stderr is not a terminal."""
@@ -83,6 +86,13 @@ def _plain(value: Any) -> Any:
     if isinstance(value, complex):
         return {"real": _plain(value.real), "imag": _plain(value.imag)}
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def finish(outcome: Outcome, written: Sequence[Path] = ()) -> None:
+    """Exit code 1 with the sentence of a failed outcome, once what was computed is written and printed."""
+    if not outcome.ok:
+        kept = f"; what was computed is in {', '.join(map(str, written))}" if written else ""
+        raise ComputationError(f"{outcome}{kept}")
 
 
 def note(text: str) -> None:

@@ -14,7 +14,7 @@ from trunnion.analyses.lyapunov_map import LyapunovMap, LyapunovSweep
 from trunnion.analyses.lyapunov_result import LyapunovSpectrum
 from trunnion.analyses.poincare_map import PoincareMap
 from trunnion.numerics.integration import integrate
-from trunnion.plots.kinetostatics import COLOURS
+from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
 from trunnion.systems.system import System
 
@@ -27,6 +27,8 @@ PORTRAIT = 60
 """Periods of a motion in its portrait."""
 FEW = 6
 """The smaller number of points of a map, as a share of all: one in so many."""
+INSIDE = 6
+"""Exponents whose names have room inside a panel of the certificate."""
 SMALLEST_DOTS = 400
 """Points of a map above which they are drawn as small as can be seen."""
 
@@ -36,15 +38,15 @@ def draw_convergence(result: LyapunovSpectrum, axes: Axes | None = None) -> Axes
     axes = axes or new_axes(7.2, 4.2)
     time, means = result.histories
     for j in range(len(result.exponents)):
-        colour = COLOURS[j % len(COLOURS)]
+        look, colour = _look(j), COLOURS[j % len(COLOURS)]
         for i, history in enumerate(means):
-            axes.plot(time, history[:, j], color=colour, lw=1.1, label=f"L{j + 1}" if i == 0 else None, alpha=0.8)
+            axes.plot(time, history[:, j], **look, lw=1.1, label=f"L{j + 1}" if i == 0 else None, alpha=0.8)
         value, width = result.exponents[j], result.half_width[j]
         axes.axhspan(value - width, value + width, color=colour, alpha=0.25, lw=0)
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
     axes.set_xscale("log")
     _labels(axes, "time averaged over [s]", "exponent [1/s]")
-    if len(time):
+    if len(time) > 1:
         axes.set_xlim(time[0], time[-1])
     _legend(axes)
     return axes
@@ -55,7 +57,7 @@ def draw_map(
 ) -> Axes:
     """Points of a Poincaré map: one state over another, by default the first two that differ along the map."""
     axes = axes or new_axes(5.2, 4.6)
-    i, j = _pair(result.system, x, y)
+    i, j = _pair(result.system, x, y, result.section)
     shown = result.wrapped if points is None else result.wrapped[:points]
     crowd = len(shown) > SMALLEST_DOTS
     look: dict[str, Any] = {"marker": ".", "ls": "", "color": COLOURS[0], "ms": 2.0 if crowd else 5.0, "mew": 0}
@@ -65,7 +67,7 @@ def draw_map(
     if result.repeat:
         _widen(axes, result, i, j)
     _labels(axes, _named(result.system, i), _named(result.system, j))
-    axes.set_title(f"{len(shown)} points", fontsize=SMALL, color=FAINT, loc="left")
+    axes.set_title(f"{len(shown)} point{'s' * (len(shown) != 1)}", fontsize=SMALL, color=FAINT, loc="left")
     return axes
 
 
@@ -91,7 +93,7 @@ def draw_sweep(result: LyapunovSweep, axes: Axes | None = None, *, mark: float |
     for j in range(result.exponents.shape[1]):
         value, width, colour = result.exponents[:, j], result.half_width[:, j], COLOURS[j % len(COLOURS)]
         axes.fill_between(result.values, value - width, value + width, color=colour, alpha=0.25, lw=0)
-        axes.plot(result.values, value, color=colour, lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
+        axes.plot(result.values, value, **_look(j), lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
     if mark is not None:
         axes.axvline(mark, color=FAINT, lw=0.8, ls=(0, (1, 2)))
@@ -137,13 +139,13 @@ def draw_certificate(result: ChaosCertificate) -> Figure:
     _portrait(result, grid[0, 0])
     if result.sweep is not None:
         draw_sweep(result.sweep, grid[0, 1], mark=result.system.parameters[result.sweep.parameter])
-        grid[0, 1].legend(fontsize=SMALL, frameon=False, loc="best")
+        _panel_legend(grid[0, 1])
     else:
         _convergence_panel(result.spectrum, grid[0, 1])
     for axes, share in zip(grid[1], (FEW, 1), strict=True):
         if result.map is None or not len(result.map.points):
             axes.set_axis_off()
-            axes.text(0.5, 0.5, "no map", ha="center", va="center", fontsize=TEXT, color=FAINT)
+            axes.text(0.5, 0.5, _no_map(result), ha="center", va="center", fontsize=TEXT, color=FAINT)
             continue
         draw_map(result.map, axes, points=max(len(result.map.points) // share, 1))
     return figure
@@ -152,11 +154,11 @@ def draw_certificate(result: ChaosCertificate) -> Figure:
 def _convergence_panel(spectrum: LyapunovSpectrum, axes: Axes) -> None:
     time, means = spectrum.histories
     for j in range(len(spectrum.exponents)):
-        axes.plot(time, means[0, :, j], color=COLOURS[j % len(COLOURS)], lw=1.2, label=f"L{j + 1}")
+        axes.plot(time, means[0, :, j], **_look(j), lw=1.2, label=f"L{j + 1}")
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
     axes.set_xscale("log")
     _labels(axes, "time averaged over [s]", "exponent [1/s]")
-    axes.legend(fontsize=SMALL, frameon=False, loc="best")
+    _panel_legend(axes)
 
 
 def _portrait(result: ChaosCertificate, axes: Axes) -> None:
@@ -174,6 +176,10 @@ def _portrait(result: ChaosCertificate, axes: Axes) -> None:
         for k in {i, j} & set(turning):  # no line across the page where an angle starts anew
             path[1:][np.abs(np.diff(path[:, k])) > np.pi] = np.nan
         axes.plot(path[:, i], path[:, j], color=COLOURS[0], lw=0.5)
+        rests = [np.ptp(path[:, k]) < 1e-4 * np.abs(path[:, k]).max() for k in (i, j)]
+        if all(rests):
+            axes.plot(path[-1, i], path[-1, j], "o", color=COLOURS[0], ms=5)
+        _open(axes, system, i, j)
     _labels(axes, _named(system, i), _named(system, j))
     word = "period" if system.forcing_period is not None else "sample"
     axes.set_title(f"portrait over {PORTRAIT} {word}s", fontsize=SMALL, color=FAINT, loc="left")
@@ -188,13 +194,46 @@ def _widen(axes: Axes, result: PoincareMap, i: int, j: int) -> None:
             change(middle - 0.5 * size, middle + 0.5 * size)
 
 
-def _pair(system: System, x: str, y: str) -> tuple[int, int]:
-    """Places of two states: those named, or a rotation and its rate, or the first two."""
+def _open(axes: Axes, system: System, i: int, j: int) -> None:
+    """Show a motion at rest as a point, not the rounding errors about it."""
+    for k, limits, change in ((i, axes.get_xlim(), axes.set_xlim), (j, axes.get_ylim(), axes.set_ylim)):
+        middle = 0.5 * (limits[0] + limits[1])
+        size = max(abs(middle), 1e-6 * float(np.asarray(system.scale)[k]))
+        if limits[1] - limits[0] < 1e-4 * size:
+            change(middle - 0.1 * size, middle + 0.1 * size)
+
+
+def _no_map(result: ChaosCertificate) -> str:
+    """Why there is none."""
+    import textwrap
+
+    reason = next((r for r in result.reasons if r.startswith("no map")), f"no map: {(*result.reasons, 'no points')[0]}")
+    return textwrap.fill(reason, 44)
+
+
+def _look(j: int) -> dict[str, Any]:
+    """Colours first, then the same colours dashed."""
+    return {"color": COLOURS[j % len(COLOURS)], "ls": DASHES[j // len(COLOURS) % len(DASHES)]}
+
+
+def _panel_legend(axes: Axes) -> None:
+    """Inside where there is room for it, beside the axes where the exponents are many."""
+    many = len(axes.get_legend_handles_labels()[1]) > INSIDE
+    place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if many else {"loc": "best"}
+    axes.legend(fontsize=SMALL, frameon=False, **place)
+
+
+def _pair(system: System, x: str, y: str, section: str = "") -> tuple[int, int]:
+    """Places of two states: those named, or a rotation and its rate, or the first two that vary on the section."""
     names = system.states
     half = len(names) // 2 if names[0].startswith("rotation of ") else min(1, len(names) - 1)
     if "rate" in names:
         half = names.index("rate")
-    return (names.index(x) if x else 0), (names.index(y) if y else half)
+    pair = (0, half)
+    varied = [k for k, name in enumerate(names) if not section.startswith(f"{name} = ")]
+    if not {*pair} <= {*varied} and len(varied) > 1:
+        pair = (varied[0], varied[1])
+    return (names.index(x) if x else pair[0]), (names.index(y) if y else pair[1])
 
 
 def _named(system: System, i: int) -> str:

@@ -19,6 +19,7 @@ from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.patches import Box, Patch, PatchedFunction
 from trunnion.results.files import written_whole
+from trunnion.results.units import with_unit
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 if TYPE_CHECKING:
@@ -237,8 +238,8 @@ class StabilityChart:
             worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
             lines.append(
                 f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
-                f"{self.x_label} = {self.x[worst[1]]:.6g}{_unit(self.x_unit)}, "
-                f"{self.y_label} = {self.y[worst[0]]:.6g}{_unit(self.y_unit)}"
+                f"{self.x_label} = {with_unit(f'{self.x[worst[1]]:.6g}', self.x_unit)}, "
+                f"{self.y_label} = {with_unit(f'{self.y[worst[0]]:.6g}', self.y_unit)}"
             )
             middle = np.nanmedian(self.error_estimate)
             lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")
@@ -358,10 +359,6 @@ def _inside(axis: Array, request: Sequence[float | str], label: str) -> Array:
             remedy="give low < high inside it and at least one point",
         )
     return np.geomspace(low, high, points) if scale == "log" else np.linspace(low, high, points)
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else f" {unit}"
 
 
 def _label(parameter: str | Parameter) -> str:

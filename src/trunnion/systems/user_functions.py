@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 RAISED, WRONG_SHAPE = 1, 2
 STEP = 1e-3
 """Step of the fourth-order differences, in units of a state's scale: 1e-12 of truncation and of rounding."""
+REACH = 1e-6
+"""Of a state's size, what its scale counts as at least: a step below rounding would find no slope at all."""
 
 _POINTER = types.CPointer(types.float64)
 RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER)
@@ -228,24 +230,26 @@ def rate_function(
             try:
                 failed = store(out[:size], uniform(t, y[:size], p, regime))
                 if k > 0:
-                    x, f = np.empty(size), np.empty(size)
+                    x, ahead, behind = np.empty(size), np.empty(size), np.empty(size)
                     for b in range(1, k + 1):
                         v, slope = y[b * size : (b + 1) * size], out[b * size : (b + 1) * size]
                         length = 0.0
                         for i in range(size):
-                            length = max(length, abs(v[i]) / scales[i])
+                            length = max(length, abs(v[i]) / max(scales[i], REACH * abs(y[i])))
                         slope[:] = 0.0
                         if length == 0.0:
                             continue
                         h = step / length
-                        for m in range(4):
-                            move = (-2.0, -1.0, 1.0, 2.0)[m]
+                        # In pairs, so that what does not depend on the state cancels exactly.
+                        for move, factor in ((1.0, 8.0), (2.0, -1.0)):
                             for i in range(size):
                                 x[i] = y[i] + move * h * v[i]
-                            failed = max(failed, store(f, uniform(t, x, p, regime)))
-                            factor = (1.0, -8.0, 8.0, -1.0)[m] / (12 * h)
+                            failed = max(failed, store(ahead, uniform(t, x, p, regime)))
                             for i in range(size):
-                                slope[i] += factor * f[i]
+                                x[i] = y[i] - move * h * v[i]
+                            failed = max(failed, store(behind, uniform(t, x, p, regime)))
+                            for i in range(size):
+                                slope[i] += factor / (12 * h) * (ahead[i] - behind[i])
             except Exception:
                 failed = 1
             return failed
@@ -285,12 +289,12 @@ def rate_function(
 
 
 def _differences(f: Callable[[Array], Any], x: Array, v: Array, scale: Array) -> Array:
-    length = float(np.max(np.abs(v) / scale, initial=0.0))
+    length = float(np.max(np.abs(v) / np.maximum(scale, REACH * np.abs(x)), initial=0.0))
     if length == 0.0:
         return np.zeros_like(x)
     h = STEP / length
     parts = [np.asarray(f(x + m * h * v), dtype=float) for m in (-2, -1, 1, 2)]
-    return np.asarray((parts[0] - 8 * parts[1] + 8 * parts[2] - parts[3]) / (12 * h))
+    return np.asarray((8 * (parts[2] - parts[1]) - (parts[3] - parts[0])) / (12 * h))
 
 
 def guard_function(
