@@ -170,6 +170,10 @@ REFUSED = [
         "would bend HookeJoint 1 by 94.538°",
     ),
     (
+        lambda c: tn.stability_chart(_uneven_pair(), ("speed", 1, 2, 5), ("HookeJoint 1.angle", 0, 30, 5)),
+        'numbers are radians: write "30 deg"',
+    ),
+    (
         lambda c: tn.stability_chart(_uneven_pair(), ("speed", -2, 2, 5), ("HookeJoint 1.angle", 0, 0.1, 5)),
         "speed.range = -2: cannot be negative",
     ),

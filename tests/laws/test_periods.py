@@ -138,3 +138,24 @@ def test_joint_behind_two_joints_and_a_ratio(gear: tuple[int, int]) -> None:
     found, _ = chain_radius(case, speeds)
     dense = [tn.stability(case, float(s)).spectral_radius for s in speeds]
     assert found == pytest.approx(dense, abs=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.2])
+def test_what_dies_out_belongs_to_no_resonance(angle: float) -> None:
+    """Beside a sum resonance, a stable line's slowest decay is a mode's own."""
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=1, damping=0.1), tn.Disk(inertia=1), tn.HookeJoint(angle=angle),
+         tn.Shaft(stiffness=1, damping=0.1), tn.Disk(inertia=1)]
+    )  # fmt: skip
+    first, second = tn.natural_frequencies(line).frequency
+    found = tn.stability(line, speed=float(first + second) / 2 * 1.02)
+    assert found.verdict.name == "STABLE" and found.resonance is None and "belongs" not in str(found)
+
+
+def test_a_motion_too_fast_for_any_step_is_refused_before_it_fills_the_memory() -> None:
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=1e18, damping=0.1), tn.Disk(inertia=1), tn.HookeJoint(angle=0.2),
+         tn.Shaft(stiffness=1, damping=0.1), tn.Disk(inertia=1)]
+    )  # fmt: skip
+    with pytest.raises(tn.ComputationError, match="a stiffness is very large or an inertia very small"):
+        tn.stability(line, speed=1.0)

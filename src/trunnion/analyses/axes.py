@@ -164,6 +164,10 @@ def _clip(assembly: Assembly, columns: Columns, low: float, high: float) -> tupl
         return _clip_speed(assembly, columns, low, high)
     if not (columns.unit == "rad" and columns.label.endswith(".angle")):
         return low, high, None
+    if max(abs(low), abs(high)) > np.pi:
+        worst = high if abs(high) > abs(low) else low
+        remedy = f'numbers are radians: write "{worst:g} deg" or tn.deg({worst:g})'
+        raise InputError("lies beyond half a turn", element=columns.label, key="range", value=worst, remedy=remedy)
     if low >= STEEPEST_ANGLE or high <= -STEEPEST_ANGLE:
         raise InputError("must reach below 89°", element=columns.label, key="range", value=low)
     clipped = float(np.clip(low, -STEEPEST_ANGLE, None)), float(np.clip(high, None, STEEPEST_ANGLE))
@@ -197,7 +201,8 @@ def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -
     if low < 0:
         raise InputError("cannot be negative", element=columns.label, key="range", value=low, remedy="start above zero")
     if low < least:
-        said = f"the {columns.label} axis starts at {least:.4g} {columns.unit} ({turning:.4g} rpm) instead of {low:g}"
+        asked = f"{low:.5g} {columns.unit} ({low * slope * 60 / (2 * np.pi):.4g} rpm)"
+        said = f"the {columns.label} axis starts at {least:.4g} {columns.unit} ({turning:.4g} rpm) instead of {asked}"
         return least, high, f"{said}: {why}"
     return low, high, None
 

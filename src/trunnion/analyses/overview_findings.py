@@ -117,12 +117,14 @@ def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
         column = int(np.argmax(np.where(bad, chart.spectral_radius[row], -np.inf)))
         yield Finding(
             Gravity.CAUTION,
-            "With all joints at one angle, the first instability in the chart is at "
+            "With all joints at one angle, the first unstable point of the chart is at "
             f"{np.rad2deg(chart.y[row]):.3g}° and {_speed(float(chart.x[column]), unit)}; "
             f"{100 * chart.unstable_share:.2g} % of the chart is unstable.",
         )
     else:
-        yield Finding(Gravity.NOTE, f"With all joints at one angle, nothing in the chart is unstable up to {top:.3g}°.")
+        yield Finding(
+            Gravity.NOTE, f"With all joints at one angle, no point of the chart is unstable up to {top:.3g}°."
+        )
     yield from _unsettled(chart, "in the chart")
 
 

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 KINDS = ("harmonic", "subharmonic", "sum", "difference")
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+LOCKED = 0.7
+"""Radians over a period between a mode and the multiplier that it is locked into, at most."""
 
 
 @dataclass(frozen=True)
@@ -157,6 +159,12 @@ def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:
     return found
 
 
+def _turned(frequency: float, half_turns: Fraction, multiplier: complex) -> float:
+    """How far [rad] the turn of a mode over the period is from that of a multiplier, forward or backward."""
+    turn, angle = frequency * np.pi * float(half_turns), float(np.angle(multiplier))
+    return float(min(abs(np.angle(np.exp(1j * (turn - side * angle)))) for side in (-1, 1)))
+
+
 def nearest_resonance(
     frequency: np.ndarray,
     multiplier: complex,
@@ -170,8 +178,8 @@ def nearest_resonance(
     ``frequency`` are natural frequencies over the input speed, so that speed 1 is where the line runs;
     ``half_turns`` is the period of the multiplier in half turns of the input. A mode locked to m times a joint's
     excitation 2RΩ turns by m R π in every half turn, so over the period a real multiplier must have the sign
-    of cos(m R π half_turns); a complex one belongs to a sum. Among those that fit and lie
-    within a relative distance ``farthest`` in speed, the nearest.
+    of cos(m R π half_turns); a complex one belongs to a sum if it turns as both its modes do. Among those that
+    fit and lie within a relative distance ``farthest`` in speed, the nearest.
     """
     real = abs(multiplier.imag) <= 1e-7 * abs(multiplier)
     candidates = []
@@ -183,6 +191,7 @@ def nearest_resonance(
                 fits = real and sign * multiplier.real > 0.99 * abs(multiplier.real)
             else:
                 fits = r.kind == "sum" and (not real or half_turns != 1)
+                fits = fits and all(_turned(frequency[i - 1], half_turns, multiplier) < LOCKED for i in r.modes)
             if fits and abs(np.log(r.speed)) <= farthest:
                 candidates.append(r)
     return min(candidates, key=lambda r: (round(abs(np.log(r.speed)), 9), r.order)) if candidates else None

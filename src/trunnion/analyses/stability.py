@@ -227,8 +227,8 @@ def _judge(
     undamped = abs(run.damping_trace) < 1e-13 * system.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
     named = None
-    if len(kept):
-        # Tongues are wide at large angles: what is unstable is named from further away.
+    if len(kept) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+        # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
         farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
         named = nearest_resonance(frequency, complex(values[kept[0]]), rates, half_turns, farthest)
     if named is not None:

@@ -69,6 +69,11 @@ def propagate(
     """
     scale, steps = _scales(coefficients, period, size)
     steps = max(steps, least_steps)
+    if steps >= MOST_STEPS:
+        raise ComputationError(
+            f"the fastest motion needs {steps} steps a period, more than {MOST_STEPS}: a stiffness is very large or an "
+            "inertia very small beside the others; join the parts rigidly, or raise the speed"
+        )
     coarse = _run(coefficients, period, size, steps, scale)
     while steps < MOST_STEPS:
         steps *= 2

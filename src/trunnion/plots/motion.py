@@ -136,6 +136,9 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
     return axes
 
 
+HATCHES = ("", "////", "xxxx", "....", "||||", "----", "\\\\\\\\")
+
+
 def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: float = 12.0) -> Axes:
     """Torque amplitude of every order, mean left out, on a logarithmic axis of four decades."""
     axes = axes or new_axes(7.2, 4.0)
@@ -145,7 +148,9 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
     width = 0.8 * gap / count
     for i, name in enumerate(result.shafts):
         place = orders + (i - (count - 1) / 2) * width
-        axes.bar(place, amplitude[:, i], width, label=name, color=COLOURS[i % len(COLOURS)])
+        # Hatched, for those who print in grey.
+        colour, hatch = COLOURS[i % len(COLOURS)], HATCHES[i % len(HATCHES)]
+        axes.bar(place, amplitude[:, i], width, label=name, color=colour, hatch=hatch, edgecolor="white", lw=0.3)
     top = float(amplitude.max()) if amplitude.size else 1.0
     if top > 0:
         axes.set_yscale("log")

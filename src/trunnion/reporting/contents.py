@@ -103,11 +103,13 @@ def _limit_findings(limit: StableLimit, seen: Overview) -> list[Finding]:
         start = f"{np.rad2deg(limit.low):.3g}°"
         return [Finding(Gravity.DANGER, f"Even at {start} in all joints the line is unstable, at {where}.")]
     value = np.rad2deg(limit.smallest)
+    angles = [abs(getattr(e, "angle", 0.0)) for e in seen.line.elements]
+    beyond = max(angles, default=0.0) > limit.smallest
     return [
         Finding(
-            Gravity.NOTE,
-            f"Up to {value:.3g}° in all joints the line is stable over the whole speed range (scanned to {end}); "
-            f"the limit is set at {where}.",
+            Gravity.CAUTION if beyond else Gravity.NOTE,
+            f"At the resonance speeds too, which may lie between the chart's points, the line is stable up to "
+            f"{value:.3g}° in all joints (scanned to {end}); the limit is set at {where}.",
         )
     ]
 
@@ -126,7 +128,8 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
     found = [
         Finding(
             Gravity.NOTE,
-            f"The joints force a torque amplitude of up to {most:.10g} N·m, in {sweep.shafts[j]} at {at}.",
+            f"Where linear theory holds, the joints force a torque amplitude of up to {most:.10g} N·m, in "
+            f"{sweep.shafts[j]} at {at}.",
         )
     ]
     beyond = ~sweep.linear
