@@ -5,6 +5,7 @@ import pickle
 import warnings
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from trunnion.driveline import (
@@ -145,7 +146,7 @@ def test_negative_damping_is_a_remark():
 def test_large_angles_are_no_remark_in_python():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        HookeJoint(angle="60 deg")
+        assert HookeJoint(angle="60 deg").angle == pytest.approx(np.pi / 3)
 
 
 def test_names_are_given_or_ordinal_per_kind():

@@ -6,6 +6,7 @@ import warnings
 import lines
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import trunnion as tn
 from trunnion.analyses.kinetostatics.measures import extremes, parts
@@ -202,7 +203,12 @@ def test_sketches(what):
     }[what]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        tn.sketch(subject, input_angle=0.3).canvas.draw()
+        figure = tn.sketch(subject, input_angle=0.3)
+        figure.canvas.draw()
+    shown = " ".join(t.get_text() for t in figure.findobj(Text))
+    joints = {"line": 2, "layout": 3, "tripod": 1}[what]
+    kind = "TripodJoint" if what == "tripod" else "HookeJoint"
+    assert all(f"{kind} {k}" in shown for k in range(1, joints + 1)) and "Shaft 1" in shown
 
 
 SIX = tn.layout(

@@ -16,6 +16,7 @@ from trunnion.cli.options import (
     Speed,
     Unit,
     file_stem,
+    is_number,
     read_line,
     read_speed,
     read_time,
@@ -175,7 +176,7 @@ def run_up(
     torque = None
     if limit is not None:
         try:
-            torque = parse(float(limit) if _is_number(limit) else limit, TORQUE)
+            torque = parse(float(limit) if is_number(limit) else limit, TORQUE)
         except InputError as error:
             raise InputError(error.problem, key="--limit", value=limit, remedy=error.remedy) from None
     _check(to)
@@ -207,7 +208,7 @@ def _system(name: str, parameters: list[str] | None) -> System | None:
     values = {}
     for text in parameters or ():
         key, _, value = text.partition("=")
-        if not _is_number(value):
+        if not is_number(value):
             raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
         values[key.strip()] = float(value)
     return reference_system(name, **values)
@@ -219,19 +220,11 @@ def _only_for_lines(*given: tuple[str, object], remedy: str = "use --set for a r
             raise InputError("belongs to drivelines", key=key, value=value, remedy=remedy)
 
 
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
 def _state(text: str | None) -> list[float] | None:
     if text is None:
         return None
     parts = text.split(",")
-    if not all(_is_number(part) for part in parts):
+    if not all(is_number(part) for part in parts):
         raise InputError("is not a list of numbers", key="--start", value=text, remedy='write "0.1,0"')
     return [float(part) for part in parts]
 

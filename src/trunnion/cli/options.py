@@ -104,7 +104,7 @@ def read_time(text: str | None, key: str) -> float | None:
     from trunnion.driveline.quantities import Kind, parse
 
     try:
-        time = float(text) if _is_number(text) else parse(text, Kind("time", "s", "2.5 s"))
+        time = float(text) if is_number(text) else parse(text, Kind("time", "s", "2.5 s"))
     except InputError as error:
         raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
     if not (math.isfinite(time) and time > 0):
@@ -112,7 +112,8 @@ def read_time(text: str | None, key: str) -> float | None:
     return time
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a bare number, without a unit."""
     try:
         float(text)
     except ValueError:
