@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,9 @@ Array = NDArray[np.float64]
 
 
 class ChartFamily(Protocol):
-    """Anything a chart can be made of."""
+    """Anything a chart can be made of; ``affordable``: points that may each be integrated to settle doubts."""
+
+    affordable: ClassVar[int]
 
     @property
     def size(self) -> int:
@@ -96,6 +98,7 @@ class LineFamily:
     y: Axis
     speed: float
     statically_twisted: bool
+    affordable: ClassVar[int] = 200_000
 
     @property
     def size(self) -> int:
@@ -286,6 +289,7 @@ class OwnFamily:
     y_name: str
     middle: tuple[float, float]
     rigid_body: bool = False
+    affordable: ClassVar[int] = 2_000
 
     @property
     def size(self) -> int:
@@ -370,6 +374,7 @@ class PatchesAlone:
     size: int
     period: float
     rigid_body: bool = False
+    affordable: ClassVar[int] = 0
 
     @classmethod
     def of(cls, function: PatchedFunction, period: float) -> PatchesAlone | None:

@@ -33,8 +33,6 @@ Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 SPOTS = 24
 """Random pixels at which a chart checks itself."""
-MOST_DOUBTS = 50_000
-"""Undecided pixels up to which each is integrated by itself."""
 
 
 def stability_chart(
@@ -232,7 +230,7 @@ def _decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: 
     still shows; there are few such pixels in most charts.
     """
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
-    if family.rigid_body or not 0 < len(rows) <= MOST_DOUBTS:
+    if family.rigid_body or not 0 < len(rows) <= family.affordable:
         return
     found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
     better = found.error < pixels.error[rows, columns]
