@@ -23,10 +23,10 @@ from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.equations.staged_line import staged_line
-from trunnion.numerics.integration import integrate
-from trunnion.numerics.piecewise import move
-from trunnion.numerics.staged_flow import StagedFlow, stages_of
-from trunnion.numerics.staged_flow import move as move_line
+from trunnion.numerics.integration.integration import integrate
+from trunnion.numerics.piecewise_linear.piecewise import move
+from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, stages_of
+from trunnion.numerics.piecewise_linear.staged_flow import move as move_line
 
 LOW, HIGH, ACCURACY = 0.3, 1.3, 1e-6
 PAIR = tn.catalogue("gear-rattle")

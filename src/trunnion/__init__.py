@@ -15,16 +15,14 @@ from typing import TYPE_CHECKING, Any
 from trunnion._version import __version__
 
 if TYPE_CHECKING:
-    from trunnion.analyses.averaging import averaging
-    from trunnion.analyses.bending import bending_speeds
-    from trunnion.analyses.bifurcation_diagram import bifurcation_diagram
-    from trunnion.analyses.certify_chaos import certify_chaos
-    from trunnion.analyses.chaos_zero_one import zero_one_test
-    from trunnion.analyses.describing_function import DescribingFunction
-    from trunnion.analyses.exact_motion import exact_motion
-    from trunnion.analyses.frequency_response import compare_responses, frequency_response
-    from trunnion.analyses.harmonic_balance import harmonic_balance
-    from trunnion.analyses.harmonic_balance_springs import balance_springs
+    from trunnion.analyses.chaos.bifurcation_diagram import bifurcation_diagram
+    from trunnion.analyses.chaos.certify_chaos import certify_chaos
+    from trunnion.analyses.chaos.chaos_zero_one import zero_one_test
+    from trunnion.analyses.chaos.lyapunov_map import lyapunov_map, lyapunov_sweep
+    from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum
+    from trunnion.analyses.chaos.poincare_map import poincare_map
+    from trunnion.analyses.charts.stability_chart import load_chart, stability_chart
+    from trunnion.analyses.charts.stable_limit import stable_limit
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -32,24 +30,26 @@ if TYPE_CHECKING:
         kinetostatics,
         phase_forks,
     )
-    from trunnion.analyses.lyapunov_map import lyapunov_map, lyapunov_sweep
-    from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum
-    from trunnion.analyses.multiple_scales import multiple_scales
-    from trunnion.analyses.natural_frequencies import natural_frequencies
-    from trunnion.analyses.order_map import order_map
-    from trunnion.analyses.periodic_branch import periodic_branch
-    from trunnion.analyses.periodic_response import periodic_response
-    from trunnion.analyses.piecewise_branch import piecewise_branch
-    from trunnion.analyses.piecewise_orbit import piecewise_orbit
-    from trunnion.analyses.piecewise_sweep import basins, rattle_index, sweep
-    from trunnion.analyses.poincare_map import poincare_map
-    from trunnion.analyses.resonance_speeds import resonance_speeds
-    from trunnion.analyses.run_up import run_up, safe_accelerations
-    from trunnion.analyses.simulate import simulate
-    from trunnion.analyses.speed_sweep import speed_sweep, sweep_speeds
-    from trunnion.analyses.stability import stability
-    from trunnion.analyses.stability_chart import load_chart, stability_chart
-    from trunnion.analyses.stable_limit import stable_limit
+    from trunnion.analyses.linear.bending import bending_speeds
+    from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+    from trunnion.analyses.linear.resonance_speeds import resonance_speeds
+    from trunnion.analyses.linear.speed_sweep import speed_sweep, sweep_speeds
+    from trunnion.analyses.linear.stability import stability
+    from trunnion.analyses.motion.exact_motion import exact_motion
+    from trunnion.analyses.motion.order_map import order_map
+    from trunnion.analyses.motion.run_up import run_up, safe_accelerations
+    from trunnion.analyses.motion.simulate import simulate
+    from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response
+    from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
+    from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs
+    from trunnion.analyses.orbits.periodic_branch import periodic_branch
+    from trunnion.analyses.orbits.periodic_response import periodic_response
+    from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
+    from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
+    from trunnion.analyses.orbits.piecewise_sweep import basins, rattle_index, sweep
+    from trunnion.analyses.perturbation.averaging import averaging
+    from trunnion.analyses.perturbation.describing_function import DescribingFunction
+    from trunnion.analyses.perturbation.multiple_scales import multiple_scales
     from trunnion.driveline import (
         ConstantSpeed,
         Disk,
@@ -82,9 +82,9 @@ if TYPE_CHECKING:
     from trunnion.equations.speed_profile import SpeedProfile
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.plots.layout import sketch
-    from trunnion.published import catalogue
     from trunnion.reporting import report
-    from trunnion.reproduction import reproduce
+    from trunnion.studies.entries import catalogue
+    from trunnion.studies.reproduce import reproduce
     from trunnion.systems.events import Event
     from trunnion.systems.family import PeriodicLinearFamily
     from trunnion.systems.gear_pair import base_radius, gear_pair
@@ -122,7 +122,7 @@ _HOME = {
     "combined_angle": "trunnion.driveline.layout",
     "cardan_line": "trunnion.driveline.cardan_angles",
     "sketch": "trunnion.plots.layout",
-    "catalogue": "trunnion.published",
+    "catalogue": "trunnion.studies.entries",
     "deg": "trunnion.driveline",
     "rpm": "trunnion.driveline",
     "hz": "trunnion.driveline",
@@ -131,16 +131,16 @@ _HOME = {
     "Term": "trunnion.driveline.parameters",
     "pack": "trunnion.driveline.parameters",
     # analyse
-    "natural_frequencies": "trunnion.analyses.natural_frequencies",
-    "resonance_speeds": "trunnion.analyses.resonance_speeds",
-    "stability": "trunnion.analyses.stability",
-    "stability_chart": "trunnion.analyses.stability_chart",
-    "load_chart": "trunnion.analyses.stability_chart",
-    "stable_limit": "trunnion.analyses.stable_limit",
-    "speed_sweep": "trunnion.analyses.speed_sweep",
-    "sweep_speeds": "trunnion.analyses.speed_sweep",
-    "bending_speeds": "trunnion.analyses.bending",
-    "harmonic_balance": "trunnion.analyses.harmonic_balance",
+    "natural_frequencies": "trunnion.analyses.linear.natural_frequencies",
+    "resonance_speeds": "trunnion.analyses.linear.resonance_speeds",
+    "stability": "trunnion.analyses.linear.stability",
+    "stability_chart": "trunnion.analyses.charts.stability_chart",
+    "load_chart": "trunnion.analyses.charts.stability_chart",
+    "stable_limit": "trunnion.analyses.charts.stable_limit",
+    "speed_sweep": "trunnion.analyses.linear.speed_sweep",
+    "sweep_speeds": "trunnion.analyses.linear.speed_sweep",
+    "bending_speeds": "trunnion.analyses.linear.bending",
+    "harmonic_balance": "trunnion.analyses.orbits.harmonic_balance",
     "kinetostatics": "trunnion.analyses.kinetostatics",
     "CrossFriction": "trunnion.analyses.kinetostatics",
     "check_limits": "trunnion.analyses.kinetostatics",
@@ -156,45 +156,45 @@ _HOME = {
     "reference_system": "trunnion.systems.reference",
     "StroboscopicMap": "trunnion.systems.maps",
     "SectionMap": "trunnion.systems.maps",
-    "simulate": "trunnion.analyses.simulate",
+    "simulate": "trunnion.analyses.motion.simulate",
     "SpeedProfile": "trunnion.equations.speed_profile",
-    "periodic_response": "trunnion.analyses.periodic_response",
-    "periodic_branch": "trunnion.analyses.periodic_branch",
-    "run_up": "trunnion.analyses.run_up",
-    "safe_accelerations": "trunnion.analyses.run_up",
-    "order_map": "trunnion.analyses.order_map",
+    "periodic_response": "trunnion.analyses.orbits.periodic_response",
+    "periodic_branch": "trunnion.analyses.orbits.periodic_branch",
+    "run_up": "trunnion.analyses.motion.run_up",
+    "safe_accelerations": "trunnion.analyses.motion.run_up",
+    "order_map": "trunnion.analyses.motion.order_map",
     # chaos
-    "lyapunov_spectrum": "trunnion.analyses.lyapunov_spectrum",
-    "lyapunov_sweep": "trunnion.analyses.lyapunov_map",
-    "lyapunov_map": "trunnion.analyses.lyapunov_map",
-    "poincare_map": "trunnion.analyses.poincare_map",
-    "bifurcation_diagram": "trunnion.analyses.bifurcation_diagram",
-    "zero_one_test": "trunnion.analyses.chaos_zero_one",
-    "certify_chaos": "trunnion.analyses.certify_chaos",
+    "lyapunov_spectrum": "trunnion.analyses.chaos.lyapunov_spectrum",
+    "lyapunov_sweep": "trunnion.analyses.chaos.lyapunov_map",
+    "lyapunov_map": "trunnion.analyses.chaos.lyapunov_map",
+    "poincare_map": "trunnion.analyses.chaos.poincare_map",
+    "bifurcation_diagram": "trunnion.analyses.chaos.bifurcation_diagram",
+    "zero_one_test": "trunnion.analyses.chaos.chaos_zero_one",
+    "certify_chaos": "trunnion.analyses.chaos.certify_chaos",
     # backlash
     "PiecewiseOscillator": "trunnion.systems.piecewise_oscillator",
     "SecondOrder": "trunnion.systems.second_order",
     "Spring": "trunnion.systems.second_order",
     "backlash_spring": "trunnion.systems.second_order",
     "cubic_spring": "trunnion.systems.second_order",
-    "balance_springs": "trunnion.analyses.harmonic_balance_springs",
+    "balance_springs": "trunnion.analyses.orbits.harmonic_balance_springs",
     "gear_pair": "trunnion.systems.gear_pair",
-    "exact_motion": "trunnion.analyses.exact_motion",
+    "exact_motion": "trunnion.analyses.motion.exact_motion",
     "exact_oscillator": "trunnion.equations.exact_oscillator",
     "base_radius": "trunnion.systems.gear_pair",
-    "frequency_response": "trunnion.analyses.frequency_response",
-    "compare_responses": "trunnion.analyses.frequency_response",
-    "piecewise_orbit": "trunnion.analyses.piecewise_orbit",
-    "piecewise_branch": "trunnion.analyses.piecewise_branch",
-    "sweep": "trunnion.analyses.piecewise_sweep",
-    "basins": "trunnion.analyses.piecewise_sweep",
-    "rattle_index": "trunnion.analyses.piecewise_sweep",
-    "multiple_scales": "trunnion.analyses.multiple_scales",
-    "averaging": "trunnion.analyses.averaging",
-    "DescribingFunction": "trunnion.analyses.describing_function",
+    "frequency_response": "trunnion.analyses.orbits.frequency_response",
+    "compare_responses": "trunnion.analyses.orbits.frequency_response",
+    "piecewise_orbit": "trunnion.analyses.orbits.piecewise_orbit",
+    "piecewise_branch": "trunnion.analyses.orbits.piecewise_branch",
+    "sweep": "trunnion.analyses.orbits.piecewise_sweep",
+    "basins": "trunnion.analyses.orbits.piecewise_sweep",
+    "rattle_index": "trunnion.analyses.orbits.piecewise_sweep",
+    "multiple_scales": "trunnion.analyses.perturbation.multiple_scales",
+    "averaging": "trunnion.analyses.perturbation.averaging",
+    "DescribingFunction": "trunnion.analyses.perturbation.describing_function",
     # hand on
     "report": "trunnion.reporting",
-    "reproduce": "trunnion.reproduction",
+    "reproduce": "trunnion.studies.reproduce",
     # errors
     "InputError": "trunnion.errors",
     "InputRemark": "trunnion.errors",

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.certify_chaos import ChaosCertificate
-from trunnion.analyses.chaos_subject import clocks
+from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
+from trunnion.analyses.chaos.chaos_subject import clocks
 from trunnion.systems.reference import (
     dead_zone_oscillator,
     driven_pendulum,

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.published.double_tripod import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, Element
-from trunnion.reproduction import Reproduction
-from trunnion.reproduction.double_tripod_estimator import printed_estimator
-from trunnion.reproduction.double_tripod_study import floquet_exponents, opening_depth, sweep_of
+from trunnion.studies.double_tripod.computed import floquet_exponents, opening_depth, sweep_of
+from trunnion.studies.double_tripod.estimator import printed_estimator
+from trunnion.studies.double_tripod.published import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, Element
+from trunnion.studies.result import Reproduction
 from trunnion.systems.reference import linear_oscillator
 
 NINE = WORST_ANGLE

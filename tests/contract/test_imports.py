@@ -11,24 +11,22 @@ import trunnion
 
 ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
-DESCRIBE = {"driveline", "joints"}
+DESCRIBE = {"driveline", "laws"}
 COMPUTE = {"equations", "systems", "numerics", "results", *DESCRIBE}
 ALLOWED = {
     "errors": set(),
     "_version": set(),
-    "joints": set(),
+    "laws": set(),
     "numerics": set(),
     "systems": {"numerics"},
-    "driveline": {"joints", "plots"},  # plots where something draws itself, see test_plots_load_late
-    # what papers print as matrices or equations is a system, with a compiled right-hand side perhaps
-    "published": {"driveline", "systems", "joints", "numerics"},
-    "equations": {"driveline", "joints", "systems", "numerics"},
+    "driveline": {"laws", "plots"},  # plots where something draws itself, see test_plots_load_late
+    "equations": {"driveline", "laws", "systems", "numerics"},
     "results": {"driveline", "numerics", "plots"},  # a chart keeps the patches behind its pixels
     "analyses": {"plots", *COMPUTE},
     "plots": {"analyses", *COMPUTE},
-    "reporting": {"plots", "analyses", "published", *COMPUTE},
-    "reproduction": {"plots", "analyses", "published", "reporting", *COMPUTE},
-    "cli": {"plots", "analyses", "published", "reporting", "reproduction", *COMPUTE},
+    "reporting": {"plots", "analyses", *COMPUTE},
+    "studies": {"plots", "analyses", "reporting", *COMPUTE},
+    "cli": {"plots", "analyses", "reporting", "studies", *COMPUTE},
     "__main__": {"cli"},
 }
 FILES = sorted(ROOT.rglob("*.py"))

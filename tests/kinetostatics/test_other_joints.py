@@ -5,7 +5,7 @@ import pytest
 from tripod_model import Tripod
 
 import trunnion as tn
-from trunnion.joints import double_cardan, hooke, tripod
+from trunnion.laws import double_cardan, hooke, tripod
 
 PHI = np.arange(72) * 2 * np.pi / 72
 CASES = {  # radius, length, degrees: third harmonic

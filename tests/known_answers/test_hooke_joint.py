@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.joints import hooke
+from trunnion.laws import hooke
 
 Array = NDArray[np.float64]
 TURN = np.linspace(0.0, 2 * np.pi, 20_001)

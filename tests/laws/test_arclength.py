@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trunnion.numerics.arclength import Ending, correct, follow, locate
+from trunnion.numerics.continuation.arclength import Ending, correct, follow, locate
 
 ONE = np.ones(2)
 

@@ -9,8 +9,8 @@ from oracles.nonlinear import NonlinearChain
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.analyses.forced_response import LinearResponse, periodic_states
-from trunnion.numerics.dense_monodromy import propagate
+from trunnion.analyses.linear.forced_response import LinearResponse, periodic_states
+from trunnion.numerics.chain.dense_monodromy import propagate
 from trunnion.systems.periodic_linear import from_matrices
 
 

@@ -12,7 +12,7 @@ from oracles.comparisons import set_distance
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.linear import line_matrices, periodic_linear_system
-from trunnion.numerics.dense_monodromy import propagate
+from trunnion.numerics.chain.dense_monodromy import propagate
 
 
 def line(*middle: Any, first: float = 0.4, last: float = 0.5) -> tn.Driveline:

@@ -10,7 +10,7 @@ from known_motions import BACKLASH, DEAD_ZONE_INNER, DEAD_ZONE_MULTIPLIER, DEAD_
 from oracles.taylor import end_state
 
 import trunnion as tn
-from trunnion.numerics.integration import End, integrate
+from trunnion.numerics.integration.integration import End, integrate
 
 RUNS = {
     "duffing": (40.0, [0.5, 0.0]),

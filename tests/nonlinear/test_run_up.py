@@ -7,7 +7,7 @@ import pytest
 from jointed_lines import two_shafts
 
 import trunnion as tn
-from trunnion.analyses.order_map import times_at_angles
+from trunnion.analyses.motion.order_map import times_at_angles
 
 
 def test_a_slow_passage_reaches_the_steady_amplitude_and_a_fast_one_does_not() -> None:

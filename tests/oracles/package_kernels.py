@@ -9,7 +9,7 @@ import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
-from trunnion.numerics.chain_monodromy import Window, chain_monodromy, symmetry_phase
+from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 
 Array = NDArray[np.float64]

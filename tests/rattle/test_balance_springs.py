@@ -19,9 +19,9 @@ from known_motions import (
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.analyses.harmonic_balance_springs import SpringBalance, balance_springs
-from trunnion.analyses.piecewise_branch import piecewise_branch
-from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits.harmonic_balance_springs import SpringBalance, balance_springs
+from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.results.verdict import Verdict

@@ -13,8 +13,8 @@ import trunnion as tn
 from trunnion.equations.line_system import line_system
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
-from trunnion.numerics import piecewise
-from trunnion.numerics.staged_flow import StagedFlow, move, period, stages_of
+from trunnion.numerics.piecewise_linear import piecewise
+from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, move, period, stages_of
 
 SPEED = 40.0
 

@@ -11,14 +11,14 @@ import pytest
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.analyses.periodic_response import PeriodicResponse
-from trunnion.analyses.simulation import simulate_system
+from trunnion.analyses.motion.simulation import simulate_system
+from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.cli.program import app
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
-from trunnion.numerics import piecewise
-from trunnion.numerics.integration import integrate
+from trunnion.numerics.integration.integration import integrate
+from trunnion.numerics.piecewise_linear import piecewise
 from trunnion.systems.reference import dead_zone_oscillator
 
 TEETH: dict[str, Any] = {"teeth_in": 18, "teeth_out": 27, "module": 0.005}

@@ -11,7 +11,7 @@ import pytest
 from known_motions import BACKLASH
 
 import trunnion as tn
-from trunnion.analyses.simulation import simulate_system
+from trunnion.analyses.motion.simulation import simulate_system
 from trunnion.driveline import json_schema
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputRemark

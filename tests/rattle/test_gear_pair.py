@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import trunnion as tn
 from trunnion.cli.program import app
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise import move
+from trunnion.numerics.piecewise_linear.piecewise import move
 
 PAIR = {"radii": (0.04, 0.06), "inertias": (2e-3, 5e-3), "stiffness": 2e6}
 

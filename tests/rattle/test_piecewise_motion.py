@@ -21,10 +21,10 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import trunnion as tn
-from trunnion.analyses.piecewise_branch import piecewise_branch
-from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise import TooManyEventsError, kernel, move, period
+from trunnion.numerics.piecewise_linear.piecewise import TooManyEventsError, kernel, move, period
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 

@@ -9,16 +9,16 @@ import pytest
 from gears import HALF_GAP, dead_zone, gear_pair
 
 import trunnion as tn
-from trunnion.analyses import harmonic_balance as balance_module
-from trunnion.analyses import periodic_branch as branch_module
-from trunnion.analyses.frequency_response import compare_responses, frequency_response, methods_of
-from trunnion.analyses.harmonic_balance import harmonic_balance
-from trunnion.analyses.harmonic_balance_springs import balance_springs
-from trunnion.analyses.piecewise_branch import piecewise_branch
-from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits import harmonic_balance as balance_module
+from trunnion.analyses.orbits import periodic_branch as branch_module
+from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response, methods_of
+from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
+from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs
+from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.integration import End
+from trunnion.numerics.integration.integration import End
 from trunnion.plots.frequency_response import draw_sweeps
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder

@@ -9,13 +9,13 @@ import pytest
 from gears import HALF_GAP, gear_pair
 from scipy.integrate import quad
 
-from trunnion.analyses.averaging import averaging
-from trunnion.analyses.cubic_fit import cubic_fit
-from trunnion.analyses.describing_function import DescribingFunction, describing_function
-from trunnion.analyses.multiple_scales import multiple_scales
-from trunnion.analyses.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.perturbation.averaging import averaging
+from trunnion.analyses.perturbation.cubic_fit import cubic_fit
+from trunnion.analyses.perturbation.describing_function import DescribingFunction, describing_function
+from trunnion.analyses.perturbation.multiple_scales import multiple_scales
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise import states
+from trunnion.numerics.piecewise_linear.piecewise import states
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.bending import tube_critical_speed
-from trunnion.analyses.stable_limit import LimitKind
+from trunnion.analyses.charts.stable_limit import LimitKind
+from trunnion.analyses.linear.bending import tube_critical_speed
 from trunnion.plots.speed_frequency import crossings
 
 LINE = tn.catalogue("two-shaft-cardan", angle=0.3)

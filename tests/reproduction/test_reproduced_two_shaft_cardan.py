@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.reproduction import Reproduction
-from trunnion.reproduction.two_shaft_cardan import TABLE_1, TABLE_2
+from trunnion.studies.result import Reproduction
+from trunnion.studies.two_shaft_cardan.study import TABLE_1, TABLE_2
 
 
 @pytest.fixture(scope="module")

@@ -61,7 +61,7 @@ def lyapunov_spectrum(
 
     Example: trunnion lyapunov-spectrum ueda --set force=7.5
     """
-    from trunnion.analyses.lyapunov_spectrum import lyapunov_spectrum as compute
+    from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
     _check_endings(to)
@@ -112,7 +112,7 @@ def poincare_map(
 
     Example: trunnion poincare-map rossler --section y=0 -o map.png
     """
-    from trunnion.analyses.poincare_map import poincare_map as compute
+    from trunnion.analyses.chaos.poincare_map import poincare_map as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
     _check_endings(to)
@@ -163,7 +163,7 @@ def certify_chaos(
 
     Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
     """
-    from trunnion.analyses.certify_chaos import certify_chaos as compute
+    from trunnion.analyses.chaos.certify_chaos import certify_chaos as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
     _check_endings(to)
@@ -198,7 +198,7 @@ def _subject(
     """The system that FILE names, with parameters set."""
     name, _, part = file.partition(":")
     if name == TRIPOD:
-        from trunnion.published.double_tripod import DoubleTripod
+        from trunnion.studies.double_tripod.published import DoubleTripod
 
         _only_for_lines(speed, load_case)
         return _with(DoubleTripod().system(part or "input"), parameters)
@@ -207,7 +207,7 @@ def _subject(
     if file in SYSTEMS:
         _only_for_lines(speed, load_case)
         return _with(SYSTEMS[file](), parameters)
-    from trunnion.analyses.chaos_subject import as_system
+    from trunnion.analyses.chaos.chaos_subject import as_system
 
     line = read_line(file, load_case, (*SYSTEMS, TRIPOD))
     return _with(as_system(line, read_speed(speed, read_unit(line, unit))), parameters)

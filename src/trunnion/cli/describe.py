@@ -18,8 +18,8 @@ def catalogue(
     as_json: Json = False,
 ) -> None:
     """List the published drivelines, or print one as a file to start from."""
-    from trunnion.published import catalogue as published
-    from trunnion.published import entries
+    from trunnion.studies.entries import catalogue as published
+    from trunnion.studies.entries import entries
 
     if name is None:
         rows = [{"name": e.name, "title": e.title, "source": e.source} for e in entries()]

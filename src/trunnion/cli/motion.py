@@ -27,9 +27,9 @@ from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.analyses.periodic_orbit import PeriodicOrbit
-    from trunnion.analyses.periodic_response import PeriodicResponse
-    from trunnion.analyses.run_up import RunUp
+    from trunnion.analyses.motion.run_up import RunUp
+    from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
+    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
     from trunnion.driveline.driveline import Driveline
     from trunnion.systems.system import System
 
@@ -67,7 +67,7 @@ def simulate(
 
     Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
     """
-    from trunnion.analyses.simulate import simulate as compute
+    from trunnion.analyses.motion.simulate import simulate as compute
 
     with output.compile_notice():
         system = _system(file, parameters)
@@ -113,8 +113,8 @@ def periodic_response(
 
     Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
     """
-    from trunnion.analyses.periodic_response import PeriodicResponse
-    from trunnion.analyses.periodic_response import periodic_response as compute
+    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
+    from trunnion.analyses.orbits.periodic_response import periodic_response as compute
 
     with output.compile_notice():
         system = _system(file, parameters)
@@ -169,8 +169,8 @@ def run_up(
     low, high = _range(line, read_speed(first, unit, "--from"), read_speed(last, unit, "--to"))
     rate = read_speed(acceleration, unit, "--acceleration")
     assert rate is not None
-    from trunnion.analyses.run_up import run_up as compute
-    from trunnion.analyses.run_up import safe_accelerations
+    from trunnion.analyses.motion.run_up import run_up as compute
+    from trunnion.analyses.motion.run_up import safe_accelerations
     from trunnion.driveline.quantities import TORQUE, parse
 
     torque = None
@@ -231,7 +231,7 @@ def _state(text: str | None) -> list[float] | None:
 
 def _course(line: Driveline, first: float | None, last: float | None, duration: float | None) -> Any:
     """The speed, or a profile to the speed at the end."""
-    from trunnion.analyses.stability import operating_speed
+    from trunnion.driveline.operating_speed import operating_speed
     from trunnion.equations.speed_profile import SpeedProfile
 
     if last is None:
@@ -242,8 +242,8 @@ def _course(line: Driveline, first: float | None, last: float | None, duration: 
 
 
 def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
-    from trunnion.analyses.overview import speed_range
     from trunnion.equations.coefficients import assemble
+    from trunnion.reporting.overview import speed_range
 
     if first is not None and last is not None:
         return first, last
@@ -339,7 +339,7 @@ def _print_response(result: PeriodicResponse, unit: str, written: list[Path]) ->
 
 
 def _simulation_json(result: Any, written: list[Path]) -> dict[str, Any]:
-    from trunnion.analyses.simulate import LineSimulation
+    from trunnion.analyses.motion.simulate import LineSimulation
 
     content = {
         "outcome": result.outcome.kind,
@@ -357,7 +357,7 @@ def _simulation_json(result: Any, written: list[Path]) -> dict[str, Any]:
 
 
 def _response_json(result: PeriodicResponse | PeriodicOrbit, written: list[Path]) -> dict[str, Any]:
-    from trunnion.analyses.periodic_response import PeriodicResponse
+    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 
     content: dict[str, Any] = {
         "verdict": str(result.verdict),

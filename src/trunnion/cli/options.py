@@ -53,7 +53,7 @@ def _file_or_catalogue(file: str, besides: Sequence[str]) -> Driveline:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import load
     from trunnion.driveline.refusals import nearest
-    from trunnion.published import catalogue, entries
+    from trunnion.studies.entries import catalogue, entries
 
     path, names = Path(file), [e.name for e in entries()]
     if path.exists() or path.suffix or len(path.parts) != 1:
@@ -76,7 +76,7 @@ def file_stem(file: str) -> str:
 
 def read_unit(line: Driveline, unit: str | None) -> str:
     """The unit asked for, or the one of the description."""
-    from trunnion.analyses.overview import speed_unit
+    from trunnion.driveline.operating_speed import speed_unit
     from trunnion.results.speeds import speed_factor
 
     if unit is None:
@@ -126,7 +126,7 @@ def read_axis(text: str, assembly: Assembly, unit: str, points: int, key: str) -
 
     Read from the right, so that names with colons remain possible.
     """
-    from trunnion.analyses.overview import angle_range, speed_range
+    from trunnion.reporting.overview import angle_range, speed_range
 
     parts = text.split(":")
     scale = "log" if len(parts) > 4 and parts[-1].strip() == "log" else "linear"

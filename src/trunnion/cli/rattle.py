@@ -62,8 +62,8 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.frequency_response import ResponseComparison, methods_of
-    from trunnion.analyses.frequency_response import frequency_response as compute
+    from trunnion.analyses.orbits.frequency_response import ResponseComparison, methods_of
+    from trunnion.analyses.orbits.frequency_response import frequency_response as compute
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     subject, length = _subject(name, parameters)
@@ -113,9 +113,9 @@ def sweep(
     """
     import numpy as np
 
-    from trunnion.analyses.free_play import require_forced
-    from trunnion.analyses.piecewise_branch import check_range
-    from trunnion.analyses.piecewise_sweep import sweep as compute
+    from trunnion.analyses.orbits.free_play import require_forced
+    from trunnion.analyses.orbits.piecewise_branch import check_range
+    from trunnion.analyses.orbits.piecewise_sweep import sweep as compute
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.staged_line import staged_line
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -174,7 +174,7 @@ def sweep(
 
 def _sweep_line(line: Driveline, grids: list[Any], name: str, curve: str, to: list[Path] | None, as_json: bool) -> None:
     """Torques of all springs of a line with several inertias."""
-    from trunnion.analyses.piecewise_sweep import sweep as compute
+    from trunnion.analyses.orbits.piecewise_sweep import sweep as compute
 
     unit = _unit(line)
     with output.compile_notice():
@@ -209,7 +209,7 @@ def _sweep_line(line: Driveline, grids: list[Any], name: str, curve: str, to: li
 def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillator | System | Driveline, str]:
     """What is meant, and the unit of its x if it has one."""
     from trunnion.driveline.refusals import nearest
-    from trunnion.published import catalogue, entries
+    from trunnion.studies.entries import catalogue, entries
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.reference import SYSTEMS
 
@@ -243,17 +243,17 @@ def _of_line(line: Driveline) -> tuple[PiecewiseOscillator | Driveline, str]:
 
 
 def _unit(subject: PiecewiseOscillator | System | Driveline) -> str:
-    from trunnion.analyses.overview import speed_unit
     from trunnion.driveline.driveline import Driveline
+    from trunnion.driveline.operating_speed import speed_unit
 
     return speed_unit(subject) if isinstance(subject, Driveline) else "rad/s"
 
 
 def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, high: str | None) -> tuple[float, float]:
     """As given; else about the frequency of the excitation, or a line's range of speeds."""
-    from trunnion.analyses.overview import speed_range
     from trunnion.driveline.driveline import Driveline
     from trunnion.equations.coefficients import assemble
+    from trunnion.reporting.overview import speed_range
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     unit = _unit(subject)

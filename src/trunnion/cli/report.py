@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.analyses.overview import speed_unit
 from trunnion.cli import output
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.plots.quantity_axes import quantity_axis
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
@@ -18,11 +18,11 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from trunnion.analyses.natural_frequencies import NaturalFrequencies
-    from trunnion.analyses.overview import Overview
-    from trunnion.analyses.resonance_speeds import ResonanceSpeeds
-    from trunnion.analyses.stability import Stability
+    from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
+    from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
+    from trunnion.analyses.linear.stability import Stability
     from trunnion.driveline.driveline import Driveline
+    from trunnion.reporting.overview import Overview
     from trunnion.results.chart import StabilityChart
 
 MOST_ROWS = 24

@@ -25,8 +25,8 @@ def reproduce(
     """Compute a published study anew: figures, tables published | computed | remark, errata, conclusions."""
     from trunnion.cli.files import check_folder
     from trunnion.cli.report import print_written
-    from trunnion.reproduction import reproduce as compute
-    from trunnion.reproduction.result import Comparison
+    from trunnion.studies.reproduce import reproduce as compute
+    from trunnion.studies.result import Comparison
 
     target = folder or Path("trunnion-out") / name
     check_folder(target)

@@ -41,10 +41,10 @@ def analyze(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     size, at = read_points(points), read_speed(speed, unit)
-    from trunnion.analyses.overview import overview
     from trunnion.cli.files import chart_files, check_folder
     from trunnion.cli.report import overview_json, print_overview, print_written
     from trunnion.reporting import report
+    from trunnion.reporting.overview import overview
     from trunnion.results.files import folder_written_whole
 
     check_folder(folder)
@@ -76,7 +76,7 @@ def stability(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     at = read_speed(speed, unit)
-    from trunnion.analyses.stability import stability as judge
+    from trunnion.analyses.linear.stability import stability as judge
     from trunnion.cli.report import stability_json
 
     with output.compile_notice():
@@ -120,7 +120,7 @@ def stability_chart(
     unit = read_unit(line, unit)
     nx, ny = read_points(points)
     at = read_speed(speed, unit)
-    from trunnion.analyses.stability_chart import stability_chart as compute
+    from trunnion.analyses.charts.stability_chart import stability_chart as compute
     from trunnion.cli.files import chart_files, check_folder, check_outputs, write_chart
     from trunnion.cli.report import chart_json, chart_text, print_written
     from trunnion.equations.coefficients import assemble
@@ -152,7 +152,7 @@ def stability_chart(
 def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) -> None:
     """Natural frequencies and damping ratios with all joints straight."""
     line = read_line(file)
-    from trunnion.analyses.natural_frequencies import natural_frequencies as find
+    from trunnion.analyses.linear.natural_frequencies import natural_frequencies as find
     from trunnion.cli.report import frequency_unit, modes_json
 
     unit = read_unit(line, unit or frequency_unit(line))
@@ -176,7 +176,7 @@ def resonance_speeds(
     """Named parametric resonance speeds in the operating range, and which of them can open."""
     line = read_line(file)
     unit = read_unit(line, unit)
-    from trunnion.analyses.resonance_speeds import resonance_speeds as find
+    from trunnion.analyses.linear.resonance_speeds import resonance_speeds as find
 
     found = find(line, orders)
     limits = line.operation.speed_range if line.operation else None

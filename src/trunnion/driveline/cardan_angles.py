@@ -85,7 +85,7 @@ def _numbers(values: Any, key: str, kind: Kind = ANGLE) -> list[float]:
 
 def initial_phases(alpha: Angles, nu: Angles, beta: Angles, start: float | str = 0.0) -> list[float]:
     """φ⁰_i1 of every joint [rad] by S2's relation (2), unwrapped: what it starts from at input angle 0."""
-    from trunnion.joints import hooke
+    from trunnion.laws import hooke
 
     phases = _numbers([start], "start")
     for a, v, b in zip(_numbers(alpha, "alpha")[:-1], _numbers(nu, "nu"), _numbers(beta, "beta"), strict=True):

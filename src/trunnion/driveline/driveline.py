@@ -10,7 +10,7 @@ from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, field_validator, model_validator
 
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Name, Ratio, Shaft
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Name, Ratio, Shaft
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency
@@ -224,3 +224,8 @@ def _check_loads(line: Driveline) -> None:
                     problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
                 where = f"load case {case.name}"
                 raise InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
+
+
+def hooke_joints(line: Driveline) -> list[tuple[str, float]]:
+    """Name and angle [rad] of every Hooke's joint."""
+    return [(n, e.angle) for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, HookeJoint)]

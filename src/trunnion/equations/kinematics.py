@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
-from trunnion.joints import hooke
+from trunnion.laws import hooke
 
 Array = NDArray[np.float64]
 QUARTER_TURN = np.pi / 2

@@ -9,7 +9,7 @@ from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
 from trunnion.equations.topology import Link, Topology
-from trunnion.numerics.chain_tables import ChainLanes, ChainProgram
+from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 
 Array = NDArray[np.float64]
 

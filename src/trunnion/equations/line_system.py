@@ -21,7 +21,7 @@ from trunnion.equations.line_regimes import line_regimes, mesh_rates, staged_spr
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link
 from trunnion.errors import InputError
-from trunnion.joints import tripod
+from trunnion.laws import tripod
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
 from trunnion.equations.topology import Link, Topology
-from trunnion.joints import hooke
+from trunnion.laws import hooke
 
 Array = NDArray[np.float64]
 

@@ -29,7 +29,7 @@ from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
-from trunnion.numerics.staged_flow import StagedFlow
+from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

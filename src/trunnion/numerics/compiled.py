@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 from platformdirs import user_cache_dir
 
-from trunnion.numerics import chain_driver_source, chain_tables, half_period
+from trunnion.numerics.chain import chain_driver_source, chain_tables, half_period
 
 SMALL = 3
 """Largest number of unknowns whose step is written out as straight-line code."""

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.bifurcation_diagram import BifurcationDiagram
-from trunnion.analyses.certify_chaos import ChaosCertificate
-from trunnion.analyses.long_motion import wrapped
-from trunnion.analyses.lyapunov_map import LyapunovMap, LyapunovSweep
-from trunnion.analyses.lyapunov_result import LyapunovSpectrum
-from trunnion.analyses.poincare_map import PoincareMap
-from trunnion.numerics.integration import integrate
+from trunnion.analyses.chaos.bifurcation_diagram import BifurcationDiagram
+from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
+from trunnion.analyses.chaos.lyapunov_map import LyapunovMap, LyapunovSweep
+from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
+from trunnion.analyses.chaos.poincare_map import PoincareMap
+from trunnion.analyses.motion.long_motion import wrapped
+from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
 from trunnion.systems.system import System

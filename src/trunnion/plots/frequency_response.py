@@ -14,8 +14,8 @@ from trunnion.results.speeds import speed_factor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from trunnion.analyses.exact_sweep import LineSweep
-    from trunnion.analyses.piecewise_sweep import Basins, Sweep
+    from trunnion.analyses.orbits.exact_sweep import LineSweep
+    from trunnion.analyses.orbits.piecewise_sweep import Basins, Sweep
 
 STYLES = {
     "exact": ("#1a1a1a", 3.0),
@@ -191,7 +191,7 @@ class _SweepMarks(NamedTuple):
 
 
 def _draw_sweep_marks(axes: Axes, one: _SweepMarks) -> None:
-    from trunnion.analyses.jumps import abrupt_changes
+    from trunnion.analyses.orbits.jumps import abrupt_changes
 
     x, size = one.x, one.size
     axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.analyses.natural_frequencies import NaturalFrequencies
+from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT
 from trunnion.results.speeds import show_speed
 

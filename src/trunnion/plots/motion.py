@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.periodic_orbit import PeriodicOrbit
-from trunnion.analyses.periodic_response import PeriodicResponse
-from trunnion.analyses.simulate import LineSimulation
-from trunnion.analyses.simulation import Simulation
+from trunnion.analyses.motion.simulate import LineSimulation
+from trunnion.analyses.motion.simulation import Simulation
+from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import show_speed

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.order_map import OrderMap, order_map
-from trunnion.analyses.simulate import LineSimulation
+from trunnion.analyses.motion.order_map import OrderMap, order_map
+from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import speed_factor
 

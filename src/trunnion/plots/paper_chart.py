@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.analyses.resonance_speeds import Resonance
+from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.stability_chart import edges
 from trunnion.plots.style import INK, SMALL, TEXT, plain

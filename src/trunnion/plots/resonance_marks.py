@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.resonance_speeds import Resonance
+from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.plots.style import FAINT, INK, SMALL
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.branch import PeriodicBranch
+from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.analyses.natural_frequencies import natural_frequencies
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.overview import hooke_joints, speed_unit
-from trunnion.analyses.resonance_speeds import Resonance, resonance_speeds
-from trunnion.driveline.driveline import Driveline
+from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
+from trunnion.driveline.driveline import Driveline, hooke_joints
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
 from trunnion.plots.quantity_axes import QuantityAxis, quantity_axis

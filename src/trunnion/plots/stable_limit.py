@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.analyses.stable_limit import LimitKind, StableLimit
+from trunnion.analyses.charts.stable_limit import LimitKind, StableLimit
 from trunnion.driveline.operation import Operation
 from trunnion.plots.quantity_axes import quantity_axis
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.forced_response import LINEAR_RANGE
-from trunnion.analyses.speed_sweep import SpeedSweep
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE
+from trunnion.analyses.linear.speed_sweep import SpeedSweep
 from trunnion.driveline.operation import Operation
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain

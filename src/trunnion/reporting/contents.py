@@ -7,15 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.analyses.bending import BendingSpeed, bending_findings, bending_speeds
+from trunnion.analyses.charts.stable_limit import LimitKind, StableLimit, limit_of_chart
 from trunnion.analyses.kinetostatics import kinetostatics
 from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.analyses.overview import Overview, hooke_joints
-from trunnion.analyses.resonance_speeds import ResonanceSpeeds, resonance_speeds
-from trunnion.analyses.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
-from trunnion.analyses.stable_limit import LimitKind, StableLimit, limit_of_chart
+from trunnion.analyses.linear.bending import BendingSpeed, bending_findings, bending_speeds
+from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
+from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
+from trunnion.driveline.driveline import hooke_joints
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.reporting.overview import Overview
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import speed_factor

@@ -9,11 +9,11 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from trunnion.analyses.overview import CHART_POINTS, Overview, hooke_joints, overview
-from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.reporting import tables
 from trunnion.reporting.contents import Contents, gather
+from trunnion.reporting.overview import CHART_POINTS, Overview, overview
 from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from trunnion.analyses.periodic_response import PeriodicResponse, periodic_response
+from trunnion.analyses.orbits.periodic_response import PeriodicResponse, periodic_response
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.errors import ComputationError, InputError

@@ -17,7 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
-from trunnion.numerics.patches import Box, Patch, PatchedFunction
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.files import written_whole
 from trunnion.results.units import with_unit
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts

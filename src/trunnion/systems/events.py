@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trunnion.errors import InputError
 from trunnion.numerics.compiled import kernel_file
-from trunnion.numerics.integration import Watch
+from trunnion.numerics.integration.integration import Watch
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction, guard_function, takes
 

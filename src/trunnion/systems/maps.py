@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
-from trunnion.numerics.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
-from trunnion.numerics.integration import kernel as compiled_core
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
+from trunnion.numerics.integration.integration import kernel as compiled_core
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    from trunnion.numerics.integration import Watch
+    from trunnion.numerics.integration.integration import Watch
 
 Array = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
-from trunnion.numerics.integration import Equations, kernel
+from trunnion.numerics.integration.integration import Equations, kernel
 from trunnion.systems.regimes import Regimes
 from trunnion.systems.user_functions import CFunction, rate_function
 

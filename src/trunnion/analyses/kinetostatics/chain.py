@@ -32,7 +32,7 @@ from trunnion.driveline.parameters import pack
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import stage_law
 from trunnion.errors import InputError
-from trunnion.joints import double_cardan, tripod
+from trunnion.laws import double_cardan, tripod
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import JOINTS, Chain, Link, Step
-from trunnion.joints import hooke
+from trunnion.laws import hooke
 from trunnion.numerics import jets
 
 Array = NDArray[np.float64]

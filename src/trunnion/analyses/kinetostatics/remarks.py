@@ -34,7 +34,7 @@ def remarks(chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, 
 
 def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
-    from trunnion.analyses.natural_frequencies import natural_frequencies
+    from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 
     orders = {Link.HOOKE: 2, Link.TRIPOD: 3}
     rates = [orders[chain.steps[i].link] * abs(chain.mean_ratio(i)) for i in chain.of(*orders)]

@@ -1,0 +1,1 @@
+"""Lyapunov exponents, Poincaré maps and the verdict on chaos."""

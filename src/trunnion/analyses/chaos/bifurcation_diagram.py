@@ -1,0 +1,165 @@
+"""Bifurcation diagrams: the points of the Poincaré map as one parameter moves up, and down again.
+
+At each value the motion begins where it ended at the one before, so it stays on its attractor for as long as
+that exists; where up and down differ, there are several.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
+from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.results.outcome import Outcome
+from trunnion.systems.events import Event
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+DIRECTIONS = ("up", "down")
+
+
+@dataclass(frozen=True)
+class BifurcationDiagram:
+    """Points (directions, values, points, n) of the map over a parameter, NaN where the motion failed.
+
+    repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed.
+    """
+
+    system: System
+    parameter: str
+    values: Array
+    directions: tuple[str, ...]
+    points: Array
+    repeat: NDArray[np.int64]
+    section: str
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        unit = self.system.parameter_units.get(self.parameter, "1")
+        states = {
+            name: (("direction", "value", "point"), self.points[..., i], {"units": u})
+            for i, (name, u) in enumerate(zip(self.system.states, self.system.units, strict=True))
+        }
+        return xr.Dataset(
+            {**states, "repeat": (("direction", "value"), self.repeat)},
+            coords={
+                "value": ("value", self.values, {"units": unit, "long_name": self.parameter}),
+                "direction": list(self.directions),
+            },
+            attrs={
+                "system": self.system.name,
+                "section": self.section,
+                "transient": self.transient,
+                "tolerance": self.tolerance,
+                "outcome": self.outcome.kind,
+                "outcome_sentence": self.outcome.sentence,
+                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
+            },
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
+        from trunnion.plots.chaos import draw_bifurcations
+
+        return draw_bifurcations(self, axes, **options)
+
+    def __str__(self) -> str:
+        low, high = self.values[0], self.values[-1]
+        rows = [
+            f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high:.6g}, "
+            f"{len(self.values)} values, {self.points.shape[2]} points each, {self.section}"
+        ]
+        for direction, repeat in zip(self.directions, self.repeat, strict=True):
+            counts = {int(k): int(np.sum(repeat == k)) for k in np.unique(repeat[repeat > 0])}
+            told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
+            rows.append(f"  {direction}: {told or 'none repeats'}; {int(np.sum(repeat == 0))} do not repeat")
+        return "\n".join([*rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+def bifurcation_diagram(
+    subject: System | Driveline,
+    parameter: str,
+    values: ArrayLike | tuple[float, float, int],
+    *,
+    directions: Sequence[str] = DIRECTIONS,
+    points: int = 60,
+    transient: int = 300,
+    speed: float | None = None,
+    section: Event | None = None,
+    start: ArrayLike | None = None,
+    tolerance: float = 1e-9,
+    progress: Callable[[float], None] | None = None,
+) -> BifurcationDiagram:
+    """Points of the Poincaré map over one parameter of the system.
+
+    Parameters
+    ----------
+    parameter : a name among the system's parameters; of a driveline "speed" or "HookeJoint 1.angle", say.
+    values : (first, last, how many), or rising values.
+    directions : "up", "down", or both.
+    points, transient : kept and left out at each value.
+    section : of an autonomous system, as for ``poincare_map``.
+
+    Raises
+    ------
+    InputError : no such parameter or direction; what ``poincare_map`` refuses.
+    """
+    system = as_system(subject, speed)
+    chosen = values_of(system, parameter, values)
+    whole_number("points", points, 8)
+    if not directions or any(d not in DIRECTIONS for d in directions):
+        raise InputError("is not a direction", key="directions", value=list(directions), remedy='write "up" or "down"')
+    first = first_starts(system, start, 1)[0]
+    tell = progress or (lambda share: None)
+    found = np.full((len(directions), len(chosen), points, system.size), np.nan)
+    repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
+    told: list[str] = []
+    shown: PoincareMap | None = None
+    for d, direction in enumerate(directions):
+        state = first
+        order = range(len(chosen)) if direction == "up" else range(len(chosen) - 1, -1, -1)
+        for done, i in enumerate(order):
+            here = system.with_parameters({parameter: float(chosen[i])})
+            mapped = poincare_map(here, points, section=section, start=state, transient=transient, tolerance=tolerance)
+            tell((d + (done + 1) / len(chosen)) / len(directions))
+            if not mapped.outcome.ok:
+                told.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
+                state = first
+                continue
+            shown = mapped
+            found[d, i], repeat[d, i], state = mapped.wrapped, mapped.repeat, mapped.points[-1]
+    outcome = Outcome(True, "reached", "every value was reached")
+    if told:
+        outcome = Outcome(False, "failed in part", f"{len(told)} of {repeat.size} values failed, the first {told[0]}")
+    words = shown.section if shown else ""
+    return BifurcationDiagram(
+        system,
+        parameter,
+        chosen,
+        tuple(directions),
+        found,
+        repeat,
+        words.split(" of ")[0],
+        transient,
+        tolerance,
+        outcome,
+    )

@@ -1,0 +1,372 @@
+"""A verdict on a motion: regular, chaotic, unbounded or undecided, with its reasons (THA–LEA–PM).
+
+The three steps of Bugaru and Vasile (Appl. Sci. 12, 2022, 6182), with exponents of the standard definition:
+time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria of
+``chaos_criteria``), Poincaré map (PM: does it repeat). The 0–1 test of the map is a second, independent witness.
+
+    unbounded   the motion grows until it cannot be followed, or grows from block to block of the run
+    regular     the map repeats (periodic), or does not but neighbours do not part and the 0–1 test agrees
+                (quasi-periodic), or the motion has come to rest
+    chaotic     the largest exponent is above 0 by more than its interval, by more than what a regular motion's
+                slow shear gives in that time, and the 0–1 test agrees
+    undecided   anything else: the reasons say what is missing
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.chaos.chaos_criteria import Criterion, criteria
+from trunnion.analyses.chaos.chaos_subject import angles, as_system, clocks, first_starts
+from trunnion.analyses.chaos.chaos_zero_one import FEWEST as FEWEST_FOR_TEST
+from trunnion.analyses.chaos.chaos_zero_one import ZeroOne, zero_one_test
+from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
+from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
+from trunnion.analyses.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
+from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.analyses.motion.long_motion import motion_size, wrapped
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.numerics.integration.integration import End
+from trunnion.results.outcome import Outcome
+from trunnion.systems.events import Event
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+POINTS = 3000
+"""Points of the Poincaré map."""
+BLOCKS, GROWN = 8, 2.0
+"""A motion whose largest state rises in each of so many blocks, by this factor in all, is unbounded."""
+UNSTABLE = "at rest on an unstable equilibrium"
+AT_REST = 1e-7
+"""Size of a motion over its scale that counts as rest."""
+SWEPT, SWEEP_POINTS, SWEEP_PERIODS = 0.1, 25, 400
+SWEPT_NAMES = ("excitation", "frequency", "speed")
+
+
+class Verdict(StrEnum):
+    """What a motion is."""
+
+    REGULAR = "regular"
+    CHAOTIC = "chaotic"
+    UNBOUNDED = "unbounded"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Witness:
+    """What one start gave: its map, the 0–1 test of it (None if there are too few points), and what it says."""
+
+    map: PoincareMap | None
+    test: ZeroOne | None
+    verdict: Verdict
+    kind: str
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ChaosCertificate:
+    """A verdict with its evidence.
+
+    verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion, "at rest on an unstable equilibrium"
+    of an undecided one; repeat: forcing periods, or returns
+    to the section, after which a periodic motion closes, and period [s], its time; reasons: one sentence each;
+    criteria (37)–(39); spectrum, map, zero_one, sweep (or None): the evidence.
+    """
+
+    system: System
+    verdict: Verdict
+    kind: str
+    repeat: int
+    period: float
+    reasons: tuple[str, ...]
+    criteria: tuple[Criterion, ...]
+    spectrum: LyapunovSpectrum
+    map: PoincareMap | None
+    zero_one: ZeroOne | None
+    sweep: LyapunovSweep | None
+
+    @property
+    def data(self) -> xr.Dataset:
+        """The exponents, with the verdict and its reasons as attributes."""
+        data = self.spectrum.data
+        data.attrs |= {
+            "verdict": str(self.verdict),
+            "kind": self.kind,
+            "repeat": self.repeat,
+            "reasons": "\n".join(self.reasons),
+            "criteria": "\n".join(map(str, self.criteria)),
+            **({} if self.zero_one is None else {"zero_one_test": self.zero_one.k}),
+            **({} if not np.isfinite(self.period) else {"period": self.period}),
+        }
+        return data
+
+    def plot(self) -> Figure:
+        """Portrait, exponents, and the map at two numbers of points."""
+        from trunnion.plots.chaos import draw_certificate
+
+        return draw_certificate(self)
+
+    def __str__(self) -> str:
+        what = {"": ""}.get(self.kind, f", {self.kind}")
+        if self.kind == "periodic":
+            unit = "forcing period" if self.system.forcing_period is not None else "return"
+            what += f", closes after {self.repeat} {unit}{'s' if self.repeat > 1 else ''} ({self.period:.6g} s)"
+        lines = [f"{self.system.name}: {self.verdict}{what}"]
+        lines += [f"  {reason}" for reason in self.reasons]
+        lines += [f"  {criterion}" for criterion in self.criteria]
+        if self.zero_one is not None:
+            lines.append(f"  {self.zero_one}")
+        return "\n".join(lines)
+
+    __repr__ = __str__
+
+
+def certify_chaos(
+    subject: System | Driveline,
+    periods: int | None = None,
+    *,
+    duration: float | None = None,
+    speed: float | None = None,
+    start: ArrayLike | None = None,
+    starts: int = 2,
+    section: Event | None = None,
+    points: int = POINTS,
+    transient: int | None = None,
+    sweep: tuple[str, float, float, int] | bool = True,
+    tolerance: float = 1e-10,
+    progress: Callable[[float], None] | None = None,
+) -> ChaosCertificate:
+    """Certify what a motion is, by time history, Lyapunov exponents, Poincaré map and the 0–1 test.
+
+    Parameters
+    ----------
+    subject, periods, duration, speed, start, starts, transient, tolerance : as for ``lyapunov_spectrum``.
+    section : of the map of an autonomous system; by default the mean of the state that moves most.
+    points : of the map.
+    sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the
+        forcing frequency or speed by ± 10 %; False for none.
+
+    Returns
+    -------
+    ChaosCertificate. Starts that lead to different motions make it undecided: certify each with ``starts=1``.
+
+    Raises
+    ------
+    InputError : as ``lyapunov_spectrum`` and ``poincare_map``.
+    """
+    system = as_system(subject, speed)
+    request = _sweep_request(system, sweep)
+    spectrum = lyapunov_spectrum(
+        system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
+        progress=progress,
+    )  # fmt: skip
+    states = np.concatenate([run.states[-8:] for run in spectrum.runs])
+    running = clocks(system, states) if len(states) and np.all(np.isfinite(states)) else {}
+    witnesses = [_witness(system, spectrum, i, section, points, running) for i in range(len(spectrum.runs))]
+    first = witnesses[0]
+    same = all((w.verdict, w.kind) == (first.verdict, first.kind) for w in witnesses)
+    verdict, kind, reasons = first.verdict, first.kind, first.reasons
+    if not same:
+        told = "; ".join(f"start {i} {w.kind or w.verdict}" for i, w in enumerate(witnesses, start=1))
+        verdict, kind = Verdict.UNDECIDED, ""
+        each = (f"start {i}: {reason}" for i, w in enumerate(witnesses, start=1) for reason in w.reasons)
+        reasons = (f"the starts do not agree ({told}): certify each with starts=1, or over a longer time", *each)
+    elif not spectrum.agree:
+        reasons = (*reasons, "the starts agree on this and differ in their exponents: there may be several attractors")
+    repeat = first.map.repeat if first.map is not None and kind == "periodic" else 0
+    judged: tuple[Criterion, ...] = ()
+    if spectrum.samples >= 2:
+        judged = criteria(
+            system, spectrum, clock=bool(running), at_rest=any(w.kind in ("at rest", UNSTABLE) for w in witnesses),
+            bounded=all(w.verdict is not Verdict.UNBOUNDED for w in witnesses),
+        )  # fmt: skip
+    swept = None
+    if request is not None and verdict is not Verdict.UNBOUNDED:
+        swept = lyapunov_sweep(
+            system, request[0], request[1:], periods=SWEEP_PERIODS, start=first_starts(system, start, 1)[0],
+            tolerance=max(tolerance, 1e-9),
+        )  # fmt: skip
+    return ChaosCertificate(
+        system, verdict, kind, repeat, _period(first.map, repeat), reasons, judged, spectrum, first.map, first.test,
+        swept,
+    )  # fmt: skip
+
+
+def _sweep_request(system: System, sweep: tuple[str, float, float, int] | bool) -> tuple[str, float, float, int] | None:
+    if sweep is False:
+        return None
+    if sweep is not True:
+        if not isinstance(sweep, tuple) or len(sweep) != 4:
+            raise InputError("must be (parameter, first, last, how many)", key="sweep", value=sweep)
+        return sweep
+    name = next((n for n in SWEPT_NAMES if n in system.parameters), None)
+    if name is None or system.parameters[name] <= 0:
+        return None
+    value = system.parameters[name]
+    return name, (1 - SWEPT) * value, (1 + SWEPT) * value, SWEEP_POINTS
+
+
+def _witness(
+    system: System, spectrum: LyapunovSpectrum, i: int, section: Event | None, points: int, running: dict[int, float]
+) -> Witness:
+    run, interval = spectrum.runs[i], spectrum.interval
+    ending = spectrum.outcome.kind
+    # Another start's end is not this one's.
+    stopped = run.end is not End.REACHED
+    if stopped and ending in ("blow-up", "not finite", "step too small"):
+        reason = f"the motion cannot be followed for ever: {spectrum.outcome}"
+        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+    if stopped:
+        return Witness(None, None, Verdict.UNDECIDED, "", (str(spectrum.outcome),))
+    turning = angles(system, run.states[:: max(len(run.states) // 8, 1)][:8])
+    if len(run.growth) < FEWEST:
+        return Witness(None, None, Verdict.UNDECIDED, "", (_too_short(spectrum, i),))
+    size = motion_size(system, run.states[-1], interval, spectrum.tolerance)
+    scale = np.asarray(system.scale) + np.abs(wrapped(run.states[-64:], turning)).max(axis=0)
+    still = [j for j in range(system.size) if j not in running]
+    if _grows(run.states, turning, np.asarray(system.scale)):
+        reason = "the largest state rises from block to block of the run and does not stop"
+        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+    exponent, width = spectrum.by_start[i][0], spectrum.by_start_half_width[i][0]
+    width = max(width, spectrum.sum_error if np.isfinite(spectrum.sum_error) else 0.0)
+    forced = system.forcing_period is not None
+    rests = not forced and not running and bool(np.all(size <= AT_REST * scale))
+    if rests and exponent < 0:
+        return Witness(
+            None, None, Verdict.REGULAR, "at rest",
+            (f"the motion has come to rest; disturbances die out at {-exponent:.4g} 1/s",),
+        )  # fmt: skip
+    if rests and exponent > width:
+        return Witness(
+            None, None, Verdict.UNDECIDED, UNSTABLE,
+            (f"the motion is {UNSTABLE}: disturbances grow at {exponent:.4g} 1/s; start beside it",),
+        )  # fmt: skip
+    mapped = _map(system, spectrum, i, section, points, running, turning, size)
+    if not mapped.outcome.ok:
+        return Witness(mapped, None, Verdict.UNDECIDED, "", (f"no map: {mapped.outcome}",))
+    test = _test(system, mapped, still, turning)
+    return _judge(spectrum, i, mapped, test, exponent, width)
+
+
+def _judge(
+    spectrum: LyapunovSpectrum, i: int, mapped: PoincareMap, test: ZeroOne | None, exponent: float, width: float
+) -> Witness:
+    time = len(spectrum.runs[i].growth) * spectrum.interval
+    shear = 2 * np.log(max(len(spectrum.runs[i].growth), 2)) / time
+    parts = bool(exponent - width > 0 and exponent > shear)
+    told = f"largest exponent {exponent:+.4g} ± {width:.2g} 1/s"
+    if mapped.repeat and not parts:
+        times = "point" if mapped.repeat == 1 else "points"
+        return Witness(
+            mapped, test, Verdict.REGULAR, "periodic", (f"{told}; the map repeats after {mapped.repeat} {times}",)
+        )
+    if test is None:
+        reason = f"{len(mapped.points)} points are too few for the 0–1 test; give {FEWEST_FOR_TEST} periods or more"
+        return Witness(mapped, test, Verdict.UNDECIDED, "", (told, reason))
+    if parts and test.says == "chaotic":
+        return Witness(
+            mapped, test, Verdict.CHAOTIC, "",
+            (f"{told}: neighbours part exponentially, by e in {1 / exponent:.4g} s; the 0–1 test agrees",),
+        )  # fmt: skip
+    if not parts and test.says == "regular":
+        settling = exponent + width < 0 and not _zero(spectrum, i)
+        if settling:
+            longer = int(np.ceil(10 / (-exponent * spectrum.interval)))
+            return Witness(
+                mapped, test, Verdict.UNDECIDED, "",
+                (f"{told}: it settles on a periodic motion and has not yet; raise transient by {longer} periods",),
+            )  # fmt: skip
+        return Witness(
+            mapped, test, Verdict.REGULAR, "quasi-periodic",
+            (f"{told}: neighbours do not part; the map does not repeat, and the 0–1 test finds no diffusion",),
+        )  # fmt: skip
+    more = 4 * len(spectrum.runs[i].growth)
+    return Witness(
+        mapped, test, Verdict.UNDECIDED, "",
+        (
+            f"{told} and the 0–1 test ({test.k:.2f}, {test.says}) do not agree: a long transient or weak chaos; "
+            f"average over {more} periods or more",
+        ),
+    )  # fmt: skip
+
+
+def _zero(spectrum: LyapunovSpectrum, i: int) -> bool:
+    """Whether some exponent of this start is 0 to within its interval: a torus, or a phase among the states."""
+    value, width = spectrum.by_start[i], spectrum.by_start_half_width[i]
+    size = float(np.max(np.abs(value)))
+    return bool(np.any(np.abs(value) <= width + 1e-5 * size))
+
+
+def _too_short(spectrum: LyapunovSpectrum, i: int) -> str:
+    growth = spectrum.runs[i].growth[:, 0]
+    told = f"{len(growth)} periods are too few to average over"
+    if len(growth) < 4:
+        return f"{told}; {FIRST} periods decide most motions"
+    needed = int(np.clip((4 * growth.std() / max(abs(growth.mean()), 1e-300)) ** 2, FEWEST, 1e7))
+    return f"{told}; by the scatter of what they show, about {max(needed, FEWEST_FOR_TEST)} periods would decide"
+
+
+def _grows(states: Array, turning: tuple[int, ...], scale: Array) -> bool:
+    inside = [j for j in range(states.shape[1]) if j not in turning]
+    if len(states) < 4 * BLOCKS or not inside:
+        return False
+    length = len(states) // BLOCKS
+    largest = np.abs(states[len(states) - BLOCKS * length :, inside]).reshape(BLOCKS, length, -1).max(axis=1)
+    rises = np.all(np.diff(largest, axis=0) > 0, axis=0)
+    return bool(np.any(rises & (largest[-1] > GROWN * largest[0]) & (largest[-1] > scale[inside])))
+
+
+def _map(
+    system: System, spectrum: LyapunovSpectrum, i: int, section: Event | None, points: int, running: dict[int, float],
+    turning: tuple[int, ...], size: Array,
+) -> PoincareMap:  # fmt: skip
+    run = spectrum.runs[i]
+    if section is None and system.forcing_period is not None:
+        kept = run.states[-points:]
+        words = f"every forcing period of {spectrum.interval:.6g} s"
+        count = spectrum.transient + len(run.states) - len(kept)
+        outcome = Outcome(True, "reached", f"{len(kept)} points after {count} left out")
+        time = np.asarray(spectrum.interval * np.arange(len(kept)), dtype=float)
+        return PoincareMap(system, kept, time, size, turning, words, count, spectrum.tolerance, outcome)
+    if section is None and running:
+        every = 2 * np.pi / abs(next(iter(running.values())))
+        return poincare_map(
+            system, points, every=every, start=run.states[-1], transient=0, tolerance=spectrum.tolerance
+        )
+    if section is None:
+        j = int(np.argmax(np.ptp(run.states, axis=0) / np.asarray(system.scale)))
+        middle = float(np.mean(run.states[:, j]))
+        section = Event(system.states[j], middle, direction=1)
+    longest = max(len(run.growth) * spectrum.interval, 100 * spectrum.interval)
+    return poincare_map(
+        system, min(points, max(len(run.growth) // 2, 1)), section=section, start=run.states[-1], transient=0,
+        longest=longest, tolerance=spectrum.tolerance,
+    )  # fmt: skip
+
+
+def _test(system: System, mapped: PoincareMap, free: list[int], turning: tuple[int, ...]) -> ZeroOne | None:
+    """The test on the state that moves most over its scale; of an angle its sine."""
+    if len(mapped.points) < FEWEST_FOR_TEST:
+        return None
+    points = mapped.points[-POINTS:]
+    columns = {j: np.sin(points[:, j]) if j in turning else points[:, j] for j in free}
+    scales = {j: 1.0 if j in turning else float(np.asarray(system.scale)[j]) for j in free}
+    best = max(free, key=lambda j: float(np.ptp(columns[j])) / (scales[j] + float(np.abs(columns[j]).max())))
+    return zero_one_test(columns[best], scale=max(scales[best], float(mapped.size[best])) * 1e-2)
+
+
+def _period(mapped: PoincareMap | None, repeat: int) -> float:
+    if mapped is None or repeat == 0 or len(mapped.time) <= repeat:
+        return float("nan")
+    return float(mapped.time[-1] - mapped.time[-1 - repeat])

@@ -1,0 +1,139 @@
+"""What analyses of long motions take: a system, or a driveline at a speed; its starts; its angles."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.systems.system import System
+
+Array = NDArray[np.float64]
+SAME = 1e-9
+"""Change of a rate over its size that counts as none."""
+PHASES = 7
+"""Phases of the forcing at which a system is looked at; an odd number meets no two zeros of a half-period."""
+NEIGHBOUR = 1e-2
+"""How far from the first start the others are, in units of the system's scale plus the start itself."""
+
+
+def as_system(subject: System | Driveline, speed: float | None = None) -> System:
+    """The system itself, or that of a driveline at ``speed`` [rad/s] (default: its operating speed).
+
+    Raises
+    ------
+    InputError : neither, a speed given for a system, or a line that starts free: it has no period to strobe at,
+        and its rotation is not bounded.
+    """
+    if isinstance(subject, System):
+        if speed is not None:
+            remedy = "set it among the system's parameters, with but()"
+            raise InputError("belongs to drivelines", element=subject.name, key="speed", value=speed, remedy=remedy)
+        return subject
+    if isinstance(subject, Driveline):
+        from trunnion.driveline.operating_speed import operating_speed
+        from trunnion.equations.line_system import line_system
+
+        prepared = line_system(subject, operating_speed(subject, speed))
+        if prepared.assembly.topology.free:
+            raise InputError(
+                "starts free: its speed follows from its torques and is not periodic in time", element="driveline",
+                remedy="put a ConstantSpeed in front, or simulate it",
+            )  # fmt: skip
+        return prepared.system
+    raise InputError(
+        "is neither a System nor a Driveline", key="subject", value=type(subject).__name__,
+        remedy="write tn.System.from_function(…), or load a driveline",
+    )  # fmt: skip
+
+
+def first_starts(system: System, start: ArrayLike | None, count: int) -> Array:
+    """Starts (count, n): those given, or the first one and random neighbours of it (always the same ones).
+
+    Raises
+    ------
+    InputError : no start known, a wrong shape, or not finite.
+    """
+    if start is None and system.start is None:
+        raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
+    given = np.atleast_2d(np.asarray(system.start if start is None else start, dtype=float))
+    given = np.array([system.checked(row, "start") for row in given])
+    if len(given) > 1:
+        return given
+    first = given[0]
+    spread = NEIGHBOUR * (np.asarray(system.scale) + np.abs(first))
+    others = first + spread * np.random.default_rng(0).uniform(-1, 1, (count - 1, system.size))
+    return np.vstack([first, others])
+
+
+def angles(system: System, states: Array) -> tuple[int, ...]:
+    """States that count as angles: adding 2π to one changes no rate at any of the sampled ``states`` (m, n).
+
+    A state that the equations do not contain at all counts as one, too.
+    """
+    rates = _rates(system, states)
+    size = np.abs(rates).max(axis=0) + 1e-300
+    found = []
+    for i in range(system.size):
+        turned = np.array(states, dtype=float)
+        turned[:, i] += 2 * np.pi
+        again = _rates(system, turned)
+        if np.all(np.abs(again - rates) <= SAME * size):
+            found.append(i)
+    return tuple(found)
+
+
+def clocks(system: System, states: Array) -> dict[int, float]:
+    """States that run evenly whatever the others do, and their rates [1/s]: a phase written as a state."""
+    rates = _rates(system, states)
+    matrices = [system.jacobian(t, x, system.regime_at(t, x)) for t in phases(system) for x in states]
+    return {
+        i: float(rates[0, i])
+        for i in range(system.size)
+        if rates[0, i] != 0.0
+        and np.all(rates[:, i] == rates[0, i])
+        and all(not np.any(matrix[i]) for matrix in matrices)
+    }
+
+
+def phases(system: System) -> list[float]:
+    """Times [s] all around the forcing: at any single one a factor of it may vanish."""
+    period = system.forcing_period
+    return [0.0] if period is None else [period * k / PHASES for k in range(PHASES)]
+
+
+def _rates(system: System, states: Array) -> Array:
+    """Rates (phases · m, n) at ``states`` (m, n)."""
+    return np.array([system.rate_at(t, x, system.regime_at(t, x)) for t in phases(system) for x in states])
+
+
+def whole_number(key: str, value: object, least: int, most: int | None = None) -> int:
+    """``value`` as a whole number within bounds; InputError otherwise."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise InputError(f"must be a whole number from {least}", key=key, value=value)
+    if most is not None and value > most:
+        raise InputError(f"must be {most} or less", key=key, value=int(value))
+    return int(value)
+
+
+def values_of(system: System, parameter: str, values: ArrayLike | tuple[float, float, int]) -> Array:
+    """Rising values (m,) of one of the system's parameters, from (first, last, how many) or as they are.
+
+    Raises
+    ------
+    InputError : not one of its parameters; not rising; not finite.
+    """
+    if parameter not in system.parameters:
+        known = ", ".join(system.parameters) or "none"
+        raise InputError("is not a parameter", element=system.name, key=parameter, remedy=f"parameters are: {known}")
+    if isinstance(values, tuple) and len(values) == 3 and isinstance(values[2], int):
+        low, high, count = values
+        whole_number(parameter, count, 1)
+        chosen = np.linspace(low, high, count)
+    else:
+        chosen = np.atleast_1d(np.asarray(values, dtype=float))
+    if chosen.ndim != 1 or not np.all(np.isfinite(chosen)) or np.any(np.diff(chosen) <= 0) or not len(chosen):
+        remedy = "write (first, last, how many) with last above first"
+        raise InputError("must be rising finite numbers", key=parameter, value=values, remedy=remedy)
+    return np.asarray(chosen, dtype=float)

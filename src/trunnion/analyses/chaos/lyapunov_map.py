@@ -1,0 +1,285 @@
+"""Lyapunov exponents over one parameter, and the largest over two; values are shared by threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
+from trunnion.analyses.motion.long_motion import usual_time
+from trunnion.driveline.driveline import Driveline
+from trunnion.numerics.averages import average
+from trunnion.numerics.integration.integration import End
+from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.outcome import Outcome
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Request = tuple[str, float, float, int]
+
+
+@dataclass(frozen=True)
+class LyapunovSweep:
+    """exponents, half_width (values, k) [1/s] over one parameter, the largest first; NaN where the motion failed."""
+
+    system: System
+    parameter: str
+    values: Array
+    exponents: Array
+    half_width: Array
+    periods: int
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    @property
+    def positive(self) -> NDArray[np.bool_]:
+        """Where (values,) the largest exponent is above 0 by more than its interval."""
+        return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        unit = self.system.parameter_units.get(self.parameter, "1")
+        return xr.Dataset(
+            {
+                "exponent": (("value", "order"), self.exponents, {"units": "1/s"}),
+                "half_width": (("value", "order"), self.half_width, {"units": "1/s"}),
+            },
+            coords={
+                "value": ("value", self.values, {"units": unit, "long_name": self.parameter}),
+                "order": np.arange(1, self.exponents.shape[1] + 1),
+            },
+            attrs=_attributes(self),
+        )
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Exponents over the parameter."""
+        from trunnion.plots.chaos import draw_sweep
+
+        return draw_sweep(self, axes)
+
+    def __str__(self) -> str:
+        known = np.isfinite(self.exponents[:, 0])
+        head = (
+            f"Lyapunov exponents of {self.system.name} over {self.parameter} = {self.values[0]:.6g} … "
+            f"{self.values[-1]:.6g}, {len(self.values)} values, {self.periods} periods each"
+        )
+        if not known.any():
+            return f"{head}\n  {self.outcome}"
+        top = int(np.nanargmax(self.exponents[:, 0]))
+        most = f"{self.exponents[top, 0]:+.5g} ± {self.half_width[top, 0]:.2g} 1/s at {self.values[top]:.6g}"
+        share = f"positive at {int(self.positive.sum())} of {int(known.sum())}"
+        return f"{head}\n  {share}; the largest is {most}\n  {self.outcome}"
+
+    __repr__ = __str__
+
+
+@dataclass(frozen=True)
+class LyapunovMap:
+    """exponent, half_width (y, x) [1/s]: the largest exponent over two parameters; NaN where the motion failed."""
+
+    system: System
+    parameters: tuple[str, str]
+    x: Array
+    y: Array
+    exponent: Array
+    half_width: Array
+    periods: int
+    transient: int
+    tolerance: float
+    threads: int
+    outcome: Outcome
+
+    @property
+    def positive(self) -> NDArray[np.bool_]:
+        """Where (y, x) the exponent is above 0 by more than its interval."""
+        return np.asarray(self.exponent - self.half_width > 0)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        units = [self.system.parameter_units.get(name, "1") for name in self.parameters]
+        return xr.Dataset(
+            {
+                "exponent": (("y", "x"), self.exponent, {"units": "1/s"}),
+                "half_width": (("y", "x"), self.half_width, {"units": "1/s"}),
+            },
+            coords={
+                "x": ("x", self.x, {"units": units[0], "long_name": self.parameters[0]}),
+                "y": ("y", self.y, {"units": units[1], "long_name": self.parameters[1]}),
+            },
+            attrs=_attributes(self),
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
+        from trunnion.plots.chaos import draw_lyapunov_map
+
+        return draw_lyapunov_map(self, axes, **options)
+
+    def __str__(self) -> str:
+        known = int(np.isfinite(self.exponent).sum())
+        share = 100 * float(self.positive.sum()) / max(known, 1)
+        return (
+            f"largest Lyapunov exponent of {self.system.name} over {self.parameters[0]} and {self.parameters[1]}, "
+            f"{len(self.x)} × {len(self.y)} points, {self.periods} periods each\n"
+            f"  positive at {share:.3g} % of {known}; from {np.nanmin(self.exponent):+.4g} to "
+            f"{np.nanmax(self.exponent):+.4g} 1/s\n  {self.outcome}"
+        )
+
+    __repr__ = __str__
+
+
+def lyapunov_sweep(
+    subject: System | Driveline,
+    parameter: str,
+    values: ArrayLike | tuple[float, float, int],
+    *,
+    periods: int = 1000,
+    transient: int = 300,
+    exponents: int | None = None,
+    speed: float | None = None,
+    start: ArrayLike | None = None,
+    interval: float | None = None,
+    tolerance: float = 1e-9,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> LyapunovSweep:
+    """Exponents at every value of one parameter, each motion beginning at ``start``.
+
+    Parameters
+    ----------
+    parameter, values : as for ``bifurcation_diagram``.
+    periods, transient : averaged over, and left out before.
+    interval : length of a period [s] where the system has none; by default about once around.
+
+    Raises
+    ------
+    InputError : no such parameter; a wrong count.
+    """
+    system = as_system(subject, speed)
+    chosen = values_of(system, parameter, values)
+    count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)
+    points = [{parameter: float(v)} for v in chosen]
+    mean, width, told = _all(
+        system, points, count, periods, transient, start, interval, tolerance, _threads(threads), progress
+    )
+    order = np.argsort(-mean, axis=1, kind="stable")
+    mean, width = np.take_along_axis(mean, order, 1), np.take_along_axis(width, order, 1)
+    return LyapunovSweep(
+        system, parameter, chosen, mean, width, periods, transient, tolerance, _told(told, len(chosen))
+    )
+
+
+def lyapunov_map(
+    subject: System | Driveline,
+    x: Request,
+    y: Request,
+    *,
+    periods: int = 500,
+    transient: int = 100,
+    speed: float | None = None,
+    start: ArrayLike | None = None,
+    interval: float | None = None,
+    tolerance: float = 1e-8,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> LyapunovMap:
+    """The largest exponent over two parameters, each motion beginning at ``start``.
+
+    Parameters
+    ----------
+    x, y : (parameter, first, last, how many).
+    threads : by default one per processor.
+
+    Raises
+    ------
+    InputError : no such parameter; a wrong count or range.
+    """
+    system = as_system(subject, speed)
+    columns, rows = values_of(system, x[0], x[1:]), values_of(system, y[0], y[1:])
+    points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
+    used = _threads(threads)
+    mean, width, told = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
+    shape = (len(rows), len(columns))
+    return LyapunovMap(
+        system, (x[0], y[0]), columns, rows, mean.reshape(shape), width.reshape(shape), periods, transient, tolerance,
+        used, _told(told, len(points)),
+    )  # fmt: skip
+
+
+def _all(
+    system: System, points: list[dict[str, float]], count: int, periods: int, transient: int, start: ArrayLike | None,
+    interval: float | None, tolerance: float, threads: int, progress: Callable[[float], None] | None,
+) -> tuple[Array, Array, list[str]]:  # fmt: skip
+    whole_number("periods", periods, 1)
+    whole_number("transient", transient, 0)
+    state = first_starts(system, start, 1)[0]
+    mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
+    told: list[str] = []
+    tell = progress or (lambda share: None)
+
+    def one(place: int) -> None:
+        here = system.with_parameters(points[place])
+        period = here.forcing_period
+        length = interval or period or usual_time(here, state, tolerance)
+        frame = np.eye(system.size)[:count] + 0.1 * np.random.default_rng(1).normal(size=(count, system.size))
+        motion = Motion(
+            here.equations, state, frame * np.asarray(system.scale), length, period or 0.0,
+            regime=here.regime_at(0.0, state), tolerance=tolerance,
+        )  # fmt: skip
+        if motion.run(transient).end is not End.REACHED:
+            told.append(str(points[place]))
+            return
+        found = motion.run(periods)
+        if found.end is not End.REACHED:
+            told.append(str(points[place]))
+            return
+        result = average(found.growth / length)
+        mean[place], width[place] = result.mean, result.half_width
+
+    with ThreadPoolExecutor(threads if system.compiled else 1) as pool:
+        for done, _ in enumerate(pool.map(one, range(len(points))), start=1):
+            tell(done / len(points))
+    return mean, width, told
+
+
+def _threads(threads: int | None) -> int:
+    if threads is not None:
+        return whole_number("threads", threads, 1)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _told(told: list[str], total: int) -> Outcome:
+    if not told:
+        return Outcome(True, "reached", "every point was reached")
+    return Outcome(
+        False, "failed in part", f"at {len(told)} of {total} points the motion did not reach its end, first {told[0]}"
+    )
+
+
+def _attributes(result: LyapunovSweep | LyapunovMap) -> dict[str, Any]:
+    return {
+        "system": result.system.name,
+        "periods": result.periods,
+        "transient": result.transient,
+        "tolerance": result.tolerance,
+        "outcome": result.outcome.kind,
+        "outcome_sentence": result.outcome.sentence,
+        **{f"parameter {k}": v for k, v in result.system.parameters.items()},
+    }

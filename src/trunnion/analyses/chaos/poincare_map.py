@@ -1,0 +1,233 @@
+"""Poincaré maps: the points in which a motion meets a section, once it has settled.
+
+Stroboscopic: x(t₀ + kT), one point per forcing period (or per any other time). Section: the states at which a
+function of the state crosses zero in one direction. A periodic motion gives as many points as it takes forcing
+periods to close, a quasi-periodic one closed curves, a chaotic one a cloud with structure at every scale.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.chaos.chaos_subject import angles, as_system, first_starts, whole_number
+from trunnion.analyses.motion.integration_outcomes import outcome_of
+from trunnion.analyses.motion.long_motion import LONGEST_REPEAT, failure, motion_size, repeat_of, usual_time, wrapped
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.numerics.integration.integration import End, integrate
+from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.outcome import Outcome
+from trunnion.results.units import with_unit
+from trunnion.systems.events import Event, watch
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+SAME = 1e-9
+"""Time between two crossings, over that between looks, below which they are one."""
+
+
+@dataclass(frozen=True)
+class PoincareMap:
+    """Points of a motion on a section.
+
+    points (points, n); time (points,) [s] of each, after the transient; size (n,): how far each state moves
+    between the points, against which returns are measured; angles: states counted modulo 2π; section: what the
+    points have in common, in words.
+    """
+
+    system: System
+    points: Array
+    time: Array
+    size: Array
+    angles: tuple[int, ...]
+    section: str
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    @property
+    def repeat(self) -> int:
+        """After how many points the map repeats; 0 if it does not, or not within 64 points."""
+        return repeat_of(self.wrapped, self.size, np.asarray(self.system.scale), self.angles)
+
+    @property
+    def wrapped(self) -> Array:
+        """The points with angles between −π and π."""
+        return wrapped(self.points, self.angles)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        states = {
+            name: ("point", self.points[:, i], {"units": unit})
+            for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
+        }
+        return xr.Dataset(
+            {**states, "time": ("point", self.time, {"units": "s"})},
+            attrs={
+                "system": self.system.name,
+                "section": self.section,
+                "repeat": self.repeat,
+                "transient": self.transient,
+                "tolerance": self.tolerance,
+                "outcome": self.outcome.kind,
+                "outcome_sentence": self.outcome.sentence,
+                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
+            },
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """One state over another; see ``trunnion.plots.chaos.draw_map``."""
+        from trunnion.plots.chaos import draw_map
+
+        return draw_map(self, axes, **options)
+
+    def __str__(self) -> str:
+        count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"
+        head = f"Poincaré map of {self.system.name}: {count}, {self.section}"
+        rows = [
+            with_unit(f"  {name}: {column.min():.6g} … {column.max():.6g}", unit)
+            for name, unit, column in zip(self.system.states, self.system.units, self.wrapped.T, strict=True)
+            if len(column)
+        ]
+        if self.repeat:
+            rows.append(f"  repeats after {self.repeat} point{'s' if self.repeat > 1 else ''}")
+        elif self.outcome.ok:
+            rows.append(f"  does not repeat within {LONGEST_REPEAT} points")
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+def poincare_map(
+    subject: System | Driveline,
+    points: int = 2000,
+    *,
+    speed: float | None = None,
+    section: Event | None = None,
+    every: float | None = None,
+    phase: float = 0.0,
+    start: ArrayLike | None = None,
+    transient: int = 500,
+    longest: float | None = None,
+    tolerance: float = 1e-10,
+) -> PoincareMap:
+    """Points of a settled motion on a section.
+
+    Parameters
+    ----------
+    subject : a ``System``, or a ``Driveline`` at ``speed`` [rad/s].
+    section : crossings of an event with a direction; by default stroboscopic, at ``phase`` [s] of the forcing.
+    every : time [s] between stroboscopic points instead of the forcing period.
+    transient : points left out at the beginning.
+    longest : time [s] after which a section counts as not met any more; by default 1000 forcing periods, or as
+        many times what the motion needs to get about once around.
+
+    Returns
+    -------
+    PoincareMap; its ``outcome`` says if the motion blew up or the section was not met, and what there was is kept.
+
+    Raises
+    ------
+    InputError : neither a forcing period nor a section nor ``every``; a section without a direction.
+    """
+    system = as_system(subject, speed)
+    whole_number("points", points, 1)
+    whole_number("transient", transient, 0)
+    state = first_starts(system, start, 1)[0]
+    if section is not None:
+        if every is not None:
+            raise InputError("and section are two ways to say one thing", key="every", remedy="leave one out")
+        return _sectioned(system, section, state, points, transient, longest, tolerance)
+    interval = every if every is not None else system.forcing_period
+    if interval is None:
+        raise InputError(
+            "is autonomous: it has no period for a stroboscopic map", element=system.name, key="period",
+            remedy=f'give a section, tn.Event("{system.states[0]}", 0.0, direction=1), or every=, a time',
+        )  # fmt: skip
+    if not (np.isfinite(interval) and interval > 0):
+        raise InputError("must be a positive time", key="every", value=interval)
+    motion = Motion(
+        system.equations, state, np.empty((0, system.size)), interval, system.forcing_period or 0.0, phase,
+        system.regime_at(phase, state), tolerance,
+    )  # fmt: skip
+    early = motion.run(transient)
+    found = motion.run(points) if early.end is End.REACHED else early
+    settled = found.states if early.end is End.REACHED else found.states[:0]
+    words = f"every {interval:.6g} s" if every is not None else f"every forcing period of {interval:.6g} s"
+    outcome = Outcome(True, "reached", f"{len(settled)} points after {transient} left out")
+    if found.end is not End.REACHED:
+        outcome = failure(
+            system, motion, 2 * interval, f"after {early.finished + len(settled)} points, time counted from there: "
+        )
+    times = np.asarray(interval * np.arange(len(settled)), dtype=float)
+    return _result(system, settled, times, words, transient, tolerance, outcome, interval)
+
+
+def _sectioned(
+    system: System, section: Event, state: Array, points: int, transient: int, longest: float | None, tolerance: float
+) -> PoincareMap:
+    if section.direction not in (-1, 1):
+        raise InputError("must be +1 or −1 on a section", element="Event", key="direction", value=section.direction)
+    watched, own = watch(system, (section,)), system.equations.transitions.shape[1]
+    period = system.forcing_period
+    span = longest if longest is not None else 1000 * (period or usual_time(system, state, tolerance))
+    parts, times, time, passed, x = [], [], 0.0, 0.0, state
+    wanted, have, step = points + transient, 0, 0.0
+    outcome = Outcome(True, "reached", f"{points} points after {transient} left out")
+    regime, piece = system.regime_at(0.0, x), span / 100
+    since, last = 0.0, -np.inf
+    while have < wanted:
+        run = integrate(
+            system.equations, time, time + piece, x, regime=regime, tolerance=tolerance, watch=watched,
+            dense=False, first_step=step, most_steps=10_000_000,
+        )  # fmt: skip
+        mine = run.event_which == own
+        met = run.event_time[mine] - time + passed
+        # A crossing that rounding leaves on its near side is met again at once; it counts as one.
+        once = np.diff(met, prepend=last) > SAME * piece
+        parts.append(run.event_before[mine][once])
+        times.append(met[once])
+        last = met[-1] if len(met) else last
+        have += int(once.sum())
+        since = 0.0 if mine.any() else since + piece
+        if run.end is not End.REACHED:
+            outcome = outcome_of(
+                system, run, tolerance, (*(system.regimes.guards if system.regimes else ()), section.label)
+            )
+            break
+        if since >= span and have < wanted:
+            outcome = Outcome(
+                False, "never crossed",
+                f"{section.label} was crossed {have} times and then not within {since:.6g} s; choose a level the "
+                "motion passes, the other direction, or raise longest",
+            )  # fmt: skip
+            break
+        passed += piece
+        time = 0.0 if period is None else (time + piece) % period
+        x, regime, step = run.final[0], run.final_regime, run.next_step
+    found = np.concatenate(parts)[transient:wanted]
+    at = np.concatenate(times)[transient:wanted]
+    length = float(np.mean(np.diff(at))) if len(at) > 1 else piece
+    at = at - (at[0] if len(at) else 0.0)
+    arrow = "rising" if section.direction > 0 else "falling"
+    return _result(system, found, at, f"{section.label} {arrow}", transient, tolerance, outcome, length)
+
+
+def _result(
+    system: System, points: Array, time: Array, words: str, transient: int, tolerance: float, outcome: Outcome,
+    interval: float,
+) -> PoincareMap:  # fmt: skip
+    turning = angles(system, points[:: max(len(points) // 8, 1)][:8]) if len(points) else ()
+    size = motion_size(system, points[-1], interval, tolerance) if len(points) else np.zeros(system.size)
+    return PoincareMap(system, points, time, size, turning, words, transient, tolerance, outcome)

@@ -1,0 +1,1 @@
+"""Stability over two parameters, as functions known to a stated error."""

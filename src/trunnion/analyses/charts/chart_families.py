@@ -1,0 +1,410 @@
+"""What a stability chart samples: quantities that are analytic in both axes, with their errors.
+
+For up to three unknowns these are the characteristic coefficients of the monodromy matrix, beyond that its
+entries; the last quantity is always ∫ tr(M⁻¹C) dτ. Speed enters through 1/Ω, of which both are entire
+functions, so a speed axis is patched in 1/Ω.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.charts.axes import Axis
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.lanes import chain_lanes, chain_program
+from trunnion.equations.topology import require_period
+from trunnion.errors import ComputationError, InputError
+from trunnion.numerics.chain.chain_monodromy import (
+    Window,
+    chain_monodromy,
+    chain_propagator,
+    complete,
+    symmetry_phase,
+)
+from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
+from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices
+from trunnion.numerics.chain.dense_monodromy import propagate
+from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
+from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
+from trunnion.systems.family import PeriodicLinearFamily
+
+Array = NDArray[np.float64]
+
+
+class ChartFamily(Protocol):
+    """Anything a chart can be made of; ``affordable``: points that may each be integrated to settle doubts."""
+
+    affordable: ClassVar[int]
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+
+    @property
+    def rigid_body(self) -> bool:
+        """Whether a rigid-body pair of multipliers is to be set aside."""
+
+    @property
+    def period(self) -> float:
+        """Period in τ."""
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Monodromy matrices (points, m, m), their errors and ∫ tr(M⁻¹C) dτ (points,)."""
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """Quantities and their error bounds at points (x, y), each (points, quantities)."""
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """How to sample grids in the patch variables when building the patches of ``box``."""
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Axis values → the variable in which the quantities are smooth."""
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+
+
+def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]:
+    """Analytic quantities of monodromy matrices (points, m, m) and their error bounds."""
+    count, m = matrix.shape[:2]
+    if m <= LARGEST:
+        values, bounds = np.empty((count, m + 1)), np.empty((count, m + 1))
+        coefficients_from_matrices(matrix, error, values[:, :m], bounds[:, :m])
+        # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
+        values[:, m - 1] = np.exp(-trace)
+        bounds[:, m - 1] = values[:, m - 1] * (np.minimum(error, 1.0) + 1e-12 * np.abs(trace))
+    else:
+        values, bounds = np.empty((count, m * m + 1)), np.empty((count, m * m + 1))
+        values[:, :-1] = matrix.reshape(count, -1)
+        # Spread so that the Frobenius norm of the entries' bounds is the bound of the matrix.
+        bounds[:, :-1] = error[:, None] / m
+    values[:, -1], bounds[:, -1] = trace, 1e-12 * np.abs(trace)
+    return values, bounds
+
+
+@dataclass(frozen=True)
+class LineFamily:
+    """A driveline over two of its parameters."""
+
+    assembly: Assembly
+    x: Axis
+    y: Axis
+    speed: float
+    statically_twisted: bool
+    affordable: ClassVar[int] = 200_000
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.assembly.topology.size
+
+    @property
+    def rigid_body(self) -> bool:
+        """Whether a rigid-body pair of multipliers is to be set aside."""
+        return self.assembly.topology.free
+
+    @property
+    def period(self) -> float:
+        """Period [rad of input angle]."""
+        return 2 * np.pi * float(require_period(self.assembly.line, self.assembly.topology))
+
+    def lanes(self, x: Array, y: Array) -> ChainLanes:
+        """The kernel's numbers at points (x, y)."""
+        return chain_lanes(self.assembly.topology, self._coefficients(x, y))
+
+    def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
+        table = self.assembly.table(len(x), self.speed)
+        self.x.columns.put(table, x)
+        self.y.columns.put(table, y)
+        return self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
+        program, period = chain_program(self.assembly.topology), self.period
+        lanes = self.lanes(x, y)
+        window = _window(program, lanes, period)
+        # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
+        order = _kinematic_order(lanes)
+        sorted_lanes = lanes if order is None else ChainLanes(*(part[..., order] for part in lanes))
+        matrix, error, trace = chain_monodromy(program, sorted_lanes, window, tolerance, threads)
+        if order is not None:
+            back = np.argsort(order)
+            matrix, error, trace = matrix[back], error[back], trace[back]
+        return matrix, error, trace
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """See ``ChartFamily``."""
+        return quantities(*self.matrices(x, y, tolerance / AMPLIFICATION.get(self.size, 4), threads))
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """By slabs where the period spans many radians of the highest mode, else by plain integration."""
+        ends = np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2)
+        corners = self._patch_lanes(*ends)
+        program = chain_program(self.assembly.topology)
+        window = _window(program, corners, self.period)
+        length = window.period / 2 if window.half else window.period
+        # ν is the root mean square of the modes; the highest is at most √n times that.
+        highest = float(corners.frequency.max()) * np.sqrt(self.size)
+        edges = slab_edges(highest, *self._swiftness(ends, window.begin, length))
+        count = len(edges) - 1
+        if count < FEWEST_SLABS or pixels < FEWEST_PIXELS:
+            return grid_by_grid(self, box, tolerance, threads)
+        # Slabs are so cheap that a sharper tolerance costs little, and every bound below grows with it.
+        sharper = tolerance / (10 if self.size <= 2 else 100)
+
+        def propagate(u: Array, v: Array, begin: float, stretch: float) -> tuple[Array, Array, Array]:
+            asked = max(sharper / (4 * count), 1e-14)
+            return chain_propagator(program, self._patch_lanes(u, v), begin, stretch, asked, threads)
+
+        slabs = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
+        if slabs is None:
+            return grid_by_grid(self, box, tolerance, threads)
+
+        def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
+            return [
+                quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
+                for grid, parts in zip(grids, on_grids(slabs, grids, threads), strict=True)
+            ]
+
+        # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
+        return Sampler(evaluate, -1, self._first_boxes(box, float(corners.frequency.max())))
+
+    def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
+        """Input angles over a stretch, and the speed of the swiftest station over the input's at each."""
+        topo = self.assembly.topology
+        coefficients = self._coefficients(self.from_patch(points[0], True), self.from_patch(points[1], False))
+        tau = np.linspace(begin, begin + length, 801)
+        speeds = np.abs(base_motion(topo, coefficients, tau, ratio_values(topo)).speed)
+        return tau, np.maximum(speeds.max(axis=(0, 2)), 1.0)
+
+    def _first_boxes(self, box: Box, frequency: float) -> list[Box]:
+        """Strips of 1/Ω across which the quantities oscillate as often as one patch resolves.
+
+        The fastest is the product of n multipliers: a phase of at most n ν T at the lowest speed.
+        """
+        if not (self.x.is_speed or self.y.is_speed):
+            return [box]
+        low, high = (box.u0, box.u1) if self.x.is_speed else (box.v0, box.v1)
+        phase = self.size * frequency * self.period * (1 - low / high) / 2
+        edges = np.linspace(low, high, max(1, int(np.ceil(phase / (NODES - 4)))) + 1)
+        pairs = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
+        if self.x.is_speed:
+            return [Box(a, b, box.v0, box.v1) for a, b in pairs]
+        return [Box(box.u0, box.u1, a, b) for a, b in pairs]
+
+    def _patch_lanes(self, u: Array, v: Array) -> ChainLanes:
+        return self.lanes(self.from_patch(u, True), self.from_patch(v, False))
+
+    def _grid_lanes(self, grid: Grid) -> ChainLanes:
+        u, v = grid
+        return self._patch_lanes(np.tile(u, len(v)), np.repeat(v, len(u)))
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """1/Ω for a speed axis, the rapidity asinh(tan β) for a joint angle, the value itself otherwise.
+
+        In β the singularities of η close in on 90° like cos β; in the rapidity cos β = 1/cosh v and they stay
+        π/2 away from the real axis, so one patch reaches from 0° to the steepest angles.
+        """
+        axis = self.x if of_x else self.y
+        if axis.is_speed:
+            return np.asarray(1 / np.asarray(value))
+        if axis.is_joint_angle:
+            return np.asarray(np.arcsinh(np.tan(value)))
+        return np.asarray(value, dtype=float)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        axis = self.x if of_x else self.y
+        if axis.is_speed:
+            return np.asarray(1 / np.asarray(value))
+        if axis.is_joint_angle:
+            return np.asarray(np.arctan(np.sinh(value)))
+        return np.asarray(value, dtype=float)
+
+
+AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
+"""How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
+FEWEST_SLABS = 3
+"""Below this a slab is not much shorter than the period, and patching it saves nothing."""
+
+
+FEWEST_PIXELS = 20_000
+"""Below this, pixels are integrated in less time than slabs are patched."""
+
+
+@dataclass(frozen=True)
+class Sampler:
+    """``evaluate`` for ``patches.build``, the pixels up to which a box is not worth a patch, first boxes."""
+
+    evaluate: Evaluate
+    direct_below: float
+    boxes: list[Box]
+
+
+def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
+    """Sample grids by plain evaluation of all their points in one call."""
+
+    def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
+        u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
+        v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
+        values, bounds = family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
+        cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
+        return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
+
+    return Sampler(evaluate, 0.8 * NODES**2, [box])
+
+
+def _window(program: ChainProgram, lanes: ChainLanes, period: float) -> Window:
+    begin = symmetry_phase(program, lanes, period)
+    return Window(0.0 if begin is None else begin, period, begin is not None)
+
+
+def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
+    """An order that puts equal joint angles and phases side by side, or None where they are already."""
+    rows = [*lanes.cosine, *lanes.phase]
+    moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
+    if not moving:
+        return None
+    changes = sum(np.count_nonzero(np.diff(row)) for row in moving)
+    if changes < len(moving[0]) / 4:
+        return None
+    key = np.lexsort((1 / lanes.frequency, *moving))
+    sorted_changes = sum(np.count_nonzero(np.diff(row[key])) for row in moving)
+    return key if sorted_changes < changes / 4 else None
+
+
+@dataclass(frozen=True)
+class OwnFamily:
+    """A user's ``PeriodicLinearFamily`` over two of its parameters; ``middle`` is a typical point."""
+
+    family: PeriodicLinearFamily
+    x_name: str
+    y_name: str
+    middle: tuple[float, float]
+    rigid_body: bool = False
+    affordable: ClassVar[int] = 2_000
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return self.family.size
+
+    @property
+    def period(self) -> float:
+        """Period in τ."""
+        return self.family.period
+
+    @cached_property
+    def _unit(self) -> Array | None:
+        """Units of the state at the typical point, kept everywhere so that entries of Z stay analytic.
+
+        None where that point has no answer; then each takes its own units, and entries may jump.
+        """
+        try:
+            return propagate(self._member(*self.middle), self.period, self.size, 1e-6).scale
+        except ComputationError:
+            return None
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Monodromy matrices in common units, their errors and ∫ tr(M⁻¹C) dτ, member by member; NaN where it fails."""
+        n = self.size
+        matrix, error, trace = np.full((len(x), 2 * n, 2 * n), np.nan), np.full(len(x), np.nan), np.full(len(x), np.nan)
+        for p in range(len(x)):
+            try:
+                run = propagate(self._member(x[p], y[p]), self.period, n, tolerance)
+            except ComputationError:
+                continue
+            unit = run.scale if self._unit is None else self._unit
+            matrix[p], trace[p] = run.monodromy * unit[None, :] / unit[:, None], run.damping_trace
+            change = run.scale / unit
+            error[p] = run.error * change.max() / change.min()
+        return matrix, error, trace
+
+    def failures(self, x: Array, y: Array, failed: NDArray[np.bool_], tolerance: float) -> list[str]:
+        """What went wrong at the pixels (y, x) that ``failed``, as a sentence about the first."""
+        if not failed.any():
+            return []
+        row, column = np.argwhere(failed)[0]
+        place = f"{self.x_name} = {x[column]:g}, {self.y_name} = {y[row]:g}"
+        try:
+            propagate(self._member(x[column], y[row]), self.period, self.size, tolerance)
+            why = "the motion grows beyond numbers"
+        except ComputationError as error:
+            why = str(error)
+        count = int(failed.sum())
+        return [f"{count} point{'s' if count > 1 else ''} failed; at {place}: {why}"]
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """See ``ChartFamily``."""
+        return quantities(*self.matrices(x, y, tolerance, threads))
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """See ``ChartFamily``."""
+        return grid_by_grid(self, box, tolerance, threads)
+
+    def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
+        values = {self.x_name: np.array([x]), self.y_name: np.array([y])}
+
+        def at(tau: Array) -> tuple[Array, Array, Array, Array]:
+            m, c, k = (part[0] for part in self.family.matrices(tau, values))
+            return m, c, k, np.zeros((len(tau), self.size))
+
+        return at
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Parameters are taken as they are."""
+        return np.asarray(value, dtype=float)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        return np.asarray(value, dtype=float)
+
+
+@dataclass(frozen=True)
+class PatchesAlone:
+    """A family read from a file without its function: only its patches answer."""
+
+    size: int
+    period: float
+    rigid_body: bool = False
+    affordable: ClassVar[int] = 0
+
+    @classmethod
+    def of(cls, function: PatchedFunction, period: float) -> PatchesAlone | None:
+        """The family behind some patches; None where there are none."""
+        if not function.patches:
+            return None
+        count = len(function.patches[0].error) - 1
+        return cls((count if count <= LARGEST else round(np.sqrt(count))) // 2, period)
+
+    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """Nothing but the patches is known: NaN."""
+        m = 2 * self.size
+        return np.full((len(x), m, m), np.nan), np.full(len(x), np.nan), np.full(len(x), np.nan)
+
+    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
+        """Nothing but the patches is known."""
+        raise InputError(
+            f"has no patch at ({x[0]:g}, {y[0]:g}) and was read without its family",
+            element="chart",
+            remedy="load_chart(path, family=…)",
+        )
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+        """See ``ChartFamily``."""
+        return grid_by_grid(self, box, tolerance, threads)
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Parameters are taken as they are."""
+        return np.asarray(value, dtype=float)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        return np.asarray(value, dtype=float)

@@ -1,0 +1,129 @@
+"""From analytic quantities to what a chart shows: spectral radius, its error, the critical multiplier."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.chain.characteristic import LARGEST, radii, radii_on_rows, roots_of, without_ones
+from trunnion.numerics.patches.patches import Patch
+from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.results.verdict import verdicts
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Arrays of any one shape: spectral radius, error bound, critical multiplier, verdict code."""
+
+    radius: Array
+    error: Array
+    critical: Complex
+    verdict: NDArray[np.int8]
+
+
+def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
+    """Pixels from quantities (q, points) and their bounds (q, points).
+
+    See ``chart_families.quantities`` for what the quantities are.
+    """
+    m, trace = 2 * size, values[-1]
+    if m == 2 and rigid_body:
+        # One inertia that turns freely neither grows nor decays.
+        one = np.where(np.isfinite(values[0]), 1.0, np.nan)
+        radius, error, critical = one, 0.0 * one, one.astype(complex)
+    elif m <= LARGEST:
+        left = (values[:m], bounds[:m])
+        radius, error, critical = radii(*(without_ones(*left) if rigid_body else left))
+    else:
+        radius, error, critical = _largest(values.T, bounds.T, m, rigid_body)
+    return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
+
+
+def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
+    """Pixels (points,) from whole monodromy matrices, whose eigenvalues are better known than coefficients' roots."""
+    every, bound = multipliers(matrix, error)
+    radius, off = spectral_radius(every, bound)
+    critical = np.take_along_axis(every, np.abs(every).argmax(axis=1)[:, None], axis=1)[:, 0]
+    return Pixels(radius, off, critical, verdicts(radius, off, np.abs(trace) < 1e-12 * (matrix.shape[1] // 2)))
+
+
+def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_body: bool) -> Pixels:
+    """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
+    m, shape = 2 * size, (len(v), len(u))
+    if m > LARGEST or rigid_body:
+        values, bounds = patch.rows(along, v), patch.error_grid(u, v)
+        found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, rigid_body)
+        return Pixels(
+            found.radius.reshape(shape),
+            found.error.reshape(shape),
+            found.critical.reshape(shape),
+            found.verdict.reshape(shape),
+        )
+    column_block, row_block = patch.blocks(u, v)
+    radius, error, critical = np.empty(shape), np.empty(shape), np.empty((*shape, 2))
+    radii_on_rows(patch.weights(v), along[:m], patch.error[:m], row_block, column_block, radius, error, critical)
+    trace = patch.rows(along[-1:], v)[0]
+    code = verdicts(radius, error, np.abs(trace) < 1e-12 * size)
+    return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
+
+
+def multipliers_of(values: Array, size: int, rigid_body: bool) -> Complex:
+    """All multipliers of one point from its quantities, by falling modulus."""
+    m = 2 * size
+    if m > LARGEST:
+        found = np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
+    elif rigid_body:
+        elastic = without_ones(values[:m, None], np.zeros((m, 1)))[0][:, 0]
+        found = np.concatenate([np.ones(2), roots_of(elastic)])
+    else:
+        found = roots_of(values[:m])
+    return np.asarray(found[np.argsort(-np.abs(found))])
+
+
+def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Array, Array, Complex]:
+    """Critical eigenvalue of interpolated matrices, with its own condition number.
+
+    Eigenvectors of the critical multiplier alone come from two steps of inverse iteration; a full
+    decomposition would cost several times more.
+    """
+    matrix = values[:, :-1].reshape(-1, m, m)
+    matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
+    every = np.full((len(values), m), np.nan, dtype=complex)
+    finite = np.isfinite(matrix).all(axis=(1, 2))
+    every[finite] = np.linalg.eigvals(matrix[finite])
+    if rigid_body:
+        keep = np.argsort(np.abs(every - 1), axis=1)[:, 2:]
+        every = np.take_along_axis(every, keep, axis=1)
+    which = np.abs(every).argmax(axis=1)[:, None]
+    critical = np.take_along_axis(every, which, axis=1)[:, 0]
+    apart = np.abs(every - critical[:, None])
+    np.put_along_axis(apart, which, np.inf, axis=1)
+    nearest = apart.min(axis=1)
+    moved = matrix_error * _condition(matrix, critical)
+    error = 2 * np.minimum(moved, np.sqrt(moved * np.maximum(nearest, matrix_error)))
+    return np.abs(critical), error, critical
+
+
+def _condition(matrix: Array, value: Complex) -> Array:
+    """‖left‖‖right‖/|left·right| of one eigenvalue of each matrix."""
+    count, m = matrix.shape[:2]
+    out = np.full(count, np.nan)
+    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(value)
+    if not finite.any():
+        return out
+    a, shift = matrix[finite], value[finite]
+    offset = shift * (1 + 1e-9) + 1e-9j
+    shifted = a - offset[:, None, None] * np.eye(m)
+    inverse = np.linalg.inv(shifted)
+    start = np.exp(1j * np.arange(m))[:, None]
+    right = inverse @ (inverse @ start)
+    left = inverse.transpose(0, 2, 1) @ (inverse.transpose(0, 2, 1) @ start)
+    dot = np.abs(np.sum(left * right, axis=(1, 2)))
+    norms = np.linalg.norm(left, axis=(1, 2)) * np.linalg.norm(right, axis=(1, 2))
+    out[finite] = np.clip(norms / np.maximum(dot, 1e-300), 1.0, 1e10)
+    return out

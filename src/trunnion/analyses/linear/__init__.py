@@ -1,0 +1,1 @@
+"""Linear analyses of a line: natural frequencies, resonances, stability, forced response."""

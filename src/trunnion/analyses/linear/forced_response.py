@@ -1,0 +1,173 @@
+"""The periodic motion that the joints themselves force on a line, to first order in the twist.
+
+x(τ) = Φ(τ) x₀ + x_p(τ) with x₀ = (I − Z)⁻¹ x_p(T), from the same integration as the multipliers. The
+linear response says nothing about stability, and beyond small rotation at the joints' inputs it is only an
+indication: joint phases then move with the motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.linear import line_matrices
+from trunnion.equations.topology import Topology
+from trunnion.numerics.chain.dense_monodromy import Propagation
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+LINEAR_RANGE = 0.1
+"""Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the
+joint's law by 0.2 rad, an error of the order of 20 % in the excitation."""
+
+
+@dataclass(frozen=True)
+class LinearResponse:
+    """Linear periodic response of a line over one period.
+
+    tau (time,) input angle [rad]; twist (time, shaft) [rad] and torque (time, shaft) [N m], positive with the
+    twist, static part included; rotation (time, coordinate) deviation from the base motion [rad];
+    joint_rotation (joint,): largest deviation at each joint's input [rad].
+    """
+
+    tau: Array
+    twist: Array
+    torque: Array
+    rotation: Array
+    joint_rotation: Array
+    shafts: tuple[str, ...]
+    joints: tuple[str, ...]
+    names: tuple[str, ...]
+
+    @property
+    def twist_amplitude(self) -> Array:
+        """Half peak to peak of each shaft's twist [rad]."""
+        return np.asarray(np.ptp(self.twist, axis=0) / 2)
+
+    @property
+    def torque_amplitude(self) -> Array:
+        """Half peak to peak of each shaft's torque [N m]."""
+        return np.asarray(np.ptp(self.torque, axis=0) / 2)
+
+    @property
+    def torque_mean(self) -> Array:
+        """Mean torque of each shaft [N m]; negative when power flows from input to output."""
+        return np.asarray(self.torque[:-1].mean(axis=0))
+
+    @property
+    def largest_joint_rotation(self) -> float:
+        """The largest deviation at any joint's input [rad]; 0 without joints."""
+        return float(np.max(self.joint_rotation, initial=0.0))
+
+    @property
+    def linear(self) -> bool:
+        """Whether the deviations stay within ``LINEAR_RANGE``, so that the amplitudes can be trusted."""
+        return bool(self.largest_joint_rotation <= LINEAR_RANGE)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        return xr.Dataset(
+            {
+                "twist": (("input_angle", "shaft"), self.twist, {"units": "rad"}),
+                "torque": (("input_angle", "shaft"), self.torque, {"units": "N*m"}),
+                "rotation": (("input_angle", "coordinate"), self.rotation, {"units": "rad"}),
+                "joint_rotation": ("joint", self.joint_rotation, {"units": "rad"}),
+            },
+            coords={
+                "input_angle": ("input_angle", self.tau, {"units": "rad"}),
+                "shaft": list(self.shafts),
+                "joint": list(self.joints),
+                "coordinate": list(self.names),
+            },
+            attrs={"linear_range": LINEAR_RANGE, "within_linear_range": int(self.linear)},
+        )
+
+    def __str__(self) -> str:
+        rows = [
+            f"  {name}: twist ±{t:.4g} rad, torque ±{f:.4g} N m about {m:.4g} N m"
+            for name, t, f, m in zip(
+                self.shafts, self.twist_amplitude, self.torque_amplitude, self.torque_mean, strict=True
+            )
+        ]
+        trust = (
+            f"largest rotation at a joint's input {self.largest_joint_rotation:.3g} rad"
+            f" ({'within' if self.linear else 'BEYOND'} the linear range of {LINEAR_RANGE} rad)"
+        )
+        return "\n".join(["linear forced response over one period", *rows, f"  {trust}"])
+
+
+def periodic_states(run: Propagation) -> Array:
+    """States (time, 2n) of the periodic solution; least-norm where a multiplier is 1 (a free line)."""
+    z = run.monodromy * run.scale[None, :] / run.scale[:, None]
+    start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular[-1] / run.scale, rcond=1e-13)[0] * run.scale
+    return np.asarray(run.matrix @ start + run.particular)
+
+
+def linear_response(assembly: Assembly, coefficients: LineCoefficients, run: Propagation) -> LinearResponse:
+    """Twists and torques of every shaft in the periodic solution of a propagated line."""
+    topo = assembly.topology
+    states = periodic_states(run)
+    n, speed = topo.size, float(coefficients.speed[0])
+    x, rate = states[:, :n], states[:, n:] * speed
+    twist, torque = shaft_motion(topo, coefficients, run.tau, x[None], rate[None])
+    return LinearResponse(
+        run.tau,
+        twist[0],
+        torque[0],
+        x,
+        joint_rotation(topo, coefficients, run.tau, x[None])[0],
+        shaft_names(assembly),
+        tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
+        topo.names,
+    )
+
+
+def shaft_names(assembly: Assembly) -> tuple[str, ...]:
+    """Names of the compliances; massless shafts in series count as one."""
+    names = assembly.line.names
+    return tuple(" + ".join(names[i] for i in c.shafts) for c in assembly.topology.compliances)
+
+
+def shaft_motion(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array, rate: Array
+) -> tuple[Array, Array]:
+    """Twist [rad] and torque [N m], (case, time, shaft), of deviations x and their rates [1/s] (case, time, n)."""
+    matrices = line_matrices(topo, coefficients, tau)
+    speed = coefficients.speed[:, None]
+    twist = np.empty((*x.shape[:2], len(topo.compliances)))
+    torque = np.empty_like(twist)
+    for e, compliance in enumerate(topo.compliances):
+        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+        q, q_dot = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
+        if far >= 0:
+            q, q_dot = q + x[..., far], q_dot + rate[..., far]
+        if near >= 0:
+            r, slope = matrices.ratio[..., e], matrices.ratio_slope[..., e] * speed
+            q, q_dot = q - r * x[..., near], q_dot - r * rate[..., near] - slope * x[..., near]
+        k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
+        twist[..., e] = coefficients.twist[:, e, None] + q
+        torque[..., e] = coefficients.torque[:, e, None] + k * q + c * q_dot
+    return twist, torque
+
+
+def joint_rotation(topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array) -> Array:
+    """Largest deviation at each joint's input [rad], (case, joint), of deviations x (case, time, n)."""
+    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
+    largest = np.zeros((len(x), len(topo.joints)))
+    for k, j in enumerate(topo.joints):
+        before = topo.stations[j].before
+        i = topo.coordinate[topo.group_of(before)]
+        if i >= 0:
+            largest[:, k] = np.abs(x[..., i] * motion.relative[..., before]).max(axis=1)
+    return largest

@@ -1,0 +1,197 @@
+"""Input speeds at which the joints of a line can excite parametric resonance, and their names.
+
+A Hooke's joint whose shaft turns at R times the input excites with 2|R|Ω and its multiples m. Modes i and j
+respond where m · 2|R|Ω = ω_i ± ω_j:
+
+    harmonic     Ω = ω_i / (2k|R|)          multiplier real positive
+    subharmonic  Ω = ω_i / ((2k−1)|R|)      multiplier real negative
+    sum          Ω = (ω_i + ω_j) / (2k|R|)  complex pair
+    difference   Ω = (ω_i − ω_j) / (2k|R|)  complex pair
+
+(S1 equations 23–24, S3 equations 15–16.) While the stiffness stays positive definite only the first three
+can open: their modes have opposite Krein signatures. Difference tongues of the papers come from
+mis-linearised equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.results.speeds import show_speed, speed_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KINDS = ("harmonic", "subharmonic", "sum", "difference")
+_SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+LOCKED = 0.7
+"""Radians over a period between a mode and the multiplier that it is locked into, at most."""
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|."""
+
+    speed: float
+    kind: str
+    modes: tuple[int, ...]
+    order: int
+    rate: Fraction = Fraction(1)
+
+    @property
+    def opens(self) -> bool:
+        """Whether an unloaded line can be unstable there at all."""
+        return self.kind != "difference"
+
+    @property
+    def formula(self) -> str:
+        """``(ω₁+ω₂)/2``, the resonance speed in terms of the natural frequencies."""
+        mode = [f"ω{m}".translate(_SUBSCRIPT) for m in self.modes]
+        if self.kind in ("harmonic", "subharmonic"):
+            top = mode[0]
+            below = 2 * self.order if self.kind == "harmonic" else 2 * self.order - 1
+        else:
+            top = f"({mode[0]}+{mode[1]})" if self.kind == "sum" else f"({mode[1]}−{mode[0]})"
+            below = 2 * self.order
+        under = below * self.rate
+        if under == 1:
+            return top
+        return f"{top}/{under}" if under.denominator == 1 else f"{top}/({under})"
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.formula}"
+
+
+@dataclass(frozen=True)
+class ResonanceSpeeds:
+    """Resonances by ascending speed."""
+
+    resonances: tuple[Resonance, ...]
+    orders: int
+
+    def __iter__(self):  # type: ignore[no-untyped-def]
+        return iter(self.resonances)
+
+    def __len__(self) -> int:
+        return len(self.resonances)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        rows = self.resonances
+        return xr.Dataset(
+            {
+                "speed": ("resonance", [r.speed for r in rows], {"units": "rad/s"}),
+                "kind": ("resonance", [r.kind for r in rows]),
+                "order": ("resonance", [r.order for r in rows]),
+                "opens": (
+                    "resonance",
+                    np.array([r.opens for r in rows], dtype=np.int8),
+                    {"long_name": "unloaded line can be unstable there"},
+                ),
+            },
+            coords={"resonance": [str(r) for r in rows]},
+            attrs={"orders": self.orders},
+        )
+
+    def table(self, unit: str = "rpm") -> list[dict[str, object]]:
+        """One row per resonance, speeds in ``unit``."""
+        factor = speed_factor(unit)
+        return [
+            {
+                f"speed [{unit}]": r.speed * factor,
+                "kind": r.kind,
+                "formula": r.formula,
+                "can open": "yes" if r.opens else "no",
+            }
+            for r in self.resonances
+        ]
+
+    def within(self, low: float, high: float) -> ResonanceSpeeds:
+        """Those between two input speeds [rad/s]."""
+        return ResonanceSpeeds(tuple(r for r in self.resonances if low <= r.speed <= high), self.orders)
+
+    def __str__(self) -> str:
+        if not self.resonances:
+            return "no parametric resonance speeds: the line has no bent joint or no elastic mode"
+        rows = [f"  {show_speed(r.speed)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
+        return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows])
+
+
+def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:
+    """Named parametric resonance speeds of ``line`` up to order k = ``orders``, ascending.
+
+    Raises
+    ------
+    InputError : ``orders`` is not a positive whole number.
+    """
+    if isinstance(orders, bool) or not isinstance(orders, int) or orders < 1:
+        raise InputError("must be a whole number, 1 or more", key="orders", value=orders)
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    modes = natural_frequencies(assembly).frequency
+    rates = sorted({abs(assembly.topology.speed_ratio[j]) for j in assembly.topology.joints})
+    found = [r for rate in rates for r in _at_rate(modes, orders, rate)]
+    return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders)
+
+
+def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:
+    elastic = [(i, w) for i, w in enumerate(map(float, modes), start=1) if w > 0]
+    found = []
+    for k in range(1, orders + 1):
+        for i, w in elastic:
+            found.append(Resonance(w / (2 * k * float(rate)), "harmonic", (i,), k, rate))
+            found.append(Resonance(w / ((2 * k - 1) * float(rate)), "subharmonic", (i,), k, rate))
+        for (i, low), (j, high) in combinations(elastic, 2):
+            found.append(Resonance((high + low) / (2 * k * float(rate)), "sum", (i, j), k, rate))
+            if high > low * (1 + 1e-12):
+                found.append(Resonance((high - low) / (2 * k * float(rate)), "difference", (i, j), k, rate))
+    return found
+
+
+def _turned(frequency: float, half_turns: Fraction, multiplier: complex) -> float:
+    """How far [rad] the turn of a mode over the period is from that of a multiplier, forward or backward."""
+    turn, angle = frequency * np.pi * float(half_turns), float(np.angle(multiplier))
+    return float(min(abs(np.angle(np.exp(1j * (turn - side * angle)))) for side in (-1, 1)))
+
+
+def nearest_resonance(
+    frequency: np.ndarray,
+    multiplier: complex,
+    rates: tuple[Fraction, ...] = (Fraction(1),),
+    half_turns: Fraction = Fraction(1),
+    farthest: float = 0.1,
+    orders: int = 4,
+) -> Resonance | None:
+    """The resonance that a critical multiplier names, or None where none is near.
+
+    ``frequency`` are natural frequencies over the input speed, so that speed 1 is where the line runs;
+    ``half_turns`` is the period of the multiplier in half turns of the input. A mode locked to m times a joint's
+    excitation 2RΩ turns by m R π in every half turn, so over the period a real multiplier must have the sign
+    of cos(m R π half_turns); a complex one belongs to a sum if it turns as both its modes do. Among those that
+    fit and lie within a relative distance ``farthest`` in speed, the nearest.
+    """
+    real = abs(multiplier.imag) <= 1e-7 * abs(multiplier)
+    candidates = []
+    for rate in rates:
+        for r in _at_rate(frequency, orders, rate):
+            if r.kind in ("harmonic", "subharmonic"):
+                m = 2 * r.order if r.kind == "harmonic" else 2 * r.order - 1
+                sign = np.cos(np.pi * float(m * rate * half_turns))
+                fits = real and sign * multiplier.real > 0.99 * abs(multiplier.real)
+            else:
+                fits = r.kind == "sum" and (not real or half_turns != 1)
+                fits = fits and all(_turned(frequency[i - 1], half_turns, multiplier) < LOCKED for i in r.modes)
+            if fits and abs(np.log(r.speed)) <= farthest:
+                candidates.append(r)
+    return min(candidates, key=lambda r: (round(abs(np.log(r.speed)), 9), r.order)) if candidates else None

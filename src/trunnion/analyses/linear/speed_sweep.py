@@ -1,0 +1,224 @@
+"""Torque amplitudes over speed: the linear forced response of a line at many speeds at once.
+
+The periodic solution is sought as x(τ) = Σ X_h e^{ihbτ}, b = 2π/period, so that M ẍ + C ẋ + K x = F becomes
+one linear system per speed (Hill's infinite system, cut off):
+
+    Σ_h [−(hbΩ)² M_{m−h} + i hbΩ C_{m−h} + K_{m−h}] X_h = F_m,
+
+with M_k … the Fourier coefficients over the input angle. A second solution with fewer harmonics tells how
+far the series has converged. ``stability(...).response`` finds the same by integration, at one speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.linear import LineMatrices, line_matrices, require_steady_base
+from trunnion.equations.topology import Topology, require_period
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+
+FEWEST, MOST = 6, 14
+"""Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
+SMALL_ENOUGH = 1e-9
+MOST_UNKNOWNS = 3000
+BATCH = 40
+"""Speeds solved together: bounded memory, and steps of progress."""
+CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
+"""Extra speeds about each resonance of the forced response, in half-widths of its peak."""
+
+
+@dataclass(frozen=True)
+class SpeedSweep:
+    """Linear forced response over speed.
+
+    speed (speed,) of the input [rad/s]; twist_amplitude (speed, shaft) [rad] and torque_amplitude (speed,
+    shaft) [N m], half peak to peak; torque_mean (speed, shaft) [N m], negative where power flows from input
+    to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
+    stays within the range in which the linear response can be trusted; cut_off (speed,): relative change of
+    the amplitudes when a third of the harmonics is left out.
+    """
+
+    speed: Array
+    twist_amplitude: Array
+    torque_amplitude: Array
+    torque_mean: Array
+    joint_rotation: Array
+    cut_off: Array
+    shafts: tuple[str, ...]
+
+    @property
+    def linear(self) -> NDArray[np.bool_]:
+        """Where the amplitudes can be trusted (speed,)."""
+        return np.asarray(self.joint_rotation <= LINEAR_RANGE)
+
+    def peak(self, shaft: str) -> tuple[float, float]:
+        """Largest torque amplitude of a shaft [N m] and the speed it stands at [rad/s]."""
+        column = self.torque_amplitude[:, self.shafts.index(shaft)]
+        at = int(np.nanargmax(column))
+        return float(column[at]), float(self.speed[at])
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        per_shaft = ("speed", "shaft")
+        return xr.Dataset(
+            {
+                "twist_amplitude": (per_shaft, self.twist_amplitude, {"units": "rad"}),
+                "torque_amplitude": (per_shaft, self.torque_amplitude, {"units": "N*m"}),
+                "torque_mean": (per_shaft, self.torque_mean, {"units": "N*m"}),
+                "joint_rotation": ("speed", self.joint_rotation, {"units": "rad"}),
+                "linear": ("speed", self.linear.astype(np.int8)),
+                "cut_off": ("speed", self.cut_off, {"units": "1"}),
+            },
+            coords={"speed": ("speed", self.speed, {"units": "rad/s"}), "shaft": list(self.shafts)},
+            attrs={"linear_range": LINEAR_RANGE},
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
+        from trunnion.plots.torque_over_speed import draw
+
+        return draw(self, axes, **options)
+
+    def __str__(self) -> str:
+        rows = [f"linear forced response at {len(self.speed)} speeds"]
+        for shaft in self.shafts:
+            torque, at = self.peak(shaft)
+            rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {at:.6g} rad/s")
+        beyond = np.count_nonzero(~self.linear)
+        if beyond:
+            rows.append(
+                f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only"
+            )
+        return "\n".join(rows)
+
+
+def speed_sweep(
+    line: Driveline | Assembly,
+    speeds: ArrayLike,
+    *,
+    statically_twisted: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> SpeedSweep:
+    """Torque and twist amplitudes of every shaft at each of ``speeds`` [rad/s]; see ``sweep_speeds`` for a grid.
+
+    Raises
+    ------
+    InputError : speeds that are not positive; a line without steady base motion or with too long a period.
+    """
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    require_steady_base(assembly)
+    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
+        raise InputError(
+            "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+        )
+    topo = assembly.topology
+    half_turns = 2 * require_period(assembly.line, topo)
+    harmonics = int(np.ceil(_harmonics(assembly) * float(half_turns)))
+    if (2 * harmonics + 1) * topo.size > MOST_UNKNOWNS:
+        raise InputError(
+            "repeats only after too many turns for a sweep over speed",
+            element="driveline",
+            remedy="use stability at single speeds",
+        )
+    period = np.pi * float(half_turns)
+    parts = []
+    for start in range(0, len(speed), BATCH):
+        table = assembly.table(len(speed[start : start + BATCH]))
+        table[:, 0] = speed[start : start + BATCH]
+        coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+        parts.append(_amplitudes(topo, coefficients, period, harmonics))
+        if progress:
+            progress(min(1.0, (start + BATCH) / len(speed)))
+    twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
+    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly))
+
+
+def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:
+    """Speeds [rad/s] from ``low`` to ``high``, closer together about the peaks ω_i/(2m|R|) of the response.
+
+    An even grid alone would step over the peaks of lightly damped modes.
+    """
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    modes = natural_frequencies(assembly)
+    topo = assembly.topology
+    rates = sorted({abs(float(topo.speed_ratio[j])) for j in topo.joints})
+    found = [np.linspace(low, high, points)]
+    for frequency, damping in zip(modes.frequency, modes.damping_ratio, strict=True):
+        width = max(float(abs(damping)), 1e-4)
+        for rate in rates:
+            for order in (1, 2, 3):
+                found.append(frequency / (2 * order * rate) * (1 + width * CLUSTER))
+    every = np.unique(np.concatenate(found))
+    return every[(every >= low) & (every <= high)]
+
+
+def _harmonics(assembly: Assembly) -> int:
+    """As many as the largest bend asks for."""
+    largest = float(np.abs(assembly.coefficients(assembly.table(1)).angle).max(initial=0.0))
+    share = np.tan(largest / 2) ** 2
+    return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))), FEWEST, MOST))
+
+
+def _amplitudes(
+    topo: Topology, coefficients: LineCoefficients, period: float, harmonics: int
+) -> tuple[Array, Array, Array, Array, Array]:
+    times = max(64, 8 * harmonics)
+    tau = period * np.arange(times) / times
+    matrices = line_matrices(topo, coefficients, tau)
+    x, rate = _periodic(matrices, coefficients.speed, period, harmonics)
+    twist, torque = shaft_motion(topo, coefficients, tau, x, rate)
+    coarse = shaft_motion(
+        topo, coefficients, tau, *_periodic(matrices, coefficients.speed, period, max(1, 2 * harmonics // 3))
+    )[1]
+    amplitude = np.ptp(torque, axis=1) / 2
+    largest = np.maximum(amplitude.max(axis=1), 1e-300)
+    cut_off = np.abs(np.ptp(coarse, axis=1) / 2 - amplitude).max(axis=1) / largest
+    rotation = joint_rotation(topo, coefficients, tau, x).max(axis=1, initial=0.0)
+    return np.ptp(twist, axis=1) / 2, amplitude, torque.mean(axis=1), rotation, cut_off
+
+
+def _periodic(matrices: LineMatrices, speed: Array, period: float, harmonics: int) -> tuple[Array, Array]:
+    """x and dx/dt (case, time, n) of the periodic solution."""
+    mass, damping, stiffness, forcing = (
+        np.fft.fft(part, axis=1) / part.shape[1]
+        for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.forcing)
+    )
+    cases, times, n = forcing.shape
+    h = np.arange(-harmonics, harmonics + 1)
+    place = (h[:, None] - h[None, :]) % times
+    x, rate = np.zeros((2, cases, times, n), dtype=complex)
+    for case in range(cases):
+        s = 1j * h * (2 * np.pi / period) * speed[case]
+        blocks = (
+            mass[case, place] * (s**2)[None, :, None, None]
+            + damping[case, place] * s[None, :, None, None]
+            + stiffness[case, place]
+        )
+        matrix = blocks.transpose(0, 2, 1, 3).reshape(len(h) * n, len(h) * n)
+        right = forcing[case, h % times].reshape(-1)
+        try:
+            found = np.linalg.solve(matrix, right)
+        except np.linalg.LinAlgError:  # a free line keeps its rigid rotation undetermined
+            found = np.linalg.lstsq(matrix, right, rcond=1e-13)[0]
+        found = found.reshape(len(h), n)
+        x[case, h % times], rate[case, h % times] = found, found * s[:, None]
+    return tuple((np.fft.ifft(part, axis=1) * times).real for part in (x, rate))  # type: ignore[return-value]

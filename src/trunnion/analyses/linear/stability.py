@@ -1,0 +1,270 @@
+"""Floquet stability of a line, or of any periodic linear system, at one speed.
+
+The propagator Z over one period maps a disturbance to itself one period later; the motion is stable if all
+its multipliers (eigenvalues) lie inside the unit circle. Z is integrated until two step sizes agree, and
+that agreement becomes the error of every multiplier (see ``numerics.spectrum``). Liouville's identity
+ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
+from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.linear import periodic_linear_system
+from trunnion.equations.topology import require_period
+from trunnion.errors import InputError
+from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
+from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed
+from trunnion.results.verdict import MEANING, Verdict, verdicts
+from trunnion.systems.periodic_linear import PeriodicLinearSystem
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+TIMES_PER_PERIOD = 128
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Floquet stability at one speed.
+
+    multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
+    error_estimate leave out the rigid-body pair of a free line; period [rad of input angle]; speed [rad/s]
+    (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
+    floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
+    resonance: the one the critical multiplier names; response: the linear forced response (None for a system
+    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,).
+    """
+
+    multipliers: NDArray[np.complex128]
+    multiplier_error: Array
+    floquet_modes: NDArray[np.complex128]
+    spectral_radius: float
+    error_estimate: float
+    verdict: Verdict
+    period: float
+    speed: float
+    resonance: Resonance | None
+    response: LinearResponse | None
+    liouville_defect: float
+    names: tuple[str, ...]
+    rigid_body: bool
+
+    @property
+    def exponents(self) -> NDArray[np.complex128]:
+        """Characteristic exponents ln σ / period, in 1/s (imaginary part modulo the excitation)."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.multipliers) * (self.speed / self.period), dtype=complex)
+
+    @property
+    def growth_rate(self) -> float:
+        """Growth of the fastest disturbance [1/s]; negative when it decays."""
+        return float(np.log(self.spectral_radius) * self.speed / self.period)
+
+    @property
+    def growth_rate_error(self) -> float:
+        """Error estimate of the growth rate [1/s]."""
+        return float(self.error_estimate / self.spectral_radius * self.speed / self.period)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first; speeds in rad/s."""
+        return self.findings_in("rad/s")
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        return by_gravity(_findings(self, unit))
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units; complex numbers as real and imaginary parts."""
+        import xarray as xr
+
+        dataset = xr.Dataset(
+            {
+                "multiplier": (
+                    ("multiplier_number", "part"),
+                    np.stack([self.multipliers.real, self.multipliers.imag], axis=1),
+                    {"units": "1"},
+                ),
+                "multiplier_error": ("multiplier_number", self.multiplier_error, {"units": "1"}),
+                "spectral_radius": ((), self.spectral_radius, {"units": "1"}),
+                "error_estimate": ((), self.error_estimate, {"units": "1"}),
+                "growth_rate": ((), self.growth_rate, {"units": "1/s"}),
+                "period": ((), self.period, {"units": "rad", "long_name": "period in input angle"}),
+                "speed": ((), self.speed, {"units": "rad/s"}),
+            },
+            coords={"part": ["real", "imaginary"]},
+            attrs={
+                "verdict": str(self.verdict),
+                "resonance": str(self.resonance or ""),
+                "liouville_defect": self.liouville_defect,
+            },
+        )
+        return dataset if self.response is None else dataset.merge(self.response.data)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """The result in a few lines, speeds in ``unit``."""
+        lines = [
+            f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
+            f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e} per period of "
+            f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle",
+            f"  growth rate {self.growth_rate:+.6g} ± {self.growth_rate_error:.1e} 1/s",
+        ]
+        if self.resonance is not None:
+            at = show_speed(self.resonance.speed, unit)
+            lines.append(f"  the critical multiplier belongs to the {self.resonance} (at {at})")
+        if self.rigid_body:
+            lines.append("  the rigid-body pair of multipliers at 1 is set aside")
+        if self.response is not None:
+            lines.append("  " + str(self.response).replace("\n", "\n  "))
+        return "\n".join(lines)
+
+    def __str__(self) -> str:
+        return self.describe()
+
+
+def stability(
+    line: Driveline | Assembly | PeriodicLinearSystem,
+    speed: float | None = None,
+    *,
+    tolerance: float = 1e-10,
+    statically_twisted: bool = True,
+) -> Stability:
+    """Floquet stability of ``line`` at input ``speed`` [rad/s], with the linear forced response.
+
+    Parameters
+    ----------
+    line : a driveline, or any ``PeriodicLinearSystem`` (which carries its own rate; leave ``speed`` out).
+    speed : mean input speed [rad/s]; default the operating speed of the file.
+    tolerance : error asked of Z in energy-like units.
+    statically_twisted : linearise about the line twisted by its load torques (joint phases and η′T̄);
+        False takes zero twist, as S1 and S3 do.
+
+    Raises
+    ------
+    InputError : no speed; a line without inertia, period or steady base motion.
+    ComputationError : the integration did not settle.
+    """
+    if isinstance(line, PeriodicLinearSystem):
+        if speed is not None:
+            raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
+        scaled = np.array(line.frequencies) * line.period / np.pi
+        run = _propagate(line, tolerance)
+        return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, rigid_body=False)
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    table = assembly.table(1, operating_speed(assembly.line, speed))
+    system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
+    run = _propagate(system, tolerance)
+    coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+    topo = assembly.topology
+    rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
+    response = linear_response(assembly, coefficients, run)
+    frequency = np.array(system.frequencies)
+    half_turns = 2 * require_period(assembly.line, topo)
+    return _judge(system, run, rates, half_turns, frequency, response, rigid_body=topo.free)
+
+
+def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
+    def arrays(tau: Array) -> tuple[Array, Array, Array, Array]:
+        m = system.coefficients(tau)
+        return m.mass, m.damping, m.stiffness, m.forcing
+
+    return propagate(arrays, system.period, system.size, tolerance, TIMES_PER_PERIOD // 2)
+
+
+def _judge(
+    system: PeriodicLinearSystem,
+    run: Propagation,
+    rates: tuple[Fraction, ...],
+    half_turns: Fraction,
+    frequency: Array,
+    response: LinearResponse | None,
+    *,
+    rigid_body: bool,
+) -> Stability:
+    matrix = run.scaled_monodromy
+    values, bound = multipliers(matrix, np.array(run.error))
+    order = np.argsort(-np.abs(values))
+    values, bound = values[order], bound[order]
+    modes = np.linalg.eig(matrix)[1][:, order] * run.scale[:, None]
+    kept = np.arange(len(values))
+    if rigid_body:
+        kept = np.sort(np.argsort(np.abs(values - 1))[2:])
+    # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
+    radius, error = spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
+    undamped = abs(run.damping_trace) < 1e-13 * system.size
+    verdict = Verdict(int(verdicts(radius, error, undamped)))
+    named = None
+    if len(kept) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+        # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
+        farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
+        named = nearest_resonance(frequency, complex(values[kept[0]]), rates, half_turns, farthest)
+    if named is not None:
+        named = Resonance(named.speed * system.rate, named.kind, named.modes, named.order, named.rate)
+    sign, log_det = np.linalg.slogdet(matrix)
+    return Stability(
+        multipliers=values,
+        multiplier_error=bound,
+        floquet_modes=modes / np.abs(modes).max(0),
+        spectral_radius=float(radius),
+        error_estimate=float(error),
+        verdict=verdict,
+        period=system.period,
+        speed=system.rate,
+        resonance=named,
+        response=response,
+        liouville_defect=float(abs(log_det + run.damping_trace)) if sign > 0 else float("inf"),
+        names=system.names,
+        rigid_body=rigid_body,
+    )
+
+
+def _findings(result: Stability, unit: str) -> Iterable[Finding]:
+    at = show_speed(result.speed, unit)
+    if result.verdict is Verdict.UNSTABLE:
+        doubling = np.log(2) / result.growth_rate
+        where = f"; it belongs to the {result.resonance}" if result.resonance else ""
+        yield Finding(
+            Gravity.DANGER,
+            f"The line is unstable at {at}: a small torsional disturbance doubles every {doubling:.3g} s{where}.",
+        )
+    elif result.verdict is Verdict.UNDECIDED:
+        yield Finding(
+            Gravity.CAUTION,
+            f"The line stands on a stability boundary at {at}: |multiplier| is 1 to within "
+            f"{result.error_estimate:.1e}; give damping its true value or ask for a smaller tolerance.",
+        )
+    elif result.verdict is Verdict.MARGINAL:
+        yield Finding(
+            Gravity.NOTE,
+            f"Without damping the line is marginal at {at}: disturbances neither grow nor die out.",
+        )
+    else:
+        yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
+    response = result.response
+    if response is not None and not response.linear:
+        worst = int(response.joint_rotation.argmax())
+        shaft = int(response.twist_amplitude.argmax())
+        steady = "Stable does not mean quiet: its" if result.verdict is Verdict.STABLE else "Its"
+        yield Finding(
+            Gravity.DANGER,
+            f"{steady} joints force a rotation of {response.joint_rotation[worst]:.3g} rad at the input of "
+            f"{response.joints[worst]} at {at} (twist of {response.shafts[shaft]} "
+            f"±{response.twist_amplitude[shaft]:.3g} rad by linear theory), beyond the linear range of "
+            f"{LINEAR_RANGE} rad: read it as resonance, not as an amplitude; the verdict holds for small twist only.",
+        )

@@ -1,0 +1,1 @@
+"""Motions in time: simulation, run-up, exact motion of lines with stages."""

@@ -1,0 +1,241 @@
+"""``exact_motion``: a driveline with backlash and stages in time, exact within every stage.
+
+Within a combination of stages the line is linear with constant coefficients; its motion is summed as a Taylor series to
+rounding, and the changes of stage are located to rounding (``numerics/staged_flow_kernel``). There is no tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine, staged_line
+from trunnion.errors import InputError
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, move, stages_of
+from trunnion.results.outcome import Outcome
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+MOST_EVENTS = 100_000
+SAMPLES = 1024
+SIDES = {-1: "lower", 0: "none", 1: "upper"}
+
+
+@dataclass(frozen=True)
+class StageEvents:
+    """Changes of stage in order of time.
+
+    time (events,) [s]; spring (events,): places in ``springs``; stage (events,): the one begun, counted from 0 as the
+    stiffnesses are; side (events,): −1 or +1 in contact below or above the softest stage, 0 in it; rate (events,):
+    twist rate [rad/s].
+    """
+
+    time: Array
+    spring: Integers
+    stage: Integers
+    side: Integers
+    rate: Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+@dataclass(frozen=True)
+class ExactMotion:
+    """A motion of a line with stages.
+
+    springs: names of all shafts and meshes (spring,); time (points,) [s]; twist [rad], rate [rad/s] and torque [N m]
+    (points, spring), positive with the twist as in ``simulate``, a mesh as a shaft behind its rigid pair; stage
+    (points, spring); events; start and final (2m,): twists, then rates, where ``line.turns`` those of the first
+    inertia's rotation after the springs' in each half; end: time reached [s]; outcome.
+    """
+
+    line: StagedLine
+    start: Array
+    start_time: float
+    time: Array
+    state: Array = field(repr=False)
+    stage: Integers = field(repr=False)
+    events: StageEvents = field(repr=False)
+    final: Array
+    end: float
+    outcome: Outcome
+
+    @property
+    def springs(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        return self.line.springs
+
+    @property
+    def twist(self) -> Array:
+        """Twist of every spring (points, spring) [rad]."""
+        return self.state[:, : len(self.springs)]
+
+    @property
+    def rate(self) -> Array:
+        """Twist rate of every spring (points, spring) [rad/s]."""
+        return self.state[:, self.line.size :][:, : len(self.springs)]
+
+    @property
+    def torque(self) -> Array:
+        """Torque of every spring (points, spring) [N m]."""
+        return self.line.flow().torque(self.state, self.stage)[:, : len(self.springs)]
+
+    def at(self, time: ArrayLike) -> Array:
+        """States (times, 2m) at rising times of the run, as exact as the run itself; NaN outside it."""
+        times = np.atleast_1d(np.asarray(time, dtype=float))
+        inside = (times >= self.start_time) & (times <= self.end)
+        out = np.full((len(times), 2 * self.line.size), np.nan)
+        order = np.argsort(times[inside], kind="stable")
+        found = move(
+            self.line.flow(), self.start, self.start_time, self.end, times=times[inside][order],
+            most_events=len(self.events) + 1,
+        )  # fmt: skip
+        out[np.flatnonzero(inside)[order]] = found.states
+        return out
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        over = ("time", "spring")
+        return xr.Dataset(
+            {
+                "twist": (over, self.twist, {"units": "rad"}),
+                "twist_rate": (over, self.rate, {"units": "rad/s"}),
+                "torque": (over, self.torque, {"units": "N*m"}),
+                "stage": (over, self.stage[:, : len(self.springs)]),
+                "event_time": ("event", self.events.time, {"units": "s"}),
+                "event_spring": ("event", np.array([self.springs[i] for i in self.events.spring], dtype=str)),
+                "event_stage": ("event", self.events.stage),
+                "event_side": ("event", self.events.side),
+            },
+            coords={"time": ("time", self.time, {"units": "s"}), "spring": list(self.springs)},
+            attrs={"driveline": self.line.name, "outcome": self.outcome.kind,
+                   "outcome_sentence": self.outcome.sentence},
+        )  # fmt: skip
+
+    def __str__(self) -> str:
+        rows = []
+        for e, name in enumerate(self.springs):
+            torque, count = self.torque[:, e], int(np.sum(self.events.spring == e))
+            extent = f"{torque.min():.6g} … {torque.max():.6g} N m" if len(torque) else "not sampled"
+            changes = f", {count} changes of stage" if self.line.counts[e] > 1 else ""
+            rows.append(f"  {name}: torque {extent}{changes}")
+        span = f"from {self.start_time:.6g} to {self.end:.6g} s"
+        head = f"exact motion of {self.line.name} {span}, {len(self.events)} events"
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+def exact_motion(
+    line: Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    speed: float | None = None,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    most_events: int = MOST_EVENTS,
+) -> ExactMotion:
+    """The motion of a line whose springs are linear stage by stage, to rounding: no step size, no tolerance.
+
+    Takes shafts, gear meshes with backlash and transmission error, shafts with stages, ratios, branches, loads
+    (constant, viscous, harmonic); not bent Hooke's or tripod joints, a varying mesh stiffness or quadratic loads, for
+    which there is ``simulate``. Torques by order act at the mean rotation.
+
+    Parameters
+    ----------
+    duration : [s]; by default up to the last of ``times``.
+    speed : mean input speed [rad/s], by default that of the line's operation; only where meshes, orders or viscous
+        loads depend on it.
+    start : twists [rad] of all springs, then their rates [rad/s], (2m,); by default the line turning uniformly, every
+        disk where rigid shafts would hold it.
+    start_time : time of the start [s].
+    times : rising times to be reported; by default 1025 over the whole run.
+    most_events : changes of stage after which the run ends.
+
+    Returns
+    -------
+    ExactMotion; where the changes of stage accumulate its ``outcome`` says so, and it ends there.
+
+    Raises
+    ------
+    InputError : a line that has no exact motion, no duration, a start of the wrong size, times outside the run.
+    """
+    prepared = staged_line(line, speed)
+    shown = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+    if duration is None and shown is not None and shown.size:
+        duration = float(shown[-1]) - start_time
+    if duration is None or not (np.isfinite(duration) and duration > 0):
+        raise InputError("must be a positive time", key="duration", value=duration, remedy="give seconds, or times")
+    if isinstance(most_events, bool) or most_events != int(most_events) or most_events < 1:
+        raise InputError("must be a whole number from 1", key="most_events", value=most_events)
+    end = start_time + float(duration)
+    if shown is None:
+        shown = start_time + float(duration) * np.arange(SAMPLES + 1) / SAMPLES
+    elif not (np.all(np.diff(shown) >= 0) and shown[0] >= start_time and shown[-1] <= end):
+        raise InputError(
+            "must rise and lie within the run", key="times", value=[float(shown[0]), float(shown[-1])],
+            remedy=f"choose times from {start_time:g} to {end:g} s",
+        )  # fmt: skip
+    first = start_state(prepared, start)
+    run = move(prepared.flow(), first, start_time, end, times=shown, most_events=int(most_events))
+    reached = shown <= run.time
+    return ExactMotion(
+        prepared, first, start_time, shown[reached], run.states[reached], run.shown_stages[reached],
+        stage_events(prepared, run), run.state, run.time, _outcome(prepared, run),
+    )  # fmt: skip
+
+
+def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
+    """A start as given, or rest.
+
+    Raises
+    ------
+    InputError : not 2m finite numbers.
+    """
+    if start is None:
+        return line.rest()
+    state = np.array(start, dtype=float)
+    if state.shape != (2 * line.size,) or not np.isfinite(state).all():
+        names = ", ".join([*line.springs, *(["rotation of the first disk"] if line.turns else [])])
+        raise InputError(
+            f"must be {2 * line.size} finite numbers", element=line.name, key="start", value=f"shape {state.shape}",
+            remedy=f"give the twists of {names}, then their rates",
+        )  # fmt: skip
+    return state
+
+
+def stage_events(line: StagedLine, run: StagedPassage) -> StageEvents:
+    """The events of a passage."""
+    spring, stage = run.events[:, 1].astype(np.int64), run.events[:, 2].astype(np.int64)
+    return StageEvents(run.events[:, 0], spring, stage, line.sides[spring, stage], run.events[:, 3])
+
+
+def first_stages(line: StagedLine, state: Array) -> Integers:
+    """Stage of every spring (m,) at a state."""
+    return stages_of(line.flow(), state)
+
+
+def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:
+    if run.done:
+        return Outcome(True, "reached", f"reached {run.time:g} s with {len(run.events)} changes of stage")
+    busiest = np.bincount(run.events[:, 1].astype(np.int64), minlength=line.size)
+    name = line.springs[int(np.argmax(busiest[: len(line.springs)]))]
+    since = float(run.events[0, 0]) if len(run.events) else run.time
+    return Outcome(
+        False, "chatter",
+        f"{name} changes its stage too often: {len(run.events)} events from t = {since:g} to {run.time:g} s, where the "
+        "run ends; raise most_events, ask for less time at once, or raise damping",
+    )  # fmt: skip

@@ -1,0 +1,94 @@
+"""What became of an integration, in a sentence: what happened, where, and what to change."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.numerics.integration.integration import End, Trajectory
+from trunnion.results.outcome import Outcome
+from trunnion.systems.system import System
+from trunnion.systems.user_functions import WRONG_SHAPE, parameter_tuple, store
+
+GROWN = 1e6
+"""Growth of the state over a run beyond which a vanishing step is called a blow-up."""
+
+
+def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[str, ...]) -> Outcome:
+    """The outcome of ``run``; ``guards`` name the system's guards and then the caller's events."""
+    _pass_on_interrupt(system)
+    at = f"at t = {run.time:.6g} s"
+    largest = int(np.argmax(np.abs(np.nan_to_num(run.final[0], nan=np.inf)) / np.asarray(system.scale)))
+    value = f"{system.states[largest]} = {run.final[0, largest]:.3g}"
+    if run.end is End.REACHED:
+        return Outcome(True, "reached", f"reached t = {run.time:.6g} s in {run.steps} steps")
+    if run.end is End.STOPPED:
+        return Outcome(True, "stopped", f"stopped {at} by the event {guards[int(run.event_which[-1])]}")
+    if run.end is End.STEP_LIMIT:
+        return Outcome(
+            False,
+            "step limit",
+            f"stopped {at} after {run.steps} steps; raise most_steps, ask for a shorter time, or loosen "
+            f"tolerance = {tolerance:g}",
+        )
+    if run.end is End.CHATTER:
+        name = guards[int(run.event_which[-1])]
+        return Outcome(
+            False,
+            "chatter",
+            f"the event {name} chatters {at}: it fires again and again within rounding, so the motion sticks or "
+            "slides there; give the system a regime for sticking, or smooth the law",
+        )
+    grown = np.abs(run.final[0]) > GROWN * np.maximum(np.abs(run.state[0]), np.asarray(system.scale))
+    if run.end is End.BEYOND or (run.end in (End.TOO_SMALL, End.NOT_FINITE) and np.any(grown)):
+        return Outcome(
+            False,
+            "blow-up",
+            f"the motion blows up {at}: {value}; check signs and damping, or end the run before that",
+        )
+    if run.end is End.REFUSED:
+        return Outcome(False, "refused", f"near {at[3:]} the right-hand side of {system.name} {_refusal(system, run)}")
+    if run.end is End.NOT_FINITE:
+        return Outcome(
+            False,
+            "not finite",
+            f"the right-hand side of {system.name} is not finite near {at[3:]} ({value}); check it for roots and "
+            "quotients there, or start elsewhere",
+        )
+    return Outcome(
+        False,
+        "step too small",
+        f"no step {at} is small enough for tolerance = {tolerance:g} ({value}); loosen the tolerance, or describe a "
+        "jump in the right-hand side by regimes",
+    )
+
+
+def _pass_on_interrupt(system: System) -> None:
+    """A Ctrl-C that met the interpreter inside the right-hand side."""
+    for error in system.rate.raised:
+        if not isinstance(error, Exception):
+            raise error
+
+
+def _refusal(system: System, run: Trajectory) -> str:
+    """Ask the Python function what it minds; it may do so only a little further on."""
+    if system.rate.raised:
+        return f"raised {type(system.rate.raised[0]).__name__}: {system.rate.raised[0]}; correct it"
+    if system.function is not None:
+        function = getattr(system.function, "py_func", system.function)
+        p = parameter_tuple(tuple(system.parameters))(*system.parameters.values())
+        regime = (run.final_regime,) if system.regimes is not None else ()
+        rate = system.rate_at(run.time, run.final[0], run.final_regime)
+        rate = rate if np.all(np.isfinite(rate)) else np.zeros(system.size)
+        for ahead in (0.0, *np.logspace(-15, -2, 14)):
+            try:
+                value = function(run.time + ahead, run.final[0] + ahead * rate, p, *regime)
+            except Exception as error:
+                return f"raised {type(error).__name__}: {error}; correct it, or start elsewhere"
+            if np.shape(value) != (system.size,):
+                break
+        if store(np.zeros(system.size), value) == WRONG_SHAPE:
+            return (
+                f"returned an array of shape {np.shape(value)} where ({system.size},) is needed; return one number "
+                "per state"
+            )
+    return "(or a guard) could not be evaluated; check it"

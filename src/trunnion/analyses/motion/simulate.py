@@ -1,0 +1,281 @@
+"""``simulate``: a motion of a line or of any system in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.motion.simulation import Simulation, positive_time, rising_times, simulate_system
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_system import LineMotion, LineSystem, line_system
+from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.errors import InputError
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.results.outcome import Outcome
+from trunnion.systems.events import Event
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+PER_TURN = 128
+MOST_SAMPLES = 200_000
+
+
+@dataclass(frozen=True)
+class LineSimulation:
+    """A motion of a line.
+
+    time (points,) [s]; rotation (points, coordinate): deviation from uniform rotation [rad], and rate [rad/s];
+    twist [rad] and torque [N m] of every shaft (points, shaft), positive with the twist; pieces: one simulation
+    per straight piece of the speed profile; outcome: how it ended.
+    """
+
+    line: LineSystem
+    profile: SpeedProfile
+    pieces: tuple[Simulation, ...]
+    time: Array
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        return self.pieces[-1].outcome
+
+    @property
+    def end(self) -> float:
+        """The last time [s]."""
+        return self.pieces[-1].end
+
+    @property
+    def final(self) -> Array:
+        """The last state (2n,)."""
+        return self.pieces[-1].final
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the shafts."""
+        return self.line.shafts
+
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return sum(piece.trajectory.steps for piece in self.pieces)
+
+    @property
+    def event_time(self) -> Array:
+        """Times of all events (events,) [s]."""
+        return np.concatenate([piece.event_time for piece in self.pieces])
+
+    def at(self, time: ArrayLike) -> Array:
+        """States (…, 2n) at any times of the run; NaN outside it."""
+        times = np.asarray(time, dtype=float)
+        out = np.full((*times.shape, self.pieces[0].system.size), np.nan)
+        for piece in self.pieces:
+            low, high = piece.time_range
+            inside = (times >= low) & (times <= high)
+            out[inside] = piece.at(times[inside])
+        return out
+
+    def motion_at(self, time: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations at times (m,) of the run."""
+        times = np.atleast_1d(np.asarray(time, dtype=float))
+        states = self.at(times)
+        shape = (len(times), len(self.shafts))
+        stations = len(self.line.assembly.topology.stations)
+        found = LineMotion(np.full(shape, np.nan), np.full(shape, np.nan), np.full((len(times), stations), np.nan))
+        for piece in self.pieces:
+            low, high = piece.time_range
+            inside = (times >= low) & (times <= high)
+            if inside.any():
+                part = self.line.observe(piece.system, times[inside], states[inside])
+                for whole, some in zip(
+                    (found.twist, found.torque, found.rotation), (part.twist, part.torque, part.rotation), strict=True
+                ):
+                    whole[inside] = some
+        return found
+
+    @cached_property
+    def _motion(self) -> LineMotion:
+        return self.motion_at(self.time)
+
+    @cached_property
+    def state(self) -> Array:
+        """States (points, 2n) at ``time``."""
+        return self.at(self.time)
+
+    @property
+    def twist(self) -> Array:
+        """Twist [rad] of every shaft, (points, shaft)."""
+        return self._motion.twist
+
+    @property
+    def torque(self) -> Array:
+        """Torque [N m] of every shaft, (points, shaft)."""
+        return self._motion.torque
+
+    @property
+    def input_speed(self) -> Array:
+        """Input speed [rad/s] at ``time``."""
+        return self.profile.at(self.time)
+
+    @property
+    def torque_peak_to_peak(self) -> Array:
+        """Largest minus smallest torque of every shaft [N m] over the run."""
+        return np.asarray(np.ptp(self.torque, axis=0))
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        n = len(self.line.names)
+        return xr.Dataset(
+            {
+                "rotation": (("time", "coordinate"), self.state[:, :n], {"units": "rad"}),
+                "rate": (("time", "coordinate"), self.state[:, n:], {"units": "rad/s"}),
+                "twist": (("time", "shaft"), self.twist, {"units": "rad"}),
+                "torque": (("time", "shaft"), self.torque, {"units": "N*m"}),
+                "input_speed": ("time", self.input_speed, {"units": "rad/s"}),
+                "input_angle": ("time", self.profile.angle(self.time), {"units": "rad"}),
+            },
+            coords={
+                "time": ("time", self.time, {"units": "s"}),
+                "coordinate": list(self.line.names),
+                "shaft": list(self.shafts),
+            },
+            attrs={
+                "driveline": self.pieces[0].system.name,
+                "outcome": self.outcome.kind,
+                "outcome_sentence": self.outcome.sentence,
+                "tolerance": self.pieces[0].tolerance,
+                "steps": self.steps,
+            },
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torques over time; see ``trunnion.plots.motion``."""
+        from trunnion.plots.motion import draw_line_history
+
+        return draw_line_history(self, axes, **options)
+
+    def plot_order_map(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
+        from trunnion.plots.order_map import draw
+
+        return draw(self, axes, **options)
+
+    def __str__(self) -> str:
+        rows = [
+            f"  {name}: torque {low:.6g} … {high:.6g} N m"
+            for name, low, high in zip(
+                self.shafts, np.nanmin(self.torque, axis=0), np.nanmax(self.torque, axis=0), strict=True
+            )
+        ]
+        turns = float(self.profile.angle(self.end)) / (2 * np.pi)
+        head = f"motion of {self.pieces[0].system.name} over {self.end:.6g} s ({turns:.6g} turns): {self.steps} steps"
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+@overload
+def simulate(system: System, duration: float | None = None, **options: Any) -> Simulation: ...
+@overload
+def simulate(system: Driveline | Assembly, duration: float | None = None, **options: Any) -> LineSimulation: ...
+
+
+def simulate(
+    system: System | Driveline | Assembly, duration: float | None = None, **options: Any
+) -> Simulation | LineSimulation:
+    """Integrate a line, or any system, in time.
+
+    For a driveline
+    ---------------
+    duration : [s]; or ``turns`` of the input.
+    speed : input speed [rad/s] (default: the file's operating speed), or a ``SpeedProfile``.
+    start : state (2n,), deviations from uniform rotation and their rates; by default the line without twist.
+    times, events, tolerance, most_steps, dense : as for a system.
+
+    For a ``System``
+    ----------------
+    See ``trunnion.analyses.motion.simulation.simulate_system``: duration or periods, start, times, events, tolerance …
+
+    Returns
+    -------
+    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+    """
+    if isinstance(system, System):
+        return simulate_system(system, duration, **options)
+    if not isinstance(system, Driveline | Assembly):
+        raise InputError(
+            f"is a {type(system).__name__}, which cannot be simulated",
+            key="system",
+            remedy="give a Driveline or a System, tn.reference_system('duffing'), say",
+        )
+    return _simulate_line(system, duration, **options)
+
+
+def _simulate_line(
+    line: Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    speed: float | SpeedProfile | None = None,
+    turns: float | None = None,
+    start: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    dense: bool = True,
+) -> LineSimulation:
+    description = line.line if isinstance(line, Assembly) else line
+    profile = speed
+    if not isinstance(profile, SpeedProfile):
+        profile = SpeedProfile([0.0], [operating_speed(description, profile)])
+    prepared = line_system(line, profile.speed[0])
+    wanted = None if times is None else rising_times(times, 0.0)
+    if turns is not None:
+        if duration is not None:
+            raise InputError("is given beside a duration", key="turns", value=turns, remedy="leave one of them out")
+        if len(profile.time) > 1:
+            raise InputError("goes with a constant speed", key="turns", value=turns, remedy="give a duration")
+        duration = 2 * np.pi * turns / profile.speed[0]
+    if duration is None and wanted is not None:
+        duration = float(wanted[-1])
+    duration = positive_time(duration, "give seconds, or turns of the input")
+    state = prepared.rest() if start is None else prepared.system.checked(start, "start")
+    row = prepared.assembly.table(1, profile.speed[0])[0]
+    pieces: list[Simulation] = []
+    for end, course in profile.courses(duration):
+        system = prepared.system
+        if len(profile.time) > 1:
+            numbers = prepared.numbers(row, course)
+            system = replace(system, numbers_of=_constant(numbers), period=None)
+        pieces.append(
+            simulate_system(
+                system, end - course.since, start=state, start_time=course.since, events=events,
+                tolerance=tolerance, most_steps=most_steps, dense=dense,
+            )
+        )  # fmt: skip
+        state = pieces[-1].final
+        if pieces[-1].end < end:
+            break
+    reached = pieces[-1].end
+    if wanted is None:
+        turned = float(profile.angle(reached)) / (2 * np.pi)
+        count = int(np.clip(PER_TURN * turned, 256, MOST_SAMPLES))
+        wanted = np.linspace(0.0, reached, count + 1) if dense else np.array([reached])
+    return LineSimulation(prepared, profile, tuple(pieces), wanted[wanted <= reached])
+
+
+def _constant(numbers: Array) -> Any:
+    return lambda parameters: numbers

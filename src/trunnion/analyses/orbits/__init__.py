@@ -1,0 +1,1 @@
+"""Periodic motions, their branches, sweeps and basins."""

@@ -1,0 +1,385 @@
+"""A branch of periodic motions, whoever computed it: its points, its special points, and where it ends.
+
+Between neighbours the following change sign and are located by bracketing (Doedel, Keller, Kernévez, Int. J.
+Bifurcation and Chaos 1, 1991):
+
+    fold                    dλ/ds
+    period doubling         Π (σ + 1)                       (a multiplier passes −1)
+    Neimark–Sacker          Π_{i<j} (σ_i σ_j − 1)           (a complex pair passes the unit circle)
+    branch point            Π (σ − 1) without a fold        (a multiplier passes +1, as when a symmetry breaks)
+    grazing                 the number of regime changes    (the motion touches a switching surface)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
+from trunnion.results.outcome import Outcome
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Progress = Callable[[float], None]
+CLOSE = 1e-9
+"""Size of the last correction of a point, in units of the scales."""
+STEP, LEAST_STEP = 0.1, 1e-8
+"""Largest and smallest step along the branch, in units of the scales."""
+UNTOLD = 1e-6
+"""A spectral radius nearer to 1 than this is not told from it."""
+NOISE = 1e-8
+"""A test function below this on both sides changes sign by rounding, as Π(σ_i σ_j − 1) does without damping."""
+FOLLOWING = 0.15
+"""Share of the time that following takes where a motion has contacts; the rest locates its special points."""
+LOCATING = 50.0
+"""Time to locate a grazing, over that of looking at two neighbours which have none between them."""
+BOUNDLESS = 30.0
+"""Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
+
+
+class Names(Protocol):
+    """Name and unit of the parameter, and of what is observed."""
+
+    @property
+    def label(self) -> str: ...
+
+    @property
+    def unit(self) -> str: ...
+
+    @property
+    def curves(self) -> tuple[str, ...]: ...
+
+    @property
+    def curve_unit(self) -> str: ...
+
+
+class Problem(Protocol):
+    """What is followed: equations of a curve z = (unknowns, parameter), and what its points tell."""
+
+    @property
+    def over(self) -> Names:
+        """What the branch lies over."""
+
+    @property
+    def scale(self) -> Array:
+        """Size of each unknown and of the parameter that counts as one."""
+
+    @property
+    def size(self) -> int:
+        """Number of states n."""
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """Residual and Jacobian; NaN where there is none."""
+
+    def start(self, point: CurvePoint) -> Array:
+        """State at t = 0."""
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        """Floquet multipliers by falling modulus; NaN where the motion cannot be computed."""
+
+    def changes(self, point: CurvePoint) -> int:
+        """Changes of regime in a period."""
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        """Peak-to-peak and largest absolute value of the curves, amplitude of the fundamental of the states, period."""
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point where the branch turns or its stability changes.
+
+    kind: "fold", "period doubling", "Neimark–Sacker", "branch point" or "grazing"; parameter: its value; start (n,);
+    multipliers (n,); amplitude (n,) of the fundamental of every state; peak_to_peak (curves,) as in the branch.
+    """
+
+    kind: str
+    parameter: float
+    start: Array
+    multipliers: Complex
+    amplitude: Array
+    peak_to_peak: Array
+
+
+@dataclass(frozen=True)
+class PeriodicBranch:
+    """Periodic motions along a branch.
+
+    parameter (points,); start (points, n); multipliers (points, n); verdict (points,) codes; peak_to_peak (points,
+    curves): of the shaft torques [N m] of a line, or of the states of a system, named by ``curves``; largest: their
+    largest absolute values; amplitude (points, n): of the fundamental of every state; special:
+    folds and other special points in order; outcome: where the branch ended and why.
+    """
+
+    label: str
+    unit: str
+    period: Array
+    parameter: Array
+    start: Array
+    multipliers: Complex
+    verdict: NDArray[np.int8]
+    peak_to_peak: Array
+    largest: Array
+    amplitude: Array
+    curves: tuple[str, ...]
+    curve_unit: str
+    special: tuple[SpecialPoint, ...]
+    outcome: Outcome
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Where the motion is stable, (points,)."""
+        return np.asarray(self.verdict == Verdict.STABLE)
+
+    @property
+    def folds(self) -> tuple[SpecialPoint, ...]:
+        """The folds in order."""
+        return tuple(p for p in self.special if p.kind == "fold")
+
+    def at(self, value: float) -> list[tuple[Array, Verdict]]:
+        """Starts and verdicts of all motions of the branch at a value of the parameter, interpolated linearly."""
+        side = self.parameter - value
+        found = []
+        for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
+            share = 0.0 if side[i] == side[i + 1] else side[i] / (side[i] - side[i + 1])
+            found.append((self.start[i] + share * (self.start[i + 1] - self.start[i]), Verdict(int(self.verdict[i]))))
+        return found
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        from trunnion.results.verdict import flag_attributes
+
+        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=-1)
+        return xr.Dataset(
+            {
+                "parameter": ("point", self.parameter, {"units": self.unit, "long_name": self.label}),
+                "period": ("point", self.period, {"units": "s"}),
+                "peak_to_peak": (("point", "curve"), self.peak_to_peak, {"units": self.curve_unit}),
+                "largest": (("point", "curve"), self.largest, {"units": self.curve_unit}),
+                "multiplier": (("point", "multiplier_number", "part"), parts, {"units": "1"}),
+                "verdict": ("point", self.verdict, flag_attributes()),
+                "special_kind": ("special", np.array([p.kind for p in self.special], dtype=str)),
+                "special_parameter": ("special", np.array([p.parameter for p in self.special]), {"units": self.unit}),
+            },
+            coords={"curve": list(self.curves), "part": ["real", "imaginary"]},
+            attrs={"outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
+        from trunnion.plots.response_curve import draw
+
+        return draw(self, axes, **options)
+
+    def __str__(self) -> str:
+        if not len(self.parameter):
+            return f"no branch over {self.label}: {self.outcome}"
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        counts = f"{int(self.stable.sum())} stable of {len(self.parameter)} points"
+        rows = [f"  {p.kind} at {p.parameter:.9g}{unit}" for p in self.special]
+        low, high = self.parameter.min(), self.parameter.max()
+        head = f"branch of periodic motions over {self.label} from {low:.6g} to {high:.6g}{unit}: {counts}"
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    __repr__ = __str__
+
+
+def follow_both_ways(
+    problem: Problem,
+    first: Array,
+    low: float,
+    high: float,
+    most_points: int,
+    tolerance: float = CLOSE,
+    stop: Callable[[CurvePoint], bool] | None = None,
+    progress: Progress | None = None,
+) -> tuple[list[tuple[CurvePoint, str]], Outcome]:
+    """Points of the branch through ``first`` from ``low`` to ``high``, each with its kind or "", and the outcome.
+
+    ``stop`` ends the branch at the first point it is true of; that end is an outcome of kind "stopped".
+    ``progress`` is called with the share done.
+    """
+    tell = progress or (lambda share: None)
+    begin = float(first[-1])
+    curves: list[Curve] = []
+    ways = [(d, end) for d, end in ((-1.0, low), (1.0, high)) if (end - begin) * d > 0]
+    for i, (direction, end) in enumerate(ways):
+        told = _part(tell, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
+        curves.append(
+            follow(
+                problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
+                first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
+                tolerance=tolerance, on_point=_watched(stop, told, begin, end),
+            )
+        )  # fmt: skip
+        if curves[-1].ending is Ending.STOPPED:
+            return [(point, "") for point in curves[-1].points], _ending(problem, curves[-1])
+        if curves[-1].ending is Ending.CLOSED:
+            break  # the other way is the same way round
+    outcomes = [_ending(problem, curve) for curve in curves]
+    # Both ways from a point inside the range: the first walk is turned round and the common point kept once.
+    count, walks = len(curves), []
+    for i, curve in enumerate(curves):
+        ahead = FOLLOWING + (1 - FOLLOWING) * np.array([i, i + 1]) / count
+        walks.append(_special_points(problem, curve, _part(tell, *ahead)))
+    whole = walks[-1]
+    if len(walks) == 2 and walks[1]:
+        whole = [*reversed(walks[0][1:]), *walks[1]]
+    failed = [outcome for outcome in outcomes if not outcome.ok]
+    return whole, failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
+
+
+def _part(tell: Progress, first: float, last: float) -> Progress:
+    """Progress of one stage of the work, which takes it from share ``first`` to ``last``."""
+    return lambda share: tell(float(first + (last - first) * share))
+
+
+def _watched(
+    stop: Callable[[CurvePoint], bool] | None, tell: Progress, begin: float, end: float
+) -> Callable[[CurvePoint], bool]:
+    """``stop``, telling of every point how far the curve has come; it turns back at folds, what is told does not."""
+    farthest = 0.0
+
+    def on_point(point: CurvePoint) -> bool:
+        nonlocal farthest
+        farthest = max(farthest, (point.parameter - begin) / (end - begin))
+        tell(farthest)
+        return stop is not None and stop(point)
+
+    return on_point
+
+
+def _ending(problem: Problem, curve: Curve) -> Outcome:
+    """The end of a curve as a sentence."""
+    count = len(curve.points)
+    unit = "" if problem.over.unit == "1" else f" {problem.over.unit}"
+    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}{unit}" if count else "its start"
+    if curve.ending is Ending.BOUND:
+        return Outcome(True, "end", f"followed to {at}")
+    if curve.ending is Ending.CLOSED:
+        return Outcome(True, "closed", "the branch closes on itself")
+    if curve.ending is Ending.STOPPED:
+        return Outcome(False, "stopped", f"stopped at {at}")
+    if _boundless(problem, curve):
+        words = f"the motion grows without bound towards {at}, where nothing damps it"
+        return Outcome(False, "unbounded", f"{words}; give damping, or end the range before")
+    if curve.ending is Ending.POINTS:
+        return Outcome(False, "points", f"stopped after {count} points at {at}; raise most_points or longest_step")
+    return Outcome(
+        False,
+        "lost",
+        f"the branch was lost at {at} after {count} points: no step converges there; lower longest_step (of a series: "
+        "raise harmonics), or look for a switching surface that the motion touches",
+    )
+
+
+def _boundless(problem: Problem, curve: Curve) -> bool:
+    """Whether the last half of the curve does nothing but grow at nearly one value of the parameter."""
+    if len(curve.points) < 8:
+        return False
+    z = curve.z / problem.scale
+    size = np.linalg.norm(z[:, :-1], axis=1)
+    late, parameter = size[len(z) // 2 :], z[len(z) // 2 :, -1]
+    # A curve whose steps shrink grows too, but less and less: it is lost.
+    growing = bool(np.all(np.diff(late) > 0)) and late[-1] > max(2 * late[0], BOUNDLESS * size.min())
+    return growing and float(np.ptp(parameter)) < 0.02 * float(np.ptp(z[:, -1]))
+
+
+def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tuple[CurvePoint, str]]:
+    """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
+    folds = dict(curve.folds)
+    tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
+        ("period doubling", _doubling),
+        ("Neimark–Sacker", _torus),
+        ("branch point", _branching),
+    )
+    changes = [problem.changes(point) for point in curve.points]
+    ahead = np.cumsum(1 + LOCATING * (np.diff(changes) != 0))
+    points = [(curve.points[0], "")] if curve.points else []
+    for i, (here, there) in enumerate(zip(curve.points[:-1], curve.points[1:], strict=True)):
+        found: list[tuple[CurvePoint, str]] = [(folds[i], "fold")] if i in folds else []
+        if changes[i] != changes[i + 1]:
+            before = changes[i]
+            met = _located(problem, here, there, lambda p, n=before: float(problem.changes(p) == n) - 0.5)  # type: ignore[misc]
+            found += [(met, "grazing")] if met is not None else []
+        for kind, test in tests:
+            ends = test(problem.multipliers(here)), test(problem.multipliers(there))
+            told = ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
+            if not told or (kind == "branch point" and i in folds):
+                continue
+            met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
+            if met is not None and (kind != "Neimark–Sacker" or _on_circle(problem.multipliers(met))):
+                found.append((met, kind))
+        chord = (there.z - here.z) / problem.scale
+        points += sorted(found, key=lambda f: float(chord @ ((f[0].z - here.z) / problem.scale)))
+        points.append((there, ""))
+        tell(float(ahead[i] / ahead[-1]))
+    return points
+
+
+def _located(
+    problem: Problem, here: CurvePoint, there: CurvePoint, test: Callable[[CurvePoint], float]
+) -> CurvePoint | None:
+    return locate(problem.equations, here, there, test, scale=problem.scale, tolerance=CLOSE)
+
+
+def _doubling(values: Complex) -> float:
+    return float(np.prod(values + 1).real)
+
+
+def _branching(values: Complex) -> float:
+    return float(np.prod(values - 1).real)
+
+
+def _torus(values: Complex) -> float:
+    pairs = [values[i] * values[j] - 1 for i in range(len(values)) for j in range(i)]
+    return float(np.prod(pairs).real)
+
+
+def _on_circle(values: Complex) -> bool:
+    """Whether the pair at product one is complex (a torus is born) and not two real reciprocals."""
+    near = [abs(values[i].imag) for i in range(len(values)) for j in range(i) if abs(values[i] * values[j] - 1) < 1e-5]
+    return any(size > 1e-6 for size in near)
+
+
+def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outcome) -> PeriodicBranch:
+    """The branch from its points and the kinds of the special ones among them."""
+    points, kinds, n = [p for p, _ in walk], [kind for _, kind in walk], problem.size
+    observed = [problem.observed(p) for p in points]
+    multipliers = np.array([problem.multipliers(p) for p in points]).reshape(-1, n)
+    radius = np.abs(multipliers).max(axis=1) if len(points) else np.zeros(0)
+    codes = np.where(
+        radius < 1 - UNTOLD, Verdict.STABLE, np.where(radius > 1 + UNTOLD, Verdict.UNSTABLE, Verdict.UNDECIDED)
+    )
+    special = tuple(
+        SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])
+        for point, kind, values, seen in zip(points, kinds, multipliers, observed, strict=True)
+        if kind
+    )
+    return PeriodicBranch(
+        label=problem.over.label,
+        unit=problem.over.unit,
+        period=np.array([o[3] for o in observed]),
+        parameter=np.array([p.parameter for p in points]),
+        start=np.array([problem.start(p) for p in points]).reshape(-1, n),
+        multipliers=multipliers,
+        verdict=codes.astype(np.int8),
+        peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.over.curves)),
+        largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.over.curves)),
+        amplitude=np.array([o[2] for o in observed]).reshape(-1, n),
+        curves=problem.over.curves,
+        curve_unit=problem.over.curve_unit,
+        special=special,
+        outcome=outcome,
+    )

@@ -1,0 +1,292 @@
+"""Periodic motions of a driveline with stages by shooting with its exact motion.
+
+The motion over a period and its derivatives by start and parameter are known to rounding, saltation at every change of
+stage included (``numerics/staged_flow``), so Newton's method closes the orbit to rounding and the multipliers are
+those of the motion itself. Where it touches the end of a stage (grazing) there is no derivative; ``clearance`` and
+``slowest_crossing`` say how near that is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.motion.exact_motion import StageEvents, first_stages, stage_events, start_state
+from trunnion.analyses.orbits.closing import CLOSED, SETTLING, checked_periods, verdict_of
+from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine, staged_line
+from trunnion.errors import InputError
+from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, period
+from trunnion.results.outcome import Outcome
+from trunnion.results.verdict import MEANING, Verdict
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+LEAST_TWIST = 1e-6
+"""What a twist counts as at least when an orbit is closed [rad]."""
+SINGULAR = 1e-12
+"""Smallest singular value over the largest below which the condition of closing determines nothing."""
+
+
+@dataclass(frozen=True)
+class ExactOrbit:
+    """A periodic motion of a line with stages and what it does in its period.
+
+    value: speed or common frequency of the excitation [rad/s], whichever turns the line's excitation; start (2m,):
+    twists [rad], then rates [rad/s], at t = 0; period [s], ``periods`` times that of the excitation; multipliers
+    (2m,) by falling modulus and monodromy (2m, 2m), without the rotation of a line that starts free; twist_low,
+    twist_high, twist_mean [rad], torque_low, torque_high, torque_mean [N m] (spring,); contacts: sides, impacts and
+    their energy, per spring with stages; clearance [rad]: least distance of an extremum of a twist from an end of its
+    stage, before it or behind it, inf without one; slowest_crossing [rad/s]: smallest rate at a change of stage, inf
+    without one; iterations of the shooting.
+    """
+
+    line: StagedLine
+    value: float
+    start: Array
+    period: float
+    periods: int
+    multipliers: Complex
+    monodromy: Array = field(repr=False)
+    events: StageEvents = field(repr=False)
+    twist_low: Array
+    twist_high: Array
+    twist_mean: Array
+    torque_low: Array
+    torque_high: Array
+    torque_mean: Array
+    contacts: tuple[SpringContact, ...]
+    clearance: float
+    slowest_crossing: float
+    iterations: int
+    outcome: Outcome
+
+    @property
+    def springs(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        return self.line.springs
+
+    @property
+    def torque_peak_to_peak(self) -> Array:
+        """Highest minus lowest torque (spring,) [N m]."""
+        return self.torque_high - self.torque_low
+
+    @property
+    def verdict(self) -> Verdict:
+        """Stable, unstable, or not told apart."""
+        return verdict_of(self.multipliers)
+
+    def motion(self, count: int = 512) -> tuple[Array, Array, Array]:
+        """Times (count,) over the period, its end left out, states (count, 2m) and torques (count, spring)."""
+        times, flow = self.period * np.arange(count) / count, self.line.flow(self.value)
+        run = move(flow, self.start, 0.0, self.period, times=times)
+        return times, run.states, flow.torque(run.states, run.shown_stages)[:, : len(self.springs)]
+
+    def __str__(self) -> str:
+        at = f"{'ω' if self.line.clock != 'speed' else 'Ω'} = {self.value:.6g} rad/s"
+        if not self.outcome.ok:
+            return f"no periodic motion of {self.line.name} at {at}: {self.outcome}"
+        rows = [
+            f"  {name}: torque {mean:.6g} N m, {swing:.6g} N m peak to peak"
+            for name, mean, swing in zip(self.springs, self.torque_mean, self.torque_peak_to_peak, strict=True)
+        ]
+        near = f"{self.clearance:.2g} rad from grazing" if np.isfinite(self.clearance) else "no stage end is approached"
+        slow = f", slowest crossing {self.slowest_crossing:.2g} rad/s" if np.isfinite(self.slowest_crossing) else ""
+        return "\n".join(
+            [
+                f"{self.verdict} periodic motion of {self.line.name} at {at}, period {self.period:.6g} s: "
+                f"{MEANING[self.verdict]}",
+                *rows,
+                *(f"  {contact}" for contact in self.contacts),
+                f"  {near}{slow}; largest multiplier {abs(self.multipliers[0]):.8g}; {self.outcome}",
+            ]
+        )
+
+    __repr__ = __str__
+
+
+@dataclass
+class Shooting:
+    """The closing of a motion over ``periods`` of the excitation, as equations in its start and the clock's value.
+
+    Of a line that starts free with a viscous load the rotation itself need not close, only its rate: ``kept`` are the
+    places of the others.
+    """
+
+    line: StagedLine
+    periods: int
+
+    @property
+    def kept(self) -> NDArray[np.int64]:
+        m = self.line.size
+        return np.array([i for i in range(2 * m) if not (self.line.turns and i == m - 1)])
+
+    def whole(self, part: Array) -> Array:
+        """The state (2m,) from its kept part."""
+        state = np.zeros(2 * self.line.size)
+        state[self.kept] = part
+        return state
+
+    def scale(self, start: Array, value: float) -> Array:
+        """Size of every kept number that counts as one."""
+        m = self.line.size
+        size = np.maximum(np.maximum(np.abs(start[:m]), self.line.knots), LEAST_TWIST)
+        turning = 2 * np.pi / self.line.period(value)
+        return np.concatenate([size, np.maximum(np.abs(start[m:]), size * turning)])[self.kept]
+
+    def passage(self, part: Array, value: float, watch: bool = False) -> StagedPassage:
+        length = self.periods * self.line.period(value)
+        slope = -length / value if self.line.clock in ("speed", "frequency") else 0.0
+        return period(self.line.flow(value), self.whole(part), length, slope, watch=watch)
+
+    def residual(self, part: Array, value: float) -> tuple[Array, Array]:
+        """What is missing to close (kept,), and its derivative (kept, kept + 1); NaN where there is none."""
+        n = len(self.kept)
+        if np.isfinite(part).all():
+            run = self.passage(part, value)
+            if run.done and np.isfinite(run.tangents).all():
+                slope = run.tangents[np.ix_(self.kept, np.append(self.kept, 2 * self.line.size))]
+                return run.state[self.kept] - part, slope - np.eye(n, n + 1)
+        return np.full(n, np.nan), np.full((n, n + 1), np.nan)
+
+
+def exact_orbit(
+    line: Driveline | Assembly,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    periods: int = 1,
+    settle: bool = True,
+) -> ExactOrbit:
+    """See ``piecewise_orbit``."""
+    prepared = staged_line(line, speed)
+    refuse_found_speed(prepared)
+    return orbit_near(prepared, start_state(prepared, start), prepared.value, checked_periods(periods), settle)
+
+
+def refuse_found_speed(line: StagedLine) -> None:
+    """Refuse a line whose excitation turns with a speed that its own loads lead to.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if line.turns and line.clock in ("speed", "both"):
+        raise InputError(
+            "starts free under viscous loads, so the speed that its excitation turns with is a result, not given",
+            element="driveline", key="viscous_load",
+            remedy="put a ConstantSpeed in front, or use tn.periodic_response, which finds the speed",
+        )  # fmt: skip
+
+
+def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
+    """The periodic motion near ``start`` (2m,) at a value of the clock."""
+    shooting, flow, length = Shooting(line, periods), line.flow(value), line.period(value)
+    root = None
+    for count in SETTLING if settle else SETTLING[:1]:
+        guess = start
+        for _ in range(count):
+            run = move(flow, guess, 0.0, length)
+            guess = run.state if run.done else np.full_like(guess, np.nan)
+        if not np.isfinite(guess).all():
+            break
+        first = shooting.scale(guess, value)
+        root = solve(lambda x: _square(shooting.residual(x, value)), guess[shooting.kept], first, tolerance=CLOSED)
+        if root.converged and not _determined(root, first):
+            words = (
+                "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
+                "own frequency; give some damping or another frequency"
+            )
+            return _missing(line, start, value, periods, Outcome(False, "not determined", words))
+        if root.converged:
+            return orbit_at(shooting, root.x, value, root.iterations)
+    words = (
+        f"shooting did not converge (residual {root.size if root else np.inf:.1e}); start closer, for example from the "
+        "final state of a longer tn.exact_motion, or give more periods if the motion is a subharmonic"
+    )
+    return _missing(line, start, value, periods, Outcome(False, "not converged", words))
+
+
+def _determined(root: Root, scale: Array) -> bool:
+    """Whether the closing condition fixes the motion: its derivative is not singular."""
+    sizes = np.linalg.svd(root.derivative * scale[None, :] / scale[:, None], compute_uv=False)
+    return bool(sizes[-1] > SINGULAR * max(sizes[0], 1.0))
+
+
+def _square(pair: tuple[Array, Array]) -> tuple[Array, Array]:
+    return pair[0], pair[1][:, :-1]
+
+
+def orbit_at(shooting: Shooting, part: Array, value: float, iterations: int = 0) -> ExactOrbit:
+    """The orbit through a state known to lie on it."""
+    line = shooting.line
+    run = shooting.passage(part, value, watch=True)
+    k, count, start = kernel(), len(line.springs), shooting.whole(part)
+    matrix = run.tangents[np.ix_(shooting.kept, shooting.kept)]
+    length = shooting.periods * line.period(value)
+    closes = float(np.max(np.abs(run.state[shooting.kept] - part) / shooting.scale(start, value)))
+    seen, rates = run.seen[:count], run.events[:, 4]
+    return ExactOrbit(
+        line=line,
+        value=value,
+        start=start,
+        period=length,
+        periods=shooting.periods,
+        multipliers=by_modulus(matrix),
+        monodromy=matrix,
+        events=stage_events(line, run),
+        twist_low=seen[:, k.LOW],
+        twist_high=seen[:, k.HIGH],
+        twist_mean=seen[:, k.TWIST_SUM] / length,
+        torque_low=seen[:, k.TORQUE_LOW],
+        torque_high=seen[:, k.TORQUE_HIGH],
+        torque_mean=seen[:, k.TORQUE_SUM] / length,
+        contacts=contacts_of(line, start, run, length),
+        clearance=float(seen[:, k.CLEARANCE].min()),
+        slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
+        iterations=iterations,
+        outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
+    )
+
+
+def by_modulus(matrix: Array) -> Complex:
+    """Eigenvalues by falling modulus."""
+    values = np.linalg.eigvals(matrix).astype(complex)
+    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+
+def contacts_of(line: StagedLine, start: Array, run: StagedPassage, length: float) -> tuple[SpringContact, ...]:
+    """What every spring with stages touches in a watched passage, and how hard it lands.
+
+    An impact is a passage from the softest stage to another, its energy ½ m q̇² with the inertia m that the rest of the
+    line opposes to a push between the ends of the spring.
+    """
+    first, events = first_stages(line, start), stage_events(line, run)
+    found = []
+    for e in line.staged:
+        own = events.spring == e
+        sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
+        landed = (sides[1:] != 0) & (sides[:-1] == 0)
+        speeds = np.abs(events.rate[own][landed])
+        shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / length
+        touched = {int(s) for s in line.sides[e, : line.counts[e]][shares > 0]}
+        where = "both" if {1, -1} <= touched else "upper" if 1 in touched else "lower" if -1 in touched else "none"
+        play = float(shares[line.sides[e, : line.counts[e]] == 0].sum())
+        energy = float(np.sum(speeds**2)) / (2 * line.inverse[e, e])
+        found.append(SpringContact(line.springs[e], shares, play, where, speeds, energy))
+    return tuple(found)
+
+
+def _missing(line: StagedLine, start: Array, value: float, periods: int, outcome: Outcome) -> ExactOrbit:
+    nan, n, count = float("nan"), len(Shooting(line, periods).kept), len(line.springs)
+    none, whole = np.full(count, nan), np.zeros(0, dtype=np.int64)
+    return ExactOrbit(
+        line, value, start, periods * line.period(value), periods, np.full(n, nan, dtype=complex), np.full((n, n), nan),
+        StageEvents(np.zeros(0), whole, whole, whole, np.zeros(0)), none, none, none, none, none, none, (), nan, nan, 0,
+        outcome,
+    )  # fmt: skip

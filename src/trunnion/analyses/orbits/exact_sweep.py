@@ -1,0 +1,217 @@
+"""A driveline with stages on the bench: speed, or frequency of the excitation, raised or lowered step by step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.motion.exact_motion import start_state
+from trunnion.analyses.orbits.exact_branch import line_over
+from trunnion.analyses.orbits.exact_orbit import Shooting, contacts_of
+from trunnion.analyses.orbits.jumps import abrupt_changes
+from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine
+from trunnion.errors import InputError
+from trunnion.numerics.piecewise_linear.staged_flow import kernel, move
+from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+REPEATS = 3
+"""Periods that must repeat, one after the other, before a motion counts as settled."""
+
+
+@dataclass(frozen=True)
+class LineSweep:
+    """Steady motions of a line, in the order it was swept.
+
+    value (points,) [rad/s]: speed, or common frequency of excitation in time; torque_low, torque_high (points, spring)
+    [N m]; contacts (points of spring contacts), per period of the excitation where settled, else over the periods
+    measured; settled (points,): whether the motion repeats every period; periods (points,): run until then; state
+    (points, 2m).
+    """
+
+    line: StagedLine
+    value: Array
+    torque_low: Array
+    torque_high: Array
+    contacts: tuple[tuple[SpringContact, ...], ...] = field(repr=False)
+    settled: NDArray[np.bool_]
+    periods: NDArray[np.int64]
+    state: Array
+    outcome: Outcome
+
+    @property
+    def springs(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        return self.line.springs
+
+    @property
+    def torque_peak_to_peak(self) -> Array:
+        """Highest minus lowest torque (points, spring) [N m]."""
+        return self.torque_high - self.torque_low
+
+    @property
+    def up(self) -> bool:
+        """Whether the value was raised."""
+        return bool(self.value[-1] >= self.value[0])
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of neighbouring values between which the torque of any spring changes abruptly, in the order swept."""
+        found = {i for swing in self.torque_peak_to_peak.T for i in abrupt_changes(swing)}
+        return tuple((float(self.value[i]), float(self.value[i + 1])) for i in sorted(found))
+
+    def swing_of(self, spring: str) -> Array:
+        """Peak-to-peak torque of one spring (points,) [N m].
+
+        Raises
+        ------
+        InputError : no such spring.
+        """
+        return self.torque_peak_to_peak[:, self._place(spring)]
+
+    def contact_of(self, spring: str) -> tuple[str, ...]:
+        """none, one-sided or two-sided (points,); of a spring without stages two-sided."""
+        staged = [self.springs[e] for e in self.line.staged]
+        if self.springs[self._place(spring)] not in staged:
+            return ("two-sided",) * len(self.value)
+        return tuple(row[staged.index(spring)].contact for row in self.contacts)
+
+    def _place(self, spring: str) -> int:
+        if spring not in self.springs:
+            raise InputError(
+                "is no spring of the line", element=self.line.name, key="spring", value=spring,
+                remedy=f"name one of {', '.join(self.springs)}",
+            )  # fmt: skip
+        return self.springs.index(spring)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        over = "speed" if self.line.clock == "speed" else "frequency"
+        staged = [self.springs[e] for e in self.line.staged]
+        shape = (len(self.value), len(staged))
+        impacts = np.array([[c.impacts for c in row] for row in self.contacts]).reshape(shape)
+        energy = np.array([[c.impact_energy for c in row] for row in self.contacts]).reshape(shape)
+        sides = np.array([[c.contact for c in row] for row in self.contacts], dtype=str).reshape(shape)
+        return xr.Dataset(
+            {
+                "torque_low": ((over, "spring"), self.torque_low, {"units": "N*m"}),
+                "torque_high": ((over, "spring"), self.torque_high, {"units": "N*m"}),
+                "impacts": ((over, "staged_spring"), impacts),
+                "impact_energy": ((over, "staged_spring"), energy, {"units": "J"}),
+                "contact": ((over, "staged_spring"), sides),
+                "settled": (over, self.settled),
+                "periods": (over, self.periods),
+            },
+            coords={
+                over: (over, self.value, {"units": "rad/s"}),
+                "spring": list(self.springs),
+                "staged_spring": staged,
+            },
+            attrs={"driveline": self.line.name, "direction": "up" if self.up else "down",
+                   "outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
+        )  # fmt: skip
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
+        from trunnion.plots.frequency_response import draw_line_sweeps
+
+        return draw_line_sweeps([self], axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """What was found, speeds in ``unit``."""
+        rough, value = int((~self.settled).sum()), self.value * speed_factor(unit)
+        rows = []
+        for e, name in enumerate(self.springs):
+            swing = self.torque_peak_to_peak[:, e]
+            best = int(np.nanargmax(swing)) if np.isfinite(swing).any() else 0
+            rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
+        for row in zip(*self.contacts, strict=True):
+            kinds = [contact.contact for contact in row]
+            told = ", ".join(f"{kinds.count(k)} {k}" for k in ("none", "one-sided", "two-sided") if k in kinds)
+            worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
+            impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
+            rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
+        factor = speed_factor(unit)
+        jumps = ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in self.jumps) or "none"
+        return "\n".join(
+            [
+                f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(value)} steps from "
+                f"{value[0]:.6g} to {value[-1]:.6g} {unit}, {rough} without a motion of one period",
+                *rows,
+                f"  jumps: {jumps}; {self.outcome}",
+            ]
+        )
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    __repr__ = __str__
+
+
+def exact_sweep(
+    line: Driveline | Assembly,
+    values: Array,
+    *,
+    start: ArrayLike | None,
+    speed: float | None,
+    least: int,
+    most: int,
+    same: float,
+    measured: int,
+) -> LineSweep:
+    """See ``sweep``, which has checked the values."""
+    prepared = line_over(line, float(values[0]), speed)
+    shooting, state = Shooting(prepared, 1), start_state(prepared, start)
+    count, k = len(prepared.springs), kernel()
+    low, high = np.full((len(values), count), np.nan), np.full((len(values), count), np.nan)
+    states = np.full((len(values), 2 * prepared.size), np.nan)
+    settled, periods = np.zeros(len(values), dtype=bool), np.zeros(len(values), dtype=np.int64)
+    nothing = tuple(SpringContact(prepared.springs[e], np.zeros(0), np.nan, "none", np.zeros(0), np.nan)
+                    for e in prepared.staged)  # fmt: skip
+    contacts: list[tuple[SpringContact, ...]] = [nothing] * len(values)
+    outcome = Outcome(True, "swept", "every step was run")
+    for i, value in enumerate(values):
+        state, periods[i], settled[i] = _settle(shooting, state, float(value), least, most, same)
+        flow, length = prepared.flow(float(value)), prepared.period(float(value))
+        length *= 1 if settled[i] else measured
+        run = move(flow, state, 0.0, length, watch=True)
+        if not (run.done and np.isfinite(state).all()):
+            words = f"the motion at {value:g} rad/s changes its stages too often in a period; raise damping"
+            outcome = Outcome(False, "chatter", words)
+            break
+        low[i], high[i] = run.seen[:count, k.TORQUE_LOW], run.seen[:count, k.TORQUE_HIGH]
+        contacts[i], states[i] = contacts_of(prepared, state, run, length), state
+        state = run.state
+    return LineSweep(prepared, values, low, high, tuple(contacts), settled, periods, states, outcome)
+
+
+def _settle(
+    shooting: Shooting, state: Array, value: float, least: int, most: int, same: float
+) -> tuple[Array, int, bool]:
+    """State at phase zero, periods run and whether they repeat, after from ``least`` to ``most`` of them."""
+    flow, length, kept = shooting.line.flow(value), shooting.line.period(value), shooting.kept
+    repeated = 0
+    for count in range(1, most + 1):
+        run = move(flow, state, 0.0, length)
+        change = np.abs(run.state - state)[kept] / shooting.scale(run.state, value)
+        state = run.state
+        if not run.done:
+            return np.full_like(state, np.nan), count, False
+        repeated = repeated + 1 if np.max(change) < same else 0
+        if count >= least and repeated >= REPEATS:
+            return state, count, True
+    return state, most, False

@@ -1,0 +1,367 @@
+"""The frequency response of an oscillator by a method of choice, or by several to see which to trust.
+
+exact                 continuation of the exact piecewise motion; the reference of the others
+harmonic balance      Fourier series, followed by continuation; any system, any number of unknowns
+describing function   averaging of the exact piecewise force with its mean: one harmonic
+averaging             first order about a cubic fit
+multiple scales       first order about a cubic fit
+sweep up, sweep down  settled motion step by step, as a bench would find it
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.orbits.branch import PeriodicBranch
+from trunnion.analyses.orbits.free_play import require_contact, require_forced
+from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
+from trunnion.analyses.orbits.harmonic_balance_springs import SpringBalance, balance_springs
+from trunnion.analyses.orbits.periodic_branch import periodic_branch
+from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits.piecewise_sweep import sweep
+from trunnion.analyses.perturbation.averaging import averaging
+from trunnion.analyses.perturbation.describing_function import DescribingFunction
+from trunnion.analyses.perturbation.multiple_scales import multiple_scales
+from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.refusals import nearest
+from trunnion.equations.line_system import line_system
+from trunnion.equations.stage_laws import has_stages
+from trunnion.errors import InputError
+from trunnion.numerics import harmonics as fourier
+from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import speed_factor
+from trunnion.results.verdict import Verdict
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.systems.second_order import SecondOrder
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+METHODS = (
+    "exact",
+    "harmonic balance",
+    "describing function",
+    "averaging",
+    "multiple scales",
+    "sweep up",
+    "sweep down",
+)
+OF_SYSTEMS = ("harmonic balance", "shooting")
+BALANCED = 20
+"""Harmonics of a piecewise oscillator where none are asked for: folds to 1e-7."""
+SWEPT, SAMPLES = 101, 1024
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Half peak-to-peak over frequency by one method.
+
+    frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
+    shaft's torque; stable (points,); marks: (kind, frequency, half peak-to-peak) of folds, flips, grazing, or of jumps
+    of a sweep; seconds it took; detail: the method's own result.
+    """
+
+    method: str
+    frequency: Array
+    half_peak_to_peak: Array
+    stable: NDArray[np.bool_]
+    marks: tuple[tuple[str, float, float], ...]
+    outcome: Outcome
+    seconds: float
+    detail: Any
+    curve: str = "x"
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Frequency and half peak-to-peak of the largest stable motion."""
+        known = self.stable & np.isfinite(self.half_peak_to_peak)
+        if not known.any():
+            return float("nan"), float("nan")
+        best = int(np.argmax(np.where(known, self.half_peak_to_peak, -np.inf)))
+        return float(self.frequency[best]), float(self.half_peak_to_peak[best])
+
+    def folds(self) -> tuple[float, ...]:
+        """Frequencies of the folds, falling; of a sweep, where it jumps."""
+        return tuple(sorted((f for kind, f, _ in self.marks if kind in ("fold", "jump")), reverse=True))
+
+    def at(self, frequency: float) -> list[tuple[float, bool]]:
+        """Half peak-to-peak and stability of every motion at a frequency, interpolated linearly, by falling size."""
+        side, size = self.frequency - frequency, self.half_peak_to_peak
+        found = []
+        for i in range(len(side) - 1):
+            if side[i] == 0 or side[i] * side[i + 1] < 0:
+                share = side[i] / (side[i] - side[i + 1])
+                found.append((float(size[i] + share * (size[i + 1] - size[i])), bool(self.stable[i])))
+        if len(side) and side[-1] == 0:
+            found.append((float(size[-1]), bool(self.stable[-1])))
+        return sorted(found, reverse=True)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset."""
+        import xarray as xr
+
+        return xr.Dataset(
+            {
+                "frequency": ("point", self.frequency, {"units": "rad/s"}),
+                "half_peak_to_peak": ("point", self.half_peak_to_peak),
+                "stable": ("point", self.stable),
+                "mark_kind": ("mark", np.array([m[0] for m in self.marks], dtype=str)),
+                "mark_frequency": ("mark", np.array([m[1] for m in self.marks], dtype=float), {"units": "rad/s"}),
+            },
+            attrs={
+                "method": self.method, "curve": self.curve, "outcome": self.outcome.kind,
+                "outcome_sentence": self.outcome.sentence,
+            },
+        )  # fmt: skip
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
+        from trunnion.plots.frequency_response import draw_responses
+
+        return draw_responses({self.method: self}, axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``."""
+        if not len(self.frequency):
+            return f"no frequency response by {self.method}: {self.outcome}"
+        at, size = self.peak
+        factor = speed_factor(unit)
+        rows = [f"  {kind} at {f * factor:.7g} {unit}, {a:.6g}" for kind, f, a in self.marks]
+        of = "" if self.curve == "x" else f" of {self.curve}"
+        largest = f"largest stable half peak-to-peak{of} {size:.6g} at {at * factor:.6g} {unit}"
+        head = (
+            f"frequency response by {self.method}: {len(self.frequency)} points, {int(self.stable.sum())} stable, "
+            f"{self.seconds:.2g} s\n  {largest if np.isfinite(size) else 'no motion is stable beyond doubt'}"
+        )
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    __repr__ = __str__
+
+
+@dataclass(frozen=True)
+class ResponseComparison:
+    """Several methods side by side; the first is what the others are measured against."""
+
+    responses: Mapping[str, FrequencyResponse]
+
+    def __getitem__(self, method: str) -> FrequencyResponse:
+        """One of them."""
+        return self.responses[method]
+
+    def table(self, frequencies: Sequence[float] = (), unit: str = "rad/s") -> list[tuple[str, ...]]:
+        """Rows of words: method, peak with its frequency, folds, the stable motions at some frequencies, seconds.
+
+        ``frequencies`` in rad/s; those in the table in ``unit``.
+        """
+        factor = speed_factor(unit)
+        stable = (f"stable at {f * factor:g}" for f in frequencies)
+        rows: list[tuple[str, ...]] = [("method", "peak", f"at [{unit}]", "folds", *stable, "seconds")]
+        for name, r in self.responses.items():
+            at, size = r.peak
+            folds = ", ".join(f"{f * factor:#.6g}" for f in r.folds()) or "none"
+            motions = [", ".join(f"{a:#.5g}" for a, ok in r.at(f) if ok) or "none" for f in frequencies]
+            rows.append((name, f"{size:#.5g}", f"{at * factor:#.6g}", folds, *motions, f"{r.seconds:.2g}"))
+        return rows
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """All on one picture."""
+        from trunnion.plots.frequency_response import draw_responses
+
+        return draw_responses(self.responses, axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """The table as text."""
+        rows = self.table(unit=unit)
+        widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+        return "\n".join(
+            "  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows
+        )
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    __repr__ = __str__
+
+
+def methods_of(system: PiecewiseOscillator | SecondOrder | System | Driveline) -> tuple[str, ...]:
+    """The methods there are for a system, the usual one first."""
+    if isinstance(system, PiecewiseOscillator):
+        return METHODS
+    if isinstance(system, SecondOrder):
+        return OF_SYSTEMS[:1]
+    if isinstance(system, Driveline):
+        # Shooting takes chattering contact as it is; a series would need hundreds of harmonics.
+        staged = any(has_stages(element) for element in system.elements)
+        return (*(OF_SYSTEMS[::-1] if staged else OF_SYSTEMS), METHODS[0])
+    return OF_SYSTEMS
+
+
+def frequency_response(
+    system: PiecewiseOscillator | SecondOrder | System | Driveline,
+    low: float,
+    high: float,
+    *,
+    method: str = "",
+    parameter: str = "",
+    curve: str = "",
+    **options: Any,
+) -> FrequencyResponse:
+    """The frequency response between two frequencies by one method.
+
+    Parameters
+    ----------
+    system : a piecewise oscillator; a ``SecondOrder`` system, by harmonic balance; a system forced at its parameter
+        ``frequency``; or a driveline over its input speed.
+    low, high : [rad/s].
+    method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
+        "shooting" (default of drivelines with backlash or stages) for the others; "exact" also for a driveline that
+        ``exact_motion`` takes.
+    parameter : of a system, by default "frequency"; of a driveline "speed".
+    curve : which to look at, a state of a system or a shaft of a line; by default the first.
+    options : of the method: ``begin``, ``start``, ``longest_step``, ``periods``, ``progress`` (exact, shooting);
+        ``harmonics`` and the same but the last (harmonic balance); ``epsilon``, ``fit_range`` (multiple scales,
+        averaging); ``points``, ``start``, ``least``, ``most`` (sweeps).
+
+    Raises
+    ------
+    InputError : an unknown method or option, or what the method itself refuses.
+    """
+    known = methods_of(system)
+    chosen = method or known[0]
+    if chosen not in known:
+        raise InputError("is no method for this", key="method", value=chosen, remedy=nearest(chosen, list(known)))
+    if curve:
+        _place(_curves(system, high), curve)  # before anything is computed
+    began = perf_counter()
+    try:
+        if isinstance(system, PiecewiseOscillator):
+            result = _of_oscillator(system, low, high, chosen, options)
+        elif isinstance(system, SecondOrder):
+            result = balance_springs(system, low, high, **options)
+        else:
+            result = _of_system(system, low, high, chosen, parameter, options)
+    except TypeError as error:
+        if "unexpected keyword" not in str(error):
+            raise
+        words = str(error).split(") ", 1)[-1]
+        raise InputError(words, element=chosen, remedy="see help(tn.frequency_response)") from None
+    return _gathered(chosen, result, perf_counter() - began, curve)
+
+
+def compare_responses(
+    system: PiecewiseOscillator,
+    low: float,
+    high: float,
+    *,
+    methods: Sequence[str] = METHODS,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
+) -> ResponseComparison:
+    """The same response by several methods; ``options`` by method."""
+    more = options or {}
+    return ResponseComparison(
+        {name: frequency_response(system, low, high, method=name, **more.get(name, {})) for name in methods}
+    )
+
+
+def _of_oscillator(o: PiecewiseOscillator, low: float, high: float, method: str, options: Mapping[str, Any]) -> Any:
+    require_forced(o)
+    if method in METHODS[:2]:
+        require_contact(o, low)
+    if method == "exact":
+        return piecewise_branch(o, low, high, **options)
+    if method == "harmonic balance":
+        return _balanced(o, low, high, {"harmonics": BALANCED, **options})
+    if method == "describing function":
+        return DescribingFunction(o, **options).response(low, high)
+    if method in ("averaging", "multiple scales"):
+        flow = averaging(o, **options) if method == "averaging" else multiple_scales(o, **options)
+        return flow.response(low, high)
+    more = dict(options)
+    grid = np.linspace(low, high, more.pop("points", SWEPT))
+    return sweep(o, grid if method == "sweep up" else grid[::-1], **more)
+
+
+def _balanced(o: PiecewiseOscillator, low: float, high: float, options: dict[str, Any]) -> SpringBalance:
+    """Harmonic balance from its own start, or where that leads nowhere (free play), from the exact motion."""
+    system = SecondOrder.of_piecewise(o)
+    found = balance_springs(system, low, high, **options)
+    if len(found.rows) or options.get("start") is not None:
+        return found
+    begin, periods = options.get("begin") or low, options.get("periods", 1)
+    orbit = piecewise_orbit(o.but(frequency=begin), periods=periods)
+    if not orbit.outcome.ok:
+        return found
+    rows = fourier.rows_of(orbit.motion(SAMPLES)[1][:, 0][None, :], SAMPLES // 8)
+    return balance_springs(system, low, high, **{**options, "start": rows})
+
+
+def _of_system(
+    system: System | Driveline, low: float, high: float, method: str, parameter: str, options: Mapping[str, Any]
+) -> Any:
+    name = parameter or ("frequency" if isinstance(system, System) else "speed")
+    if isinstance(system, System) and name not in system.parameters:
+        raise InputError(
+            "is not a parameter", element=system.name, key=name,
+            remedy=f"name the one that is the frequency: {', '.join(system.parameters) or 'it has none'}",
+        )  # fmt: skip
+    if method == METHODS[0]:
+        assert isinstance(system, Driveline)
+        return piecewise_branch(system, low, high, **options)
+    work = harmonic_balance if method == "harmonic balance" else periodic_branch
+    return work(system, name, low, high, **options)
+
+
+def _gathered(method: str, result: Any, seconds: float, curve: str) -> FrequencyResponse:
+    if isinstance(result, ApproximateResponse):
+        marks: tuple[tuple[str, float, float], ...] = tuple(("fold", f, a) for f, a in result.folds)
+        return FrequencyResponse(
+            method, result.frequency, result.amplitude, result.stable, marks, result.outcome, seconds, result
+        )
+    if method.startswith("sweep"):
+        size = result.peak_to_peak / 2
+        by = dict(zip(result.frequency.tolist(), size.tolist(), strict=True))
+        marks = tuple(("jump", a, by[a]) for a, _ in result.jumps)
+        whole = np.ones(len(size), dtype=bool)
+        return FrequencyResponse(method, result.frequency, size, whole, marks, result.outcome, seconds, result)
+    branch: PeriodicBranch = getattr(result, "branch", result)
+    i = _place(branch.curves, curve)
+    between = np.array([p.parameter for p in branch.special])
+    # A point where the stability changes belongs to both sides: it is drawn with the stable one.
+    stable = (branch.verdict == Verdict.STABLE) | np.isin(branch.parameter, between) & (
+        branch.verdict != Verdict.UNSTABLE
+    )
+    marks = tuple((p.kind, p.parameter, float(p.peak_to_peak[i]) / 2) for p in branch.special)
+    half = branch.peak_to_peak[:, i] / 2
+    name = branch.curves[i]
+    return FrequencyResponse(method, branch.parameter, half, stable, marks, branch.outcome, seconds, result, name)
+
+
+def _curves(system: PiecewiseOscillator | SecondOrder | System | Driveline, speed: float) -> tuple[str, ...]:
+    if isinstance(system, PiecewiseOscillator):
+        return ("x",)
+    if isinstance(system, SecondOrder):
+        return tuple(system.names)
+    return line_system(system, speed).shafts if isinstance(system, Driveline) else system.states
+
+
+def _place(curves: Sequence[str], curve: str) -> int:
+    if not curve:
+        return 0
+    if curve not in curves:
+        raise InputError("is no curve of this", key="curve", value=curve, remedy=nearest(curve, curves))
+    return list(curves).index(curve)

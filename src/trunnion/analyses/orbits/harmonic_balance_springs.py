@@ -1,0 +1,402 @@
+"""Harmonic balance of M ẍ + C ẋ + K x + Σ d f(dᵀx) = F(t), followed over the frequency, with stability.
+
+With x = a₀ + Σ a_k cos kωt + b_k sin kωt the balance of every harmonic is linear but for the springs. A smooth force is
+sampled over the period and transformed (Cameron and Griffin, J. Appl. Mech. 56, 1989). A force with kinks is linear
+between the phases at which the series crosses them, so its coefficients are in closed form and nothing folds back from
+harmonics that are not there. The Jacobian by the series and by ω is exact. Against ``harmonic_balance``, which takes
+any first-order system, this has half the unknowns, and everything but the springs is in closed form.
+
+Stability is that of the variational equation M ÿ + C ẏ + (K + Σ d f′(dᵀx) dᵀ) y = 0 along the series: between the
+crossings of kinks, which are found on the series, fourth-order Magnus steps, exact where the slope is constant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from threadpoolctl import threadpool_limits
+
+from trunnion.analyses.orbits.branch import PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.orbits.piecewise_branch import check_range
+from trunnion.errors import InputError
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow
+from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.results.outcome import Outcome
+from trunnion.systems.second_order import SecondOrder, Spring
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+STEP = 0.1
+PER_HARMONIC, FEWEST_SAMPLES = 8, 256
+"""Samples per harmonic, for smooth forces and to find the crossings of kinks."""
+MAGNUS = 64
+"""Steps of the variational equation per period, besides the crossings, at least."""
+ADDED = 10.0
+"""Damping added on the way to a first motion, over ω times the mass."""
+NEWTON, SETTLED = 3, 1e-8
+"""Corrections of a crossing found between two samples, at most; and the last one [rad], whose square is rounding."""
+GAUSS = np.sqrt(3.0) / 6
+
+
+@dataclass(frozen=True)
+class SpringBalance:
+    """A branch as Fourier series: ``branch`` as of ``piecewise_branch``, rows (points, n, 2H + 1) of mean, cosines and
+    sines of every unknown, tail (points,): the largest of the last two harmonics over the largest of all."""
+
+    branch: PeriodicBranch
+    rows: Array
+    tail: Array
+    periods: int
+
+    @property
+    def harmonics(self) -> int:
+        """H, per period of the motion."""
+        return fourier.order(self.rows)
+
+    def motion(self, point: int, count: int = 512) -> Array:
+        """The unknowns (n, count) at equidistant times of the period of one point."""
+        return fourier.samples(self.rows[point], count)
+
+    @property
+    def outcome(self) -> Outcome:
+        """Where the branch ended and why."""
+        return self.branch.outcome
+
+    def __str__(self) -> str:
+        worst = f", tail up to {self.tail.max():.1e}" if len(self.tail) else ""
+        return f"harmonic balance with {self.harmonics} harmonics{worst}\n{self.branch}"
+
+    __repr__ = __str__
+
+
+def balance_springs(
+    system: SecondOrder,
+    low: float,
+    high: float,
+    *,
+    harmonics: int | None = None,
+    begin: float | None = None,
+    start: ArrayLike | None = None,
+    periods: int = 1,
+    tail: float = 1e-4,
+    longest_step: float = 0.01,
+    most_points: int = 4000,
+) -> SpringBalance:
+    """The frequency response by harmonic balance.
+
+    Parameters
+    ----------
+    low, high, begin : frequencies ω [rad/s]; followed both ways from ``begin``, by default ``low``.
+    harmonics : H; by default doubled from 10 · ``periods`` until the last two are below ``tail`` of the largest on the
+        whole branch, at most 160.
+    start : series (n, 2H₀ + 1) near the first motion, by default the linear response; so isolated and subharmonic
+        branches are reached.
+    periods : forcing periods in one of the motion.
+
+    Raises
+    ------
+    InputError : a range that does not rise, fewer harmonics than the force has, a start of another shape.
+    """
+    check_range(low, high)
+    first = low if begin is None else float(begin)
+    if not low <= first <= high:
+        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    needed = periods * max(k for k, _, _ in system.harmonics)
+    h = 10 * periods if harmonics is None else harmonics
+    if harmonics is not None and h < needed:
+        raise InputError(f"must be {needed} or more, those of the force", key="harmonics", value=harmonics)
+    h = max(h, needed)
+    rows = None if start is None else np.atleast_2d(np.asarray(start, dtype=float))
+    if rows is not None and (rows.shape[0] != system.size or rows.shape[1] % 2 == 0):
+        raise InputError(f"must be series of {system.size} unknowns", key="start", value=rows.shape)
+    while True:
+        with threadpool_limits(1, user_api="blas"):
+            found = _followed(system, rows, h, first, low, high, periods, longest_step, most_points)
+        if harmonics is not None or 2 * h > 160 or not len(found.tail) or found.tail.max() < tail:
+            return found
+        h *= 2
+
+
+def _followed(
+    system: SecondOrder, rows: Array | None, h: int, first: float, low: float, high: float, periods: int,
+    longest_step: float, most_points: int,
+) -> SpringBalance:  # fmt: skip
+    problem = _Balance(system, h, periods, (high - low) * longest_step / STEP)
+    kinks = [abs(b) for spring in system.springs for b in spring.kinks if b != 0]
+    guesses = problem.guesses(first) if rows is None else [fourier.resized(rows, h)]
+    problem.width = min(kinks) if kinks else max(float(np.abs(guesses[0]).max()), 1e-12)
+    begun = problem.begun(first, guesses)
+    walk, outcome = follow_both_ways(problem, np.append(begun.ravel(), first), low, high, most_points)
+    if not walk:
+        words = f"no motion with {h} harmonics was found near ω = {first:g}; give a start"
+        outcome = Outcome(False, "not found", words)
+    found = np.array([problem.rows(point) for point, _ in walk]).reshape(-1, system.size, 2 * h + 1)
+    sizes = np.hypot(found[..., 1 : h + 1], found[..., h + 1 :]).max(axis=1)
+    tails = sizes[:, -2:].max(axis=1, initial=0.0) / np.maximum(sizes.max(axis=1, initial=0.0), 1e-300)
+    return SpringBalance(collect(problem, walk, outcome), found, tails, periods)
+
+
+@dataclass(frozen=True)
+class _Names:
+    curves: tuple[str, ...]
+    label: str = "frequency"
+    unit: str = "rad/s"
+    curve_unit: str = "1"
+
+
+@dataclass
+class _Balance:
+    """The balance as equations of a curve z = (series, ω)."""
+
+    system: SecondOrder
+    h: int
+    periods: int
+    range: float
+    width: float = 1.0
+    told: dict[bytes, tuple[Complex, int]] = field(default_factory=dict)
+
+    @property
+    def n(self) -> int:
+        return self.system.size
+
+    @property
+    def size(self) -> int:
+        return 2 * self.n
+
+    @property
+    def over(self) -> Any:
+        return _Names(self.system.names)
+
+    @property
+    def scale(self) -> Array:
+        return np.append(np.full(self.n * (2 * self.h + 1), self.width), self.range)
+
+    @property
+    def count(self) -> int:
+        return max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(PER_HARMONIC * self.h))))
+
+    def rows(self, point: CurvePoint) -> Array:
+        return point.z[:-1].reshape(self.n, 2 * self.h + 1)
+
+    def force(self) -> Array:
+        out = np.zeros((self.n, 2 * self.h + 1))
+        out[:, 0] = self.system.mean
+        for k, p, q in self.system.harmonics:
+            out[:, k * self.periods] += p
+            out[:, self.h + k * self.periods] += q
+        return out
+
+    @cached_property
+    def parts(self) -> tuple[Array, Array, Array]:
+        """Stiffness, damping and mass acting on a series at ω = 1, each (n, 2h + 1, n, 2h + 1)."""
+        s, h, wide = self.system, self.h, 2 * self.h + 1
+        k = np.concatenate([np.arange(h + 1), np.arange(1, h + 1)]) / self.periods
+        turn = fourier.rate_matrix(h, 1.0 / self.periods)
+        stiffness = np.einsum("ij,ab->iajb", s.stiffness, np.eye(wide))
+        return stiffness, np.einsum("ij,ab->iajb", s.damping, turn), np.einsum("ij,ab->iajb", s.mass, np.diag(k**2))
+
+    def operator(self, omega: float) -> tuple[Array, Array]:
+        """The linear part (n, 2h + 1, n, 2h + 1) and its derivative by ω."""
+        stiffness, damping, mass = self.parts
+        return stiffness + omega * damping - omega**2 * mass, damping - 2 * omega * mass
+
+    def guesses(self, omega: float) -> list[Array]:
+        """Linear responses with the springs at their slopes at rest, halfway, and beyond their kinks; with the mean
+        taken from the outer slopes and offsets, since without stiffness at rest it would run away."""
+        found = []
+        for share in (0.0, 0.5, 1.0):
+            for side in (1.0, -1.0):
+                matrix, _ = self.operator(omega)
+                force = self.force()
+                for spring in self.system.springs:
+                    d = np.array(spring.direction)
+                    beyond = side * 2 * max(map(abs, spring.kinks), default=0.0)
+                    inner, outer = (float(spring.slope(np.array(u))) for u in (0.0, beyond))
+                    slopes = np.full(2 * self.h + 1, inner + share * (outer - inner))
+                    slopes[0] = outer
+                    matrix += np.einsum("i,j,ab->iajb", d, d, np.diag(slopes))
+                    force[:, 0] -= d * (float(spring.force(np.array(beyond))) - outer * beyond)
+                flat = matrix.reshape(self.n * (2 * self.h + 1), -1)
+                found.append(np.asarray(np.linalg.lstsq(flat, force.ravel(), rcond=None)[0].reshape(self.n, -1)))
+        return found
+
+    def begun(self, omega: float, guesses: list[Array]) -> Array:
+        """Where damped Newton's method arrives from one of the guesses; else the motion with much damping added,
+        followed while that is taken away. The first guess itself where all fail."""
+        for guess in guesses:
+            root = self.root(omega, guess)
+            if root.converged:
+                return root.x.reshape(self.n, -1)
+        size = guesses[0].size
+        turn = fourier.rate_matrix(self.h, 1.0 / self.periods)
+        added = omega**2 * np.einsum("ij,ab->iajb", self.system.mass, turn).reshape(size, size)
+
+        def damped(z: Array) -> tuple[Array, Array]:
+            left, slope = self.equations(np.append(z[:-1], omega))
+            more = added @ z[:-1]
+            return left + z[-1] * more, np.hstack([slope[:, :-1] + z[-1] * added, more[:, None]])
+
+        first = np.append(np.linalg.lstsq(added * ADDED, self.force().ravel(), rcond=None)[0], ADDED)
+        first[:size] += guesses[0].ravel() * (np.arange(size) % (2 * self.h + 1) == 0)
+        curve = follow(
+            damped, first, scale=np.append(np.full(size, self.width), 1.0), bounds=(0.0, 2 * ADDED), direction=-1.0,
+            largest_step=0.5, tolerance=1e-9,
+        )  # fmt: skip
+        arrived = curve.ending is Ending.BOUND and curve.points[-1].parameter == 0
+        return curve.points[-1].z[:-1].reshape(self.n, -1) if arrived else guesses[0]
+
+    def root(self, omega: float, guess: Array) -> Root:
+        """The balance at a fixed frequency by damped Newton's method."""
+
+        def residual(x: Array) -> tuple[Array, Array]:
+            left, slope = self.equations(np.append(x, omega))
+            return left, slope[:, :-1]
+
+        return solve(residual, guess.ravel(), np.full(guess.size, self.width), tolerance=1e-9, most=40)
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        size, omega = self.n * (2 * self.h + 1), float(z[-1])
+        if not (np.isfinite(z).all() and omega > 0):
+            return np.full(size, np.nan), np.full((size, size + 1), np.nan)
+        rows = z[:-1].reshape(self.n, -1)
+        matrix, by_omega = self.operator(omega)
+        flat = matrix.reshape(size, size)
+        left = flat @ z[:-1] - self.force().ravel()
+        for spring in self.system.springs:
+            d = np.array(spring.direction)
+            force, slope = self.spring(spring, d @ rows)
+            left += np.outer(d, force).ravel()
+            # ``flat`` is a view of ``matrix``.
+            matrix += np.einsum("i,j,ab->iajb", d, d, slope)
+        change = by_omega.reshape(size, size) @ z[:-1]
+        return left, np.hstack([flat, change[:, None]])
+
+    def spring(self, spring: Spring, row: Array) -> tuple[Array, Array]:
+        """The force's row (2h + 1,) at an elongation's, and its derivative (2h + 1, 2h + 1)."""
+        if not spring.kinks:
+            u = fourier.samples(row, self.count)
+            return fourier.rows_of(spring.force(u), self.h), fourier.product_matrix(spring.slope(u), self.h)
+        # Linear between the kinks, f = s u + d: both coefficients are known in closed form from the crossings.
+        at = self.kink_phases(spring, row[None, :])
+        ends = np.append(at, at[0] + 2 * np.pi) if len(at) else np.array([0.0, 2 * np.pi])
+        u = self.at(row[None, :], 0.5 * (ends[:-1] + ends[1:]))[0]
+        s = np.asarray(spring.slope(u))
+        spectra = fourier.spectrum_of_steps(ends, np.stack([s, spring.force(u) - s * u]), 2 * self.h)
+        slope = fourier.product_matrix_of(spectra[0], self.h)
+        rest = spectra[1, : self.h + 1]
+        return slope @ row + np.concatenate([rest[:1].real, 2 * rest[1:].real, -2 * rest[1:].imag]), slope
+
+    def start(self, point: CurvePoint) -> Array:
+        rows, omega = self.rows(point), point.parameter / self.periods
+        v = fourier.rate(rows, omega)
+        return np.concatenate([r[:, : self.h + 1].sum(axis=1) for r in (rows, v)])
+
+    def at(self, rows: Array, phases: Array) -> Array:
+        """Values (n, phases) at phases of the motion's period [rad]."""
+        turns = np.arange(1, self.h + 1)[:, None] * phases
+        return np.asarray(rows[:, :1] + rows[:, 1 : self.h + 1] @ np.cos(turns) + rows[:, self.h + 1 :] @ np.sin(turns))
+
+    def crossings(self, rows: Array) -> Array:
+        """Phases at which a spring passes a kink."""
+        springs = self.system.springs
+        found = [self.kink_phases(spring, (np.array(spring.direction) @ rows)[None, :]) for spring in springs]
+        return np.sort(np.concatenate(found)) if found else np.zeros(0)
+
+    def kink_phases(self, spring: Spring, u: Array) -> Array:
+        """Phases at which one spring of elongation u (1, 2h + 1) passes a kink, rising."""
+        step = 2 * np.pi / self.count
+        values = fourier.samples(u, self.count)[0]
+        side = np.append(values, values[0]) - np.array(spring.kinks)[:, None]
+        which, i = np.nonzero((side[:, :-1] < 0) != (side[:, 1:] < 0))
+        if not len(i):
+            return np.zeros(0)
+        here, there = side[which, i], side[which, i + 1]
+        phase = step * (i + here / (here - there))
+        both = np.concatenate([u, fourier.rate(u, 1.0)])
+        for _ in range(NEWTON):
+            value, slope = self.at(both, phase)
+            change = (value - np.array(spring.kinks)[which]) / np.where(slope == 0, 1.0, slope)
+            phase = np.clip(phase - change, step * i, step * (i + 1))
+            if np.abs(change).max() < SETTLED:
+                break
+        return np.sort(phase)
+
+    def judged(self, point: CurvePoint) -> tuple[Complex, int]:
+        """Multipliers by falling modulus, and the number of crossings."""
+        key = point.z.tobytes()
+        if key not in self.told:
+            rows, omega = self.rows(point), point.parameter / self.periods
+            crossings = self.crossings(rows)
+            values = np.linalg.eigvals(self._monodromy(rows, omega, crossings)).astype(complex)
+            self.told[key] = values[np.argsort(-np.abs(values))], len(crossings)
+        return self.told[key]
+
+    def _monodromy(self, rows: Array, omega: float, crossings: Array) -> Array:
+        n = self.n
+        # Between kinks a piecewise linear spring is a constant one, and any step is exact.
+        smooth = any(not spring.kinks for spring in self.system.springs)
+        steps = max(MAGNUS, 8 * self.h) if smooth else 4
+        ends = np.unique(np.concatenate([2 * np.pi * np.arange(steps + 1) / steps, crossings]))
+        h = np.diff(ends)
+        middle = 0.5 * (ends[:-1] + ends[1:])
+        one, two = (self._tangent_matrix(rows, middle + side * GAUSS * h) for side in (-1, 1))
+        dt = (h / omega)[:, None, None]
+        generator = 0.5 * dt * (one + two) + (np.sqrt(3.0) / 12) * dt**2 * (two @ one - one @ two)
+        eye = np.broadcast_to(np.eye(2 * n), generator.shape)
+        squarings = max(0, int(np.ceil(np.log2(max(np.abs(generator).sum(axis=2).max(), 1e-300) / 0.25))))
+        small = generator / 2**squarings
+        steps_ = eye.copy()
+        for order in range(10, 0, -1):
+            steps_ = eye + small @ steps_ / order
+        for _ in range(squarings):
+            steps_ = steps_ @ steps_
+        while len(steps_) > 1:
+            if len(steps_) % 2:
+                steps_ = np.concatenate([steps_, np.eye(2 * n)[None]])
+            steps_ = steps_[1::2] @ steps_[::2]
+        return np.asarray(steps_[0])
+
+    def _tangent_matrix(self, rows: Array, phases: Array) -> Array:
+        s, n = self.system, self.n
+        stiffness = np.broadcast_to(s.stiffness, (len(phases), n, n)).copy()
+        for spring in s.springs:
+            d = np.array(spring.direction)
+            slope = spring.slope(self.at((d @ rows)[None, :], phases)[0])
+            stiffness += slope[:, None, None] * np.outer(d, d)
+        out = np.zeros((len(phases), 2 * n, 2 * n))
+        out[:, :n, n:] = np.eye(n)
+        inverse = np.linalg.inv(s.mass)
+        out[:, n:, :n] = -inverse @ stiffness
+        out[:, n:, n:] = -inverse @ s.damping
+        return out
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        return self.judged(point)[0]
+
+    def changes(self, point: CurvePoint) -> int:
+        return self.judged(point)[1]
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        rows, omega = self.rows(point), point.parameter
+        low, high = _extremes(fourier.samples(rows, self.count))
+        k = self.periods
+        size = np.hypot(rows[:, k], rows[:, self.h + k])
+        amplitude = np.concatenate([size, omega * size])
+        return high - low, np.maximum(np.abs(low), np.abs(high)), amplitude, self.periods * 2 * np.pi / omega
+
+
+def _extremes(values: Array) -> tuple[Array, Array]:
+    """Smallest and largest of periodic samples (n, count), by the parabola through the neighbours of each."""
+    out = []
+    for sign in (-1.0, 1.0):
+        best = np.argmax(sign * values, axis=1)
+        row = np.arange(len(values))
+        left, here, right = (values[row, (best + k) % values.shape[1]] for k in (-1, 0, 1))
+        bend = left - 2 * here + right
+        out.append(here - (right - left) ** 2 / (8 * np.where(bend == 0, -sign, bend)))
+    return out[0], out[1]

@@ -1,0 +1,421 @@
+"""``periodic_response``: the true periodic motion of a line, its torques and its stability.
+
+The linear charts judge a line about the motion of rigid shafts. Here the line's own periodic motion is found by
+shooting and judged by its own variational equations, so that loads, resonance and large angles are right; what
+the two linearisations say is stated beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.linear.stability import Stability, stability
+from trunnion.analyses.motion.simulation import simulate_system
+from trunnion.analyses.orbits.periodic_orbit import (
+    TOLERANCE,
+    PeriodicOrbit,
+    extremes,
+    periodic_orbit,
+    torque_driven_orbit,
+)
+from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_system import LineMotion, LineSystem, line_system
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import show_speed
+from trunnion.results.verdict import MEANING, Verdict
+from trunnion.systems.system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+SAMPLES = 2048
+ORDERS = 12
+
+
+@dataclass(frozen=True)
+class LinearComparison:
+    """The same line linearised: about zero twist and about the twist of its static load.
+
+    growth_rate [1/s] of the true motion and of the two linearisations; torque_peak_to_peak (shaft,) [N m] of the
+    true motion and of the linear forced response about static twist, which has no ``excitation`` of disks.
+    """
+
+    growth_rate: float
+    zero_twist: Stability
+    static_twist: Stability
+    torque_peak_to_peak: Array
+    linear_torque_peak_to_peak: Array
+    shafts: tuple[str, ...]
+    excited: bool
+
+    @property
+    def agree(self) -> bool:
+        """Whether all three say the same about stability."""
+        signs = {np.sign(round(v, 9)) for v in (self.growth_rate, self.zero_twist.growth_rate)}
+        return len(signs | {np.sign(round(self.static_twist.growth_rate, 9))}) == 1
+
+    def __str__(self) -> str:
+        worst = int(np.argmax(self.torque_peak_to_peak))
+        return (
+            f"growth rate {self.growth_rate:+.6g} 1/s here, {self.zero_twist.growth_rate:+.6g} linearised about zero "
+            f"twist, {self.static_twist.growth_rate:+.6g} about the static twist; torque of {self.shafts[worst]} "
+            f"{self.torque_peak_to_peak[worst]:.5g} N m peak to peak here, "
+            f"{self.linear_torque_peak_to_peak[worst]:.5g} by linear theory"
+            f"{', which leaves the excitation of the disks out' if self.excited else ''}"
+        )
+
+
+@dataclass(frozen=True)
+class PeriodicResponse:
+    """The periodic motion of a line at one speed.
+
+    torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
+    (shaft,) [N m]; multipliers, spectral_radius, growth_rate and verdict of this motion itself; comparison with
+    the linearisations (None where the linear equations do not have what the line has, see ``no_comparison``).
+    """
+
+    line: LineSystem
+    speed: float
+    orbit: PeriodicOrbit
+    comparison: LinearComparison | None
+    no_comparison: str
+
+    @property
+    def outcome(self) -> Outcome:
+        """Whether a periodic motion was found, in a sentence."""
+        return self.orbit.outcome
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the shafts; massless shafts in series count as one."""
+        return self.line.shafts
+
+    @property
+    def period(self) -> float:
+        """Period [s]."""
+        return self.orbit.period
+
+    @property
+    def turns(self) -> float:
+        """Period in turns of the input."""
+        return self.period * self.speed / (2 * np.pi)
+
+    @property
+    def multipliers(self) -> Complex:
+        """Multipliers (2n,) of the motion over its period, by falling modulus."""
+        return self.orbit.multipliers
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest modulus of a multiplier."""
+        return self.orbit.spectral_radius
+
+    @property
+    def error_estimate(self) -> float:
+        """Bound on the error of the spectral radius."""
+        return self.orbit.error_estimate
+
+    @property
+    def growth_rate(self) -> float:
+        """Growth of the fastest disturbance [1/s]."""
+        return self.orbit.growth_rate
+
+    @property
+    def verdict(self) -> Verdict:
+        """Stable, unstable, marginal or undecided."""
+        return self.orbit.verdict
+
+    @cached_property
+    def time(self) -> Array:
+        """Times (points,) over one period, its end left out [s]."""
+        return self.orbit.time[0] + self.period * np.arange(SAMPLES) / SAMPLES
+
+    @cached_property
+    def motion(self) -> LineMotion:
+        """Twists, torques and rotations at ``time``."""
+        return self.line.observe(self.orbit.system, self.time, self.orbit.trajectory.at(self.time))
+
+    @property
+    def twist(self) -> Array:
+        """Twist [rad] of every shaft (points, shaft)."""
+        return self.motion.twist
+
+    @property
+    def torque(self) -> Array:
+        """Torque [N m] of every shaft (points, shaft), positive with the twist."""
+        return self.motion.torque
+
+    @cached_property
+    def torque_peak_to_peak(self) -> Array:
+        """Largest minus smallest torque of every shaft [N m]; NaN where no motion was found."""
+        if not self.outcome.ok:
+            return np.full(len(self.shafts), np.nan)
+        low, high = extremes(self.torque)
+        return np.asarray(high - low)
+
+    @property
+    def torque_amplitude(self) -> Array:
+        """Half of the peak-to-peak torque [N m]."""
+        return self.torque_peak_to_peak / 2
+
+    @property
+    def torque_mean(self) -> Array:
+        """Mean torque of every shaft [N m]; negative when power flows from input to output."""
+        return np.asarray(self.torque.mean(axis=0))
+
+    @cached_property
+    def contacts(self) -> tuple[SpringContact, ...]:
+        """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
+        return spring_contacts(self)
+
+    def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
+        """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]; order 0 is the mean."""
+        count = int(np.floor(highest * self.turns + 1e-9)) + 1
+        amplitude = np.abs(np.fft.rfft(self.torque, axis=0)[:count]) / SAMPLES
+        amplitude[1:] *= 2
+        return np.arange(count) / self.turns, amplitude
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
+        return self.findings_in("rad/s")
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, speeds in ``unit``."""
+        return by_gravity(_findings(self, unit))
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units."""
+        import xarray as xr
+
+        orders, amplitude = self.order_spectrum()
+        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=1)
+        return xr.Dataset(
+            {
+                "twist": (("time", "shaft"), self.twist, {"units": "rad"}),
+                "torque": (("time", "shaft"), self.torque, {"units": "N*m"}),
+                "torque_peak_to_peak": ("shaft", self.torque_peak_to_peak, {"units": "N*m"}),
+                "torque_mean": ("shaft", self.torque_mean, {"units": "N*m"}),
+                "order_amplitude": (("order", "shaft"), amplitude, {"units": "N*m"}),
+                "multiplier": (("multiplier_number", "part"), parts, {"units": "1"}),
+                "multiplier_error": ("multiplier_number", self.orbit.multiplier_error, {"units": "1"}),
+                "spectral_radius": ((), self.spectral_radius, {"units": "1"}),
+                "growth_rate": ((), self.growth_rate, {"units": "1/s"}),
+                "period": ((), self.period, {"units": "s"}),
+                "speed": ((), self.speed, {"units": "rad/s"}),
+            },
+            coords={
+                "time": ("time", self.time, {"units": "s"}),
+                "shaft": list(self.shafts),
+                "order": ("order", orders, {"units": "1", "long_name": "cycles per turn of the input"}),
+                "part": ["real", "imaginary"],
+            },
+            attrs={
+                "driveline": self.orbit.system.name,
+                "verdict": str(self.verdict),
+                "outcome": self.outcome.kind,
+                "outcome_sentence": self.outcome.sentence,
+                "comparison": str(self.comparison or self.no_comparison),
+            },
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
+        from trunnion.plots.motion import draw_period
+
+        return draw_period(self, axes, **options)
+
+    def plot_orders(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque amplitude of every order; see ``trunnion.plots.motion``."""
+        from trunnion.plots.motion import draw_orders
+
+        return draw_orders(self, axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """The result in a few lines, speeds in ``unit``."""
+        at = show_speed(self.speed, unit)
+        if not self.outcome.ok:
+            return f"no periodic motion found at {at}: {self.outcome}"
+        rows = [
+            f"  {name}: torque {mean:.6g} N m, {peak:.6g} N m peak to peak"
+            for name, mean, peak in zip(self.shafts, self.torque_mean, self.torque_peak_to_peak, strict=True)
+        ]
+        against = f"linear theory: {self.comparison or self.no_comparison}"
+        return "\n".join(
+            [
+                f"{self.verdict} periodic motion at {at}, period {self.turns:.6g} turns: {MEANING[self.verdict]}",
+                f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
+                f"{self.growth_rate:+.6g} 1/s",
+                *rows,
+                *(f"  {contact}" for contact in self.contacts),
+                f"  {against}",
+                f"  {self.outcome}",
+            ]
+        )
+
+    def __str__(self) -> str:
+        return self.describe()
+
+    __repr__ = __str__
+
+
+def periodic_response(
+    line: Driveline | Assembly | System,
+    speed: float | None = None,
+    *,
+    start: ArrayLike | None = None,
+    period: float | None = None,
+    periods: int = 1,
+    tolerance: float = TOLERANCE,
+    settle: bool = True,
+    compare: bool = True,
+) -> PeriodicResponse | PeriodicOrbit:
+    """The periodic motion of a line (or of any system) and its stability.
+
+    Parameters
+    ----------
+    line : a driveline, or a ``System``.
+    speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, a guess of the
+        mean speed that its torques lead to.
+    start : a state near the motion (2n,); by default that of rigid shafts.
+    period : of an autonomous ``System``, a guess [s].
+    periods : of the excitation in one period of the motion (a subharmonic of that order).
+    settle : integrate some hundred periods where shooting fails from ``start``.
+    compare : also linearise, and say how far off that is.
+
+    Returns
+    -------
+    A result whose ``outcome`` says whether a periodic motion was found.
+
+    Raises
+    ------
+    InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time.
+    """
+    if isinstance(line, System):
+        if speed is not None:
+            raise InputError("belongs to a driveline", key="speed", value=speed, remedy="leave it out")
+        return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
+    description = line.line if isinstance(line, Assembly) else line
+    prepared = line_system(line, operating_speed(description, speed))
+    if prepared.assembly.topology.free:
+        return _torque_driven(prepared, start, tolerance, settle)
+    require_forced(prepared)
+    orbit = periodic_orbit(
+        prepared.system,
+        start=prepared.rest() if start is None else start,
+        periods=periods,
+        tolerance=tolerance,
+        settle=settle,
+    )
+    response = PeriodicResponse(prepared, prepared.speed, orbit, None, "not asked for")
+    if not compare or not orbit.outcome.ok:
+        return response
+    try:
+        comparison, reason = _compare(response, description), ""
+    except (InputError, ComputationError) as error:
+        comparison, reason = None, f"does not apply ({error})"
+    return PeriodicResponse(prepared, prepared.speed, orbit, comparison, reason)
+
+
+def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settle: bool) -> PeriodicResponse:
+    """A free line: its mean speed is found with the motion, from the speed given as a guess."""
+    if prepared.period_turns is None or prepared.time_harmonics:
+        raise InputError(
+            "starts free and is excited in time or without a common period: its motion does not close",
+            element="driveline",
+            remedy="put a ConstantSpeed in front, give orders instead of frequencies, or simulate it",
+        )
+    vary, speed = prepared.varied("speed"), prepared.speed
+    first = prepared.rest() if start is None else prepared.system.checked(start, "start")
+    orbit, found = torque_driven_orbit(vary, speed, first, tolerance=tolerance)
+    if not orbit.outcome.ok and settle:
+        run = simulate_system(prepared.system, periods=400, start=first, tolerance=1e-8, dense=False)
+        n = prepared.assembly.topology.size
+        speed += float(run.final[n])
+        if run.outcome.ok and speed > 0:
+            orbit, found = torque_driven_orbit(
+                vary, speed, line_system(prepared.assembly, speed).rest(), tolerance=tolerance
+            )
+    return PeriodicResponse(
+        prepared, found, orbit, None, "does not apply (the line starts free: its speed is a result, not given)"
+    )
+
+
+def require_forced(line: LineSystem) -> None:
+    """Refuse a line whose motion has no period given from outside."""
+    if line.assembly.topology.free:
+        raise InputError(
+            "starts free: its speed follows from its torques and is not periodic in time",
+            element="driveline",
+            remedy="put a ConstantSpeed in front, or simulate it",
+        )
+    if line.period_turns is None or line.system.forcing_period is None:
+        raise InputError(
+            "has excitations without a common period of usable length",
+            element="driveline",
+            key="excitation",
+            remedy="give orders, or a frequency in a simple ratio to the speed; or simulate it",
+        )
+
+
+def _compare(response: PeriodicResponse, line: Driveline) -> LinearComparison:
+    static = stability(line, response.speed)
+    assert static.response is not None
+    low, high = extremes(static.response.torque[:-1])
+    return LinearComparison(
+        response.growth_rate,
+        stability(line, response.speed, statically_twisted=False),
+        static,
+        response.torque_peak_to_peak,
+        high - low,
+        response.shafts,
+        any(isinstance(e, Disk) and e.excitation for e in line.elements),
+    )
+
+
+def _findings(result: PeriodicResponse, unit: str) -> list[Finding]:
+    at = show_speed(result.speed, unit)
+    if not result.outcome.ok:
+        return [Finding(Gravity.CAUTION, f"No periodic motion was found at {at}: {result.outcome}.")]
+    found = []
+    worst = int(np.argmax(result.torque_peak_to_peak))
+    torque = (
+        f"the torque of {result.shafts[worst]} swings by {result.torque_peak_to_peak[worst]:.4g} N m peak to peak "
+        f"about {result.torque_mean[worst]:.4g} N m"
+    )
+    if result.verdict is Verdict.UNSTABLE:
+        doubling = np.log(2) / result.growth_rate
+        found.append(
+            Finding(
+                Gravity.DANGER,
+                f"The periodic motion at {at} is unstable: a disturbance doubles every {doubling:.3g} s.",
+            )
+        )
+    else:
+        found.append(Finding(Gravity.NOTE, f"The periodic motion at {at} is {result.verdict}; {torque}."))
+    rattling = [contact for contact in result.contacts if contact.rattles]
+    found += [Finding(Gravity.CAUTION, f"At {at} contact is lost: {contact}.") for contact in rattling]
+    comparison = result.comparison
+    if comparison is not None and not comparison.agree:
+        found.append(
+            Finding(
+                Gravity.CAUTION,
+                f"Linear theory misjudges the motion at {at}: {comparison}.",
+            )
+        )
+    return found

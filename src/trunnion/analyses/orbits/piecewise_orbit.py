@@ -1,0 +1,260 @@
+"""Periodic motions of a piecewise linear oscillator by shooting with its exact motion.
+
+P(x, x′) over one or several forcing periods and its derivative are exact to rounding (``numerics/piecewise``), so
+Newton's method closes the orbit to rounding and the multipliers are those of the motion itself. An orbit that
+touches a breakpoint (grazing) has no derivative there; ``clearance`` says how near it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.orbits.closing import CLOSED, SETTLING, checked_periods, refuse_speed, verdict_of
+from trunnion.analyses.orbits.exact_orbit import ExactOrbit, exact_orbit
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.numerics.continuation.newton import solve
+from trunnion.numerics.piecewise_linear.piecewise import Passage, TooManyEventsError, measure, move, period, states
+from trunnion.results.outcome import Outcome
+from trunnion.results.verdict import MEANING, Verdict
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+CONTACT = ("none", "upper", "lower", "both")
+"""Sides touched, by the code of the measurement."""
+
+
+def contact_state(sides: str) -> str:
+    """none, one-sided or two-sided."""
+    return {"none": "none", "both": "two-sided"}.get(sides, "one-sided")
+
+
+@dataclass(frozen=True)
+class PiecewiseOrbit:
+    """A periodic motion and what it does in a forcing period.
+
+    start (2,): x and x′ at phase zero; periods: forcing periods until it closes; multipliers (2,) by falling modulus;
+    crossings (count, 4): time, x, x′ and regime begun; lowest, highest, mean of x; sides touched; impacts: entries
+    into contact, per forcing period, with Σ m v²/2 (impact_energy) and Σ m |v| (impact_impulse) of them; clearance:
+    least distance of an extremum from a breakpoint; iterations of the shooting.
+    """
+
+    oscillator: PiecewiseOscillator
+    start: Array
+    periods: int
+    multipliers: Complex
+    monodromy: Array
+    crossings: Array
+    lowest: float
+    highest: float
+    mean: float
+    sides: str
+    impacts: float
+    impact_energy: float
+    impact_impulse: float
+    clearance: float
+    iterations: int
+    outcome: Outcome
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Highest minus lowest x."""
+        return self.highest - self.lowest
+
+    @property
+    def contact(self) -> str:
+        """none, one-sided or two-sided."""
+        return contact_state(self.sides)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Stable, unstable, or not told apart."""
+        return verdict_of(self.multipliers)
+
+    def motion(self, count: int = 512) -> tuple[Array, Array]:
+        """Times (count,) over the orbit's period, its end left out, and states (count, 2)."""
+        o = self.oscillator
+        times = self.periods * o.period * np.arange(count) / count
+        return times, states(o.regimes, o.coefficients, o.frequency, self.start, times)
+
+    def harmonics(self, highest: int) -> Complex:
+        """Fourier coefficients (highest + 1,) of x: x = Re Σ c_k e^{2πikt/T}, exact up to rounding and the samples.
+
+        Taken from the corners of the motion, stretch by stretch (Gauss–Legendre with 16 points each).
+        """
+        o = self.oscillator
+        length = self.periods * o.period
+        cuts = np.unique(np.concatenate([self.crossings[:, 0], np.linspace(0, length, 4 * highest + 9)]))
+        nodes, weights = np.polynomial.legendre.leggauss(16)
+        half = np.diff(cuts)[:, None] / 2
+        times = (cuts[:-1, None] + half * (1 + nodes)).ravel()
+        weight = (half * weights).ravel()
+        all_times = np.concatenate([[0.0], times])
+        x = states(o.regimes, o.coefficients, o.frequency, self.start, all_times)[1:, 0]
+        turning = np.exp(-2j * np.pi * np.arange(highest + 1)[:, None] * times / length)
+        found = (turning @ (weight * x)) / length
+        found[1:] *= 2
+        return np.asarray(found)
+
+    def __str__(self) -> str:
+        if not self.outcome.ok:
+            return f"no periodic motion of {self.oscillator.name}: {self.outcome}"
+        return (
+            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {self.oscillator.frequency:.6g} rad/s "
+            f"over {self.periods} forcing period{'s' if self.periods > 1 else ''}: {MEANING[self.verdict]}\n"
+            f"  x = {self.mean:.6g} with {self.peak_to_peak:.6g} peak to peak; contact {self.contact}, "
+            f"{self.impacts:g} impacts per period; {self.clearance:.2g} from grazing\n"
+            f"  multipliers {self.multipliers[0]:.8g}, {self.multipliers[1]:.8g}; {self.outcome}"
+        )
+
+    __repr__ = __str__
+
+
+def refuse_unbounded(oscillator: PiecewiseOscillator) -> None:
+    """Refuse a linear oscillator driven, undamped, at its own frequency.
+
+    Raises
+    ------
+    InputError : its motion grows without bound.
+    """
+    c, s, _ = oscillator.regimes.pieces[0]
+    force = oscillator.coefficients
+    for k in range(1, len(force)) if len(oscillator.slopes) == 1 and c == 0 else ():
+        if force[k] != 0 and abs(s - (k * oscillator.frequency) ** 2) < 1e-7 * s:
+            raise InputError(
+                "makes the undamped resonant motion grow without bound: there is no periodic motion",
+                element=oscillator.name, key="damping", value=0.0, remedy="give some damping or another frequency",
+            )  # fmt: skip
+
+
+@overload
+def piecewise_orbit(
+    oscillator: PiecewiseOscillator, start: ArrayLike | None = None, *, periods: int = 1, settle: bool = True
+) -> PiecewiseOrbit: ...
+@overload
+def piecewise_orbit(
+    oscillator: Driveline | Assembly,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    periods: int = 1,
+    settle: bool = True,
+) -> ExactOrbit: ...
+
+
+def piecewise_orbit(
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    periods: int = 1,
+    settle: bool = True,
+) -> PiecewiseOrbit | ExactOrbit:
+    """The periodic motion near ``start``, stable or not.
+
+    Parameters
+    ----------
+    oscillator : or a driveline that ``exact_motion`` takes.
+    start : x and x′ near it at phase zero, by default rest at the static equilibrium; of a driveline twists and rates
+        (2m,) as in ``exact_motion``.
+    speed : of a driveline as in ``exact_motion``.
+    periods : forcing periods in one period of the motion.
+    settle : where shooting fails, let 50 and then 500 periods pass and shoot again.
+
+    Returns
+    -------
+    An orbit whose ``outcome`` says whether it was found; otherwise its numbers are NaN. Of a driveline an
+    ``ExactOrbit``.
+
+    Raises
+    ------
+    InputError : a start that is not two finite numbers; an undamped linear resonance; a driveline that has no exact
+        motion, no excitation or none with a common period.
+    """
+    periods = checked_periods(periods)
+    if isinstance(oscillator, Driveline | Assembly):
+        return exact_orbit(oscillator, start, speed=speed, periods=periods, settle=settle)
+    refuse_speed(oscillator.name, speed)
+    first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
+    if first.shape != (2,) or not np.isfinite(first).all():
+        raise InputError("must be x and x′, two finite numbers", element=oscillator.name, key="start", value=start)
+    refuse_unbounded(oscillator)
+    tables, force, omega = oscillator.regimes, oscillator.coefficients, oscillator.frequency
+    scale = np.array([1.0, omega]) * max(float(np.abs(first).max()), *map(abs, oscillator.breakpoints), 1e-300)
+
+    def residual(x: Array) -> tuple[Array, Array]:
+        try:
+            passage = period(tables, force, omega, x, periods)
+        except TooManyEventsError:
+            return np.full(2, np.nan), np.full((2, 2), np.nan)
+        return passage.state - x, passage.tangents[:, :2] - np.eye(2)
+
+    for count in SETTLING if settle else SETTLING[:1]:
+        guess = first
+        for _ in range(count):
+            guess = move(tables, force, omega, guess, 0.0, oscillator.period, tangents=False).state
+        root = solve(residual, guess, scale, tolerance=CLOSED)
+        if root.converged:
+            return orbit_at(oscillator, root.x, periods, root.iterations)
+    words = (
+        f"shooting did not converge (residual {root.size:.1e}); start closer, for example from the end of a sweep, or "
+        "give more periods if the motion is a subharmonic"
+    )
+    return _missing(oscillator, root.x, periods, root.iterations, words)
+
+
+def orbit_at(oscillator: PiecewiseOscillator, start: Array, periods: int, iterations: int = 0) -> PiecewiseOrbit:
+    """The orbit through a state known to lie on it."""
+    tables, force, omega = oscillator.regimes, oscillator.coefficients, oscillator.frequency
+    passage = period(tables, force, omega, start, periods)
+    found = measure(tables, force, omega, start, periods)
+    values = np.linalg.eigvals(passage.tangents[:, :2]).astype(complex)
+    closes = float(np.abs(passage.state - start).max())
+    m = oscillator.inertia
+    return PiecewiseOrbit(
+        oscillator=oscillator,
+        start=start,
+        periods=periods,
+        multipliers=values[np.argsort(-np.abs(values))],
+        monodromy=passage.tangents[:, :2],
+        crossings=passage.crossings,
+        lowest=found["low"],
+        highest=found["high"],
+        mean=found["mean"],
+        sides=CONTACT[int(found["contact"])],
+        impacts=found["impacts"],
+        impact_energy=m * found["energy"],
+        impact_impulse=m * found["impulse"],
+        clearance=_clearance(oscillator, start, periods),
+        iterations=iterations,
+        outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
+    )
+
+
+def _clearance(oscillator: PiecewiseOscillator, start: Array, periods: int) -> float:
+    if not oscillator.breakpoints:
+        return float("inf")
+    end = periods * oscillator.period
+    run: Passage = move(
+        oscillator.regimes, oscillator.coefficients, oscillator.frequency, start, 0.0, end, tangents=False, extrema=True
+    )
+    extrema = run.events[run.events[:, 3] < 0, 1]
+    if not len(extrema):
+        return float("inf")
+    return float(np.abs(extrema[:, None] - np.array(oscillator.breakpoints)).min())
+
+
+def _missing(
+    oscillator: PiecewiseOscillator, start: Array, periods: int, iterations: int, words: str
+) -> PiecewiseOrbit:
+    nan = float("nan")
+    return PiecewiseOrbit(
+        oscillator, start, periods, np.full(2, nan, dtype=complex), np.full((2, 2), nan), np.zeros((0, 4)),
+        nan, nan, nan, "none", nan, nan, nan, nan, iterations, Outcome(False, "not converged", words),
+    )  # fmt: skip

@@ -1,0 +1,290 @@
+"""What a test bench does: the frequency raised or lowered step by step, each step from where the last one ended.
+
+Every step settles by the exact motion (``numerics/piecewise``) and is then measured. Also the basins of attraction at
+one frequency, and the rattle index, what the impacts of a period amount to, over frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.orbits.closing import refuse_speed
+from trunnion.analyses.orbits.exact_sweep import LineSweep, exact_sweep
+from trunnion.analyses.orbits.jumps import abrupt_changes
+from trunnion.analyses.orbits.piecewise_orbit import (
+    CONTACT,
+    PiecewiseOrbit,
+    contact_state,
+    piecewise_orbit,
+    refuse_unbounded,
+)
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.numerics.piecewise_linear.piecewise import COLUMNS, MOST_EVENTS, kernel
+from trunnion.results.outcome import Outcome
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
+"""Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Steady motion over frequency, in the order it was swept.
+
+    frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
+    impacts, impact_energy Σ m v²/2 and impact_impulse Σ m |v| per period (points,); settled (points,): whether the
+    motion repeats every period; periods (points,): run until then; state (points, 2) at phase zero.
+    """
+
+    oscillator: PiecewiseOscillator
+    frequency: Array
+    lowest: Array
+    highest: Array
+    mean: Array
+    contact: tuple[str, ...]
+    impacts: Array
+    impact_energy: Array
+    impact_impulse: Array
+    settled: NDArray[np.bool_]
+    periods: NDArray[np.int64]
+    state: Array
+    outcome: Outcome
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Highest minus lowest (points,)."""
+        return self.highest - self.lowest
+
+    @property
+    def up(self) -> bool:
+        """Whether the frequency was raised."""
+        return bool(self.frequency[-1] >= self.frequency[0])
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
+        places = abrupt_changes(self.peak_to_peak)
+        return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in places)
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset."""
+        import xarray as xr
+
+        names = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "settled")
+        variables: dict[str, Any] = {name: ("frequency", np.asarray(getattr(self, name))) for name in names}
+        variables["contact"] = ("frequency", np.array(self.contact, dtype=str))
+        variables["periods"] = ("frequency", self.periods)
+        return xr.Dataset(
+            variables,
+            coords={"frequency": ("frequency", self.frequency, {"units": "rad/s"})},
+            attrs={"oscillator": self.oscillator.name, "direction": "up" if self.up else "down",
+                   "outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
+        )  # fmt: skip
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        from trunnion.plots.frequency_response import draw_sweeps
+
+        return draw_sweeps([self], axes, **options)
+
+    def __str__(self) -> str:
+        best = int(np.nanargmax(self.peak_to_peak))
+        jumps = ", ".join(f"{a:.6g} → {b:.6g}" for a, b in self.jumps) or "none"
+        rough = int((~self.settled).sum())
+        kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
+        return (
+            f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
+            f"{self.frequency[0]:.6g} to {self.frequency[-1]:.6g} rad/s, {rough} without a motion of one period\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {self.frequency[best]:.6g}; "
+            f"jumps: {jumps}\n"
+            f"  contact: {kinds}; {self.outcome}"
+        )
+
+    __repr__ = __str__
+
+
+@overload
+def sweep(
+    oscillator: PiecewiseOscillator,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> Sweep: ...
+@overload
+def sweep(
+    oscillator: Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> LineSweep: ...
+
+
+def sweep(
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> Sweep | LineSweep:
+    """Steady motions over ``frequencies`` in the order given: rising for an up-sweep, falling for a down-sweep.
+
+    Parameters
+    ----------
+    oscillator : or a driveline that ``exact_motion`` takes, which is swept over its speed, or over the common
+        frequency of its excitations where those are in time.
+    frequencies : (points,) [rad/s]; of a driveline speeds, where its excitation turns with it.
+    start : state at the first: x and x′, by default rest at the static equilibrium; of a driveline as in
+        ``exact_motion``.
+    speed : of a driveline excited in time, where a viscous load depends on it.
+    least, most : periods of every step.
+    same : relative change of the state per period below which, three times running, a motion counts as settled.
+
+    Returns
+    -------
+    Sweep; of a driveline LineSweep with the torques of its springs.
+
+    Raises
+    ------
+    InputError : frequencies that are not positive, an undamped linear resonance among them; a driveline without exact
+        motion, or excited both by its rotation and in time.
+    """
+    omegas = np.ascontiguousarray(np.atleast_1d(np.asarray(frequencies, dtype=float)))
+    if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
+        raise InputError("must be positive numbers", key="frequencies", value=np.asarray(frequencies).tolist())
+    if not 1 <= least <= most:
+        raise InputError("must be from 1, and no less than least", key="least, most", value=[least, most])
+    if isinstance(oscillator, Driveline | Assembly):
+        return exact_sweep(
+            oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same, measured=MEASURED
+        )
+    refuse_speed(oscillator.name, speed)
+    for omega in omegas:
+        refuse_unbounded(oscillator.but(frequency=float(omega)))
+    first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
+    k, tables = kernel(), oscillator.regimes
+    rows = np.full((len(omegas), k.ROW), np.nan)
+    record = np.empty((MOST_EVENTS, k.RECORDED))
+    ended = k.sweep(
+        first, omegas, least, most, same, MEASURED, oscillator.coefficients, tables.pieces, tables.guards, tables.then,
+        tables.side, record, rows,
+    )  # fmt: skip
+    column = dict(zip(COLUMNS, rows.T, strict=True))
+    sides = [CONTACT[int(c)] if np.isfinite(c) else "none" for c in column["contact"]]
+    outcome = Outcome(True, "swept", "every step was run")
+    if ended != k.DONE:
+        at = omegas[int(np.flatnonzero(column["settled"] == -1)[0])]
+        outcome = Outcome(False, "chatter", f"the motion at ω = {at:g} crosses too often in a period; raise damping")
+    return Sweep(
+        oscillator=oscillator,
+        frequency=omegas,
+        lowest=column["low"],
+        highest=column["high"],
+        mean=column["mean"],
+        contact=tuple(contact_state(s) for s in sides),
+        impacts=column["impacts"],
+        impact_energy=oscillator.inertia * column["energy"],
+        impact_impulse=oscillator.inertia * column["impulse"],
+        settled=column["settled"] == 1,
+        periods=np.nan_to_num(column["periods"]).astype(np.int64),
+        state=rows[:, -2:],
+        outcome=outcome,
+    )
+
+
+def rattle_index(oscillator: PiecewiseOscillator, frequencies: ArrayLike, **options: Any) -> xr.Dataset:
+    """Impulse and energy of the impacts per period over frequency, swept up and down.
+
+    Dataset with impact_energy [m v²] and impact_impulse [m v], dimensions (direction, frequency); 0 without impacts.
+    """
+    import xarray as xr
+
+    omegas = np.sort(np.asarray(frequencies, dtype=float))
+    up, down = sweep(oscillator, omegas, **options), sweep(oscillator, omegas[::-1], **options)
+    both = {
+        name: (("direction", "frequency"), np.stack([getattr(up, name), getattr(down, name)[::-1]]))
+        for name in ("impact_energy", "impact_impulse", "impacts")
+    }
+    return xr.Dataset(both, coords={"direction": ["up", "down"], "frequency": omegas})
+
+
+@dataclass(frozen=True)
+class Basins:
+    """Which motion is reached from where: numbers (starts of x, starts of x′) into ``attractors``, −1 for none."""
+
+    position: Array
+    velocity: Array
+    number: NDArray[np.int64]
+    attractors: tuple[PiecewiseOrbit, ...]
+
+    @property
+    def shares(self) -> Array:
+        """Share of the starts that each attractor draws (attractors,)."""
+        return np.array([np.mean(self.number == i) for i in range(len(self.attractors))])
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Map of the starts; see ``trunnion.plots.frequency_response``."""
+        from trunnion.plots.frequency_response import draw_basins
+
+        return draw_basins(self, axes, **options)
+
+    def __str__(self) -> str:
+        rows = [
+            f"  {share:.1%}: {orbit.peak_to_peak:.6g} peak to peak, mean {orbit.mean:.6g}, contact {orbit.contact}"
+            for share, orbit in zip(self.shares, self.attractors, strict=True)
+        ]
+        left = float(np.mean(self.number < 0))
+        rest = [f"  {left:.1%}: no motion of that period within the time"] if left else []
+        return "\n".join([f"{len(self.attractors)} attractors from {self.number.size} starts", *rows, *rest])
+
+    __repr__ = __str__
+
+
+def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
+    """Basins of attraction at the oscillator's own frequency, from all pairs of ``position`` and ``velocity``.
+
+    Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.
+    """
+    refuse_unbounded(oscillator)
+    x, v = (np.atleast_1d(np.asarray(a, dtype=float)) for a in (position, velocity))
+    starts = np.ascontiguousarray(np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2))
+    k, tables = kernel(), oscillator.regimes
+    ends, counts = np.empty_like(starts), np.zeros(len(starts), dtype=np.int64)
+    record = np.empty((MOST_EVENTS, k.RECORDED))
+    k.basins(
+        starts, LEAST, most, 1e-9, oscillator.frequency, oscillator.coefficients, tables.pieces, tables.guards,
+        tables.then, record, ends, counts,
+    )  # fmt: skip
+    number = np.full(len(starts), -1, dtype=np.int64)
+    found: list[PiecewiseOrbit] = []
+    for i in np.flatnonzero(counts > 0):
+        near = [j for j, orbit in enumerate(found) if np.abs(orbit.start - ends[i]).max() < 1e-5]
+        if not near:
+            orbit = piecewise_orbit(oscillator, ends[i], settle=False)
+            if not orbit.outcome.ok:
+                continue
+            found.append(orbit)
+            near = [len(found) - 1]
+        number[i] = near[0]
+    return Basins(x, v, number.reshape(len(x), len(v)), tuple(found))

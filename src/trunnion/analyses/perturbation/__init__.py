@@ -1,0 +1,1 @@
+"""Perturbation methods for one oscillator with a gap."""

@@ -1,0 +1,31 @@
+"""The speed a line runs at, and the unit its description prints speeds in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+
+
+def speed_unit(line: Driveline) -> str:
+    """The unit the description prints speeds in; rad/s where it has no operation (nondimensional lines)."""
+    return line.operation.speed_unit if line.operation else "rad/s"
+
+
+def operating_speed(line: Driveline, speed: float | None) -> float:
+    """``speed``, or the operating speed the description gives [rad/s]."""
+    if speed is None:
+        speed = line.operation.speed if line.operation else None
+    if speed is None:
+        raise InputError(
+            "is not given",
+            element="operation",
+            key="speed",
+            remedy='write speed = "1500 rpm", or pass a speed',
+        )
+    if isinstance(speed, bool) or not isinstance(speed, int | float | np.number):
+        raise InputError("must be a number in rad/s", key="speed", value=speed, remedy="write tn.rpm(1500)")
+    if not (np.isfinite(speed) and speed > 0):
+        raise InputError("must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say")
+    return float(speed)

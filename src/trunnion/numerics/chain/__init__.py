@@ -1,0 +1,1 @@
+"""Monodromy matrices of chains and trees of unknowns."""

@@ -1,0 +1,144 @@
+"""Monodromy matrices of many jointed chains (or trees) at once, each with its own error estimate.
+
+Sixteen *lanes*, points of a chart whose motion is about equally fast, are integrated together with common,
+error-controlled steps, by Taylor series (small chains) or the order-8 pair of Dormand and Prince; every lane
+has its own stiffness, damping, inertia, joint angles and phases. Unknowns are absolute rotations scaled by √J
+and rates are in units of a typical frequency ν, so entries of Z are comparable and one number measures their
+error. Half a period suffices where the joints allow (see ``half_period``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.chain.chain_tables import LANES, ChainLanes, ChainProgram
+from trunnion.numerics.chain.half_period import whole_periods
+from trunnion.numerics.compiled import chain_kernel
+from trunnion.numerics.threads import on_threads
+
+Array = NDArray[np.float64]
+MOST_STEPS = 200_000
+
+
+@dataclass(frozen=True)
+class Window:
+    """Where the integration starts [rad of input angle], the period, and whether half of it suffices."""
+
+    begin: float
+    period: float
+    half: bool
+
+
+def chain_monodromy(
+    program: ChainProgram,
+    lanes: ChainLanes,
+    window: Window,
+    tolerance: float,
+    threads: int = 1,
+) -> tuple[Array, Array, Array]:
+    """Z (lanes, 2n, 2n) in scaled units, its error estimate (lanes,) and ∫ tr(M⁻¹C) dτ (lanes,).
+
+    The error sums the local errors of the embedded pair, scaled by the norm of Z. A lane whose integration
+    fails has NaN. Threads share blocks of lanes; the kernel releases the interpreter lock.
+    """
+    length = window.period / 2 if window.half else window.period
+    asked = tolerance / 4 if window.half else tolerance
+    phi, error, trace = chain_propagator(program, lanes, window.begin, length, asked, threads)
+    return complete(program, lanes, window, phi, error, trace, threads)
+
+
+def chain_propagator(
+    program: ChainProgram, lanes: ChainLanes, begin: float, length: float, tolerance: float, threads: int = 1
+) -> tuple[Array, Array, Array]:
+    """The same for any stretch of input angle from ``begin`` on."""
+    n, count = lanes.stiffness.shape
+    matrix = np.empty((count, 2 * n, 2 * n))
+    error, trace = np.empty(count), np.empty(count)
+    extra, order = has_extra(program, lanes), _fast_ones_together(lanes.frequency)
+    kernel = chain_kernel(tuple(map(int, program.parent)), extra)
+
+    def run(first: int, last: int) -> None:
+        kernel.integrate(
+            program, lanes, order, first, last, begin, length, tolerance, extra, MOST_STEPS, matrix, error, trace
+        )
+
+    _in_pieces(run, count, threads)
+    return matrix, error, trace
+
+
+def complete(
+    program: ChainProgram,
+    lanes: ChainLanes,
+    window: Window,
+    phi: Array,
+    error: Array,
+    trace: Array,
+    threads: int = 1,
+) -> tuple[Array, Array, Array]:
+    """Monodromy matrices from propagators over the window's length: over half the period where that suffices."""
+    if not window.half:
+        return phi, error, trace
+    matrix, error = np.empty_like(phi), error.copy()
+
+    def run(first: int, last: int) -> None:
+        whole_periods(program, lanes, first, last, window.begin, window.period / 2, phi, error, matrix)
+
+    _in_pieces(run, len(phi), threads)
+    return matrix, error, 2 * trace
+
+
+def _fast_ones_together(frequency: Array) -> NDArray[np.int64]:
+    """An order in which lanes of about the same frequency stand together, to a factor of two.
+
+    A block steps as its fastest lane does, so a slow speed beside a fast one would be integrated in needlessly
+    short steps. Within the factor the lanes keep their places: neighbours of a chart share their joints' series.
+    """
+    return np.argsort(np.frexp(frequency)[1], kind="stable")
+
+
+def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> None:
+    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together."""
+    if threads <= 1 or count <= 4 * LANES:
+        run(0, count)
+        return
+    blocks = -(-count // LANES)
+    edges = np.unique(np.linspace(0, blocks, 8 * threads + 1).astype(int)) * LANES
+    pieces = [(int(a), min(int(b), count)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    on_threads(lambda piece: run(*piece), pieces, threads)
+
+
+def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:
+    """Whether static torque on a bent joint or angle-dependent inertia add terms to the plain chain."""
+    behind_joint = program.near_source >= 0
+    return bool(len(program.member_unknown)) or bool(np.any(lanes.torque[behind_joint]))
+
+
+def symmetry_phase(program: ChainProgram, lanes: ChainLanes, period: float) -> float | None:
+    """Input angle about which every joint of every lane is even, or None where there is none.
+
+    A joint is even about the input angles at which its χ is a whole number of quarter turns.
+    """
+    if has_extra(program, lanes):
+        return None
+    joints = len(program.joint_rate)
+    direct = [j for j in range(joints) if program.joint_speed_source[j] < 0]
+    if not direct:
+        return 0.0
+    chained = [j for j in range(joints) if program.joint_speed_source[j] >= 0]
+    if any(abs(program.joint_rate[j]) != 1.0 for j in chained) or not _quarter_turns(lanes.phase[chained]):
+        return None
+    first = direct[0]
+    for quarter in range(4):
+        begin = (quarter * np.pi / 2 - lanes.phase[first, 0]) / program.joint_rate[first]
+        if all(_quarter_turns(program.joint_rate[j] * begin + lanes.phase[j]) for j in direct):
+            return float(np.mod(begin, period))
+    return None
+
+
+def _quarter_turns(angle: Array) -> bool:
+    turns = angle / (np.pi / 2)
+    return bool(np.all(np.abs(turns - np.round(turns)) < 1e-12))

@@ -1,0 +1,1 @@
+"""Roots and curves of roots."""

@@ -1,0 +1,163 @@
+"""What the results of an overview say in sentences, beyond what the stability at one speed says itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.analyses.linear.resonance_speeds import Resonance, ResonanceSpeeds
+from trunnion.analyses.linear.stability import stability
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint
+from trunnion.equations.coefficients import Assembly
+from trunnion.results.chart import StabilityChart
+from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import speed_factor
+from trunnion.results.verdict import Verdict
+
+NEAR = 0.05
+"""Relative distance from a resonance speed that deserves a word."""
+
+
+def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
+    """Why no chart is drawn for a line that turns far below its natural frequencies."""
+    factor = speed_factor(unit)
+    yield Finding(
+        Gravity.NOTE,
+        f"The line runs at no more than {high * factor:.4g} {unit} and follows its joints statically there: below "
+        f"{slowest * factor:.4g} {unit} a turn spans hundreds of cycles of its highest mode, resonances of such "
+        "high order stay closed, and no chart is drawn.",
+    )
+
+
+def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
+    """What the description itself lacks or strains."""
+    if speed is None:
+        yield Finding(
+            Gravity.NOTE,
+            "No operating speed is given, so stability was judged over a range only; "
+            "write speed under [operation], or pass one.",
+        )
+    for name, element in zip(line.names, line.elements, strict=True):
+        if isinstance(element, HookeJoint) and abs(element.angle) > LARGE_ANGLE:
+            angle = np.rad2deg(abs(element.angle))
+            yield Finding(
+                Gravity.CAUTION, f"{name} is bent by {angle:.3g}°, more than most Hooke's joints allow (45°)."
+            )
+    if not any(isinstance(element, HookeJoint) for element in line.elements):
+        yield Finding(
+            Gravity.NOTE,
+            "The line has no Hooke's joint, so nothing excites it parametrically; no chart is drawn.",
+        )
+
+
+def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iterator[Finding]:
+    """Unstable bands of speed at the design angles, each with the resonance it belongs to."""
+    low, high = float(sweep.x[0]), float(sweep.x[-1])
+    whole = f"from {_plain(low, unit)} to {_plain(high, unit)} {unit}"
+    step = f"{speed_factor(unit) * (sweep.x[1] - sweep.x[0]):.3g} {unit}"
+    verdict, radius = sweep.verdict[0], sweep.spectral_radius[0]
+    bands = runs(verdict == Verdict.UNSTABLE)
+    for first, last in bands:
+        worst = first + int(np.argmax(radius[first : last + 1]))
+        there = stability(assembly, float(sweep.x[worst]))
+        cause = f" ({_named(there.resonance)})" if there.resonance else ""
+        edges = f"from {_plain(float(sweep.x[first]), unit)} to {_speed(float(sweep.x[last]), unit)}"
+        at = f"worst at {_speed(there.speed, unit)}, where"
+        if first == last:
+            edges, at = f"at {_speed(there.speed, unit)}", "there"
+        yield Finding(
+            Gravity.DANGER,
+            f"At its own joint angles the line is unstable {edges}{cause}; {at} a disturbance doubles "
+            f"every {np.log(2) / there.growth_rate:.3g} s.",
+        )
+    if not bands and np.all(verdict == Verdict.STABLE):
+        worst = int(np.argmax(radius))
+        yield Finding(
+            Gravity.NOTE,
+            f"At its own joint angles the line is stable {whole} (checked every {step}; "
+            f"largest spectral radius {radius[worst]:.6g} at {_speed(float(sweep.x[worst]), unit)}).",
+        )
+    elif not bands and np.all(verdict == Verdict.MARGINAL):
+        yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} (checked every {step}).")
+    yield from _unsettled(sweep, "at its own joint angles")
+
+
+def resonance_findings(
+    here: ResonanceSpeeds, limits: tuple[float, float], speed: float | None, unit: str
+) -> Iterator[Finding]:
+    """How many resonances lie in the range and how near the operating speed is to one that can open."""
+    able = [r for r in here if r.opens]
+    if not able:
+        return
+    many, one = ("s", "") if len(able) > 1 else ("", "s")
+    count = f"{len(able)} resonance speed{many} that can open (up to order {here.orders})"
+    within = f"between {_plain(limits[0], unit)} and {_speed(limits[1], unit)}"
+    if speed is None:
+        yield Finding(Gravity.NOTE, f"{count} lie{one} {within}.")
+        return
+    nearest = min(able, key=lambda r: (abs(np.log(r.speed / speed)), r.order))
+    distance = nearest.speed / speed - 1
+    side = "above" if distance > 0 else "below"
+    yield Finding(
+        Gravity.CAUTION if abs(distance) < NEAR else Gravity.NOTE,
+        f"{count} lie{one} {within}; nearest to the operating speed is the {_named(nearest)} at "
+        f"{_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
+    )
+
+
+def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
+    """The smallest common joint angle at which anything in the range is unstable."""
+    rows = np.flatnonzero(np.any(chart.verdict == Verdict.UNSTABLE, axis=1))
+    top = np.rad2deg(chart.y[-1])
+    if len(rows):
+        row = int(rows[0])
+        bad = chart.verdict[row] == Verdict.UNSTABLE
+        column = int(np.argmax(np.where(bad, chart.spectral_radius[row], -np.inf)))
+        yield Finding(
+            Gravity.CAUTION,
+            "With all joints at one angle, the first unstable point of the chart is at "
+            f"{np.rad2deg(chart.y[row]):.3g}° and {_speed(float(chart.x[column]), unit)}; "
+            f"{100 * chart.unstable_share:.2g} % of the chart is unstable.",
+        )
+    else:
+        yield Finding(
+            Gravity.NOTE, f"With all joints at one angle, no point of the chart is unstable up to {top:.3g}°."
+        )
+    yield from _unsettled(chart, "in the chart")
+
+
+def runs(flags: np.ndarray) -> list[tuple[int, int]]:
+    """First and last index of every run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
+    return [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
+
+
+def _unsettled(chart: StabilityChart, where: str) -> Iterator[Finding]:
+    failed, undecided = chart.count(Verdict.FAILED), chart.count(Verdict.UNDECIDED)
+    total = chart.verdict.size
+    if failed:
+        yield Finding(
+            Gravity.CAUTION,
+            f"{failed} of {total} points {where} could not be computed; raise the lowest speed.",
+        )
+    if undecided:
+        yield Finding(
+            Gravity.NOTE,
+            f"{undecided} of {total} points {where} stand on a stability boundary: the spectral radius is 1 "
+            "to within its error.",
+        )
+
+
+def _named(resonance: Resonance) -> str:
+    return f"{resonance.kind} resonance {resonance.formula}"
+
+
+def _speed(speed: float, unit: str) -> str:
+    return f"{_plain(speed, unit)} {unit}"
+
+
+def _plain(speed: float, unit: str) -> str:
+    """Four figures, as points of a grid deserve."""
+    return f"{float(f'{speed * speed_factor(unit):.4g}'):.10g}"

@@ -1,0 +1,1 @@
+"""Published studies, a folder a paper: numbers as printed, what is computed anew, errata; and the catalogue."""

@@ -1,0 +1,1 @@
+"""An elastic bicardan transmission: what was published, what is computed."""

@@ -1,0 +1,1 @@
+"""The double tripod driveshaft: what was published, what is computed."""

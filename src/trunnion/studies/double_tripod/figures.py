@@ -1,0 +1,161 @@
+"""S4's figures drawn anew: Ω(β), time histories and portraits, exponents over the range, Poincaré maps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep
+from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.analyses.motion.simulation import Simulation, simulate_system
+from trunnion.studies.double_tripod.estimator import printed_estimator
+from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+HISTORY = {"input": 0.12, "output": 0.12}
+"""Time drawn [s]; the paper does not state its own."""
+DIES_OUT = 5.0
+"""Times 1/(ζΩ) after which a motion counts as settled in a portrait."""
+MAP_POINTS = (10_000, 50_000)
+TRANSIENT = 4000
+COUNTS = (100, 200)
+"""Intervals N of the printed estimator."""
+
+
+def frequency_figure(element: str) -> Figure:
+    """Ω over the joint angle: Figure 9 or 10."""
+    figure, (axes,) = _figure(1)
+    beta = np.linspace(0, WORST_ANGLE, 91)
+    part = DoubleTripod().element(element)
+    axes.plot(np.rad2deg(beta), [part.natural_frequency(b) for b in beta], color="#0072b2", lw=1.6)
+    _labels(axes, "joint angle β [°]", f"natural frequency of {part.name} [rad/s]")
+    axes.set_xlim(0, 9)
+    return figure
+
+
+def motion_of(element: str, damping_ratio: float) -> Simulation:
+    """A motion of (25) or (26) from rest without twist."""
+    system = DoubleTripod(damping_ratio=damping_ratio).system(element, phase="own")
+    return simulate_system(system, HISTORY[element], tolerance=1e-9)
+
+
+def motion_figure(motion: Simulation, title: str) -> Figure:
+    """φ over time, φ̇ over time, and the portrait, the settled part in another colour: (a), (b), (d)."""
+    figure, (one, two, three) = _figure(3)
+    p = motion.system.parameters
+    times = np.linspace(0, motion.end, 40_000)
+    state = motion.at(times) * np.array([1e6, 1.0])
+    settled = times > DIES_OUT / (p["damping_ratio"] * p["natural_frequency"])
+    one.plot(times, state[:, 0], color="#0072b2", lw=0.4)
+    two.plot(times, state[:, 1], color="#0072b2", lw=0.4)
+    three.plot(state[:, 0], state[:, 1], color="#0072b2", lw=0.3)
+    if settled.any():
+        three.plot(state[settled, 0], state[settled, 1], color="#d55e00", lw=0.9)
+    _labels(one, "time [s]", "rotation [µrad]")
+    _labels(two, "time [s]", "rate [rad/s]")
+    _labels(three, "rotation [µrad]", "rate [rad/s]")
+    for axes in (one, two):
+        axes.set_xlim(0, motion.end)
+    _title(figure, title)
+    return figure
+
+
+def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
+    """Exponents and their sum over η/2π: the panels (a) to (d) of Figures 17 to 24."""
+    figure, (left, right) = _figure(2)
+    x = sweep.values / (2 * np.pi)
+    colours, styles = ("#0072b2", "#d55e00", "#009e73"), ("-", "-", "--")
+    for j in range(3):
+        left.plot(x, sweep.exponents[:, j], styles[j], color=colours[j], lw=1.4, label=f"L{j + 1}")
+    left.axhline(0.0, color="#6b6b6b", lw=0.8, ls=(0, (4, 3)), zorder=0)
+    right.plot(x, sweep.exponents.sum(axis=1), color="#1a1a1a", lw=1.4)
+    total = float(np.mean(sweep.exponents.sum(axis=1)))
+    right.set_ylim(total - 0.1 * abs(total), total + 0.1 * abs(total))
+    left.legend(fontsize=9.5, frameon=False, loc="lower left")
+    _labels(left, "excitation frequency η/2π [Hz]", "exponent [1/s]")
+    _labels(right, "excitation frequency η/2π [Hz]", "sum of the exponents [1/s]")
+    for axes in (left, right):
+        axes.set_xlim(x[0], x[-1])
+    _title(figure, title)
+    return figure
+
+
+def map_of(element: str) -> PoincareMap:
+    """Points of (29) or (30) at ζ = 0.0016 and η = 2Ω, once per turn of the phase."""
+    system = DoubleTripod().system(element)
+    turn = 2 * np.pi / system.parameters["excitation"]
+    return poincare_map(system, MAP_POINTS[1], every=turn, transient=TRANSIENT, tolerance=1e-9)
+
+
+def map_figure(found: PoincareMap, title: str) -> Figure:
+    """The map at two numbers of points: Figures 25 and 28."""
+    figure, panels = _figure(2)
+    for axes, points in zip(panels, MAP_POINTS, strict=True):
+        at = found.points[:points, [0, 2]] * np.array([1e6, 1.0])
+        size = found.size[[0, 2]] * np.array([1e6, 1.0])
+        look: dict[str, Any] = {"marker": ".", "ls": "", "color": "#0072b2", "mew": 0}
+        axes.plot(at[:, 0], at[:, 1], ms=8.0 if found.repeat else 1.2, rasterized=True, **look)
+        if found.repeat:  # one point: shown at the size of the motion
+            axes.set_xlim(at[-1, 0] - size[0], at[-1, 0] + size[0])
+            axes.set_ylim(at[-1, 1] - size[1], at[-1, 1] + size[1])
+        axes.set_title(f"N = {points}", fontsize=9.5, color="#6b6b6b", loc="left")
+        _labels(axes, "rotation [µrad]", "rate [rad/s]")
+    _title(figure, title)
+    return figure
+
+
+def estimator_curves(element: str, frequencies: Array, counts: tuple[int, ...] = COUNTS) -> Array:
+    """The printed estimator (counts, frequencies, 3) over 0.02 s, from the static rotation."""
+    out = np.empty((len(counts), len(frequencies), 3))
+    for i, frequency in enumerate(frequencies):
+        system = DoubleTripod().system(element, excitation=2 * np.pi * float(frequency))
+        p = system.parameters
+        start = [p["torque_over_inertia"] / p["natural_frequency"] ** 2, 1.0, 0.1]
+        for k, count in enumerate(counts):
+            out[k, i] = printed_estimator(system, start, 0.02 / count, count, tolerance=1e-9)
+    return out
+
+
+def estimator_figure(frequencies: Array, curves: Array) -> Figure:
+    """The printed estimator of the rotation over η/2π for two numbers of intervals N."""
+    figure, (axes,) = _figure(1)
+    for count, curve, colour in zip(COUNTS, curves, ("#0072b2", "#d55e00"), strict=True):
+        axes.plot(frequencies, curve[:, 0], color=colour, lw=1.3, label=f"N = {count}")
+    axes.legend(fontsize=9.5, frameon=False, loc="best")
+    axes.set_xlim(frequencies[0], frequencies[-1])
+    _labels(axes, "excitation frequency η/2π [Hz]", "printed “exponent” L₁₁ [log₁₀/s]")
+    _title(figure, "Not a Lyapunov exponent: it changes with N")
+    return figure
+
+
+def _figure(count: int) -> tuple[Figure, list[Any]]:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    widths = {1: 6.3, 2: 9.6, 3: 12.0}
+    figure = Figure(figsize=(widths[count], 3.9), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid: Any = figure.subplots(1, count, squeeze=False)
+    return figure, list(grid[0])
+
+
+def _labels(axes: Axes, x: str, y: str) -> None:
+    from trunnion.plots.style import INK, TEXT, plain
+
+    axes.set_xlabel(x, fontsize=TEXT, color=INK)
+    axes.set_ylabel(y, fontsize=TEXT, color=INK)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    axes.ticklabel_format(useOffset=False)
+    plain(axes)
+
+
+def _title(figure: Figure, text: str) -> None:
+    from trunnion.plots.style import INK, TITLE
+
+    figure.suptitle(text, fontsize=TITLE - 1, color=INK, x=0.01, ha="left")

@@ -1,0 +1,87 @@
+"""Figures of a reproduction: charts side by side as the paper draws them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
+from trunnion.results.chart import StabilityChart
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A chart, its caption, the paper's axis label along y, the paper's speed range, the named resonances."""
+
+    chart: StabilityChart
+    caption: str
+    y_label: str
+    limits: tuple[float, float]
+    named: tuple[Resonance, ...]
+
+
+def panel(chart: StabilityChart, caption: str, y_label: str, limits: tuple[float, float], name: bool = True) -> Panel:
+    """A panel with the resonances of the chart's line up to order 2."""
+    assert chart.line is not None
+    named = tuple(resonance_speeds(chart.line)) if name else ()
+    return Panel(chart, caption, y_label, limits, tuple(r for r in named if r.speed >= chart.x[0]))
+
+
+def side_by_side(panels: Sequence[Panel]) -> Figure:
+    """One or two panels, dark = unstable."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from trunnion.plots.paper_chart import draw
+
+    figure = Figure(figsize=(5.0 * len(panels) + 0.4, 4.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid: Any = figure.subplots(1, len(panels), squeeze=False)
+    for axes, p in zip(grid[0], panels, strict=True):
+        draw(
+            p.chart, axes, x_label="speed Ω [1]", y_label=p.y_label, x_limits=p.limits, resonances=p.named,
+            caption=p.caption,
+        )  # fmt: skip
+    return figure
+
+
+def curves(
+    x: Array, rows: Sequence[tuple[str, Array]], marks: Sequence[tuple[float, str]], y_label: str, title: str
+) -> Figure:
+    """Spectral radii over speed, one small panel each under a common speed axis; marks are named speeds."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
+
+    figure = Figure(figsize=(7.2, 1.55 * len(rows) + 0.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid: Any = figure.subplots(len(rows), 1, sharex=True, squeeze=False)
+    for k, (axes, (name, values)) in enumerate(zip(grid[:, 0], rows, strict=True)):
+        axes.axhline(1.0, color=FAINT, lw=0.8)
+        axes.plot(x, values, color=INK, lw=1.2)
+        axes.fill_between(x, 1.0, np.maximum(values, 1.0), color="#8c2f39", lw=0)
+        axes.set_title(name, fontsize=SMALL, color=INK, loc="right")
+        plain(axes)
+        axes.tick_params(labelsize=SMALL)
+        axes.set_xlim(x[0], x[-1])
+        low, high = float(values.min()), float(values.max())
+        axes.set_ylim(min(low, 0.999) - 0.05 * (high - low), max(high, 1.001) + 0.08 * (high - low))
+        for at, word in marks:
+            axes.axvline(at, color="#0072b2", lw=0.8, ls=(0, (4, 3)), zorder=0)
+            if k == 0:
+                look: dict[str, Any] = {"fontsize": SMALL, "color": "#0072b2", "ha": "center", "va": "bottom"}
+                axes.text(at, 1.03, word, transform=axes.get_xaxis_transform(), **look)
+    grid[-1, 0].set_xlabel("speed Ω [1]", fontsize=TEXT, color=INK)
+    figure.supylabel(y_label, fontsize=TEXT, color=INK)
+    figure.suptitle(title, fontsize=TITLE - 1, color=INK, x=0.01, ha="left")
+    return figure

@@ -1,0 +1,1 @@
+"""Gear rattle: what was published, what is computed."""

@@ -1,0 +1,1 @@
+"""Three shafts and two Hooke joints: what was published, what is computed."""

@@ -1,0 +1,44 @@
+"""What S3 misprints, with the computed consequence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.analyses.linear.stability import stability
+from trunnion.studies.entries import catalogue
+from trunnion.studies.result import Comparison, Row
+from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
+
+ANGLES = (0.2, 0.5)
+SPEEDS = np.linspace(0.15, 1.95, 31)
+
+
+def errata() -> Comparison:
+    """Printed, derived with the second joint at τ, derived, and the general equations, at β₁ = 0.2, β₂ = 0.5."""
+    radius = {
+        version: np.array(
+            [stability(printed_three_shaft_system(version, s, ANGLES), tolerance=1e-7).spectral_radius for s in SPEEDS]
+        )
+        for version in ("printed", "second at input", "derived")
+    }
+    line = catalogue("three-shaft-cardan", angle_1=ANGLES[0], angle_2=ANGLES[1])
+    general = np.array([stability(line, float(s), tolerance=1e-9).spectral_radius for s in SPEEDS])
+
+    def share(version: str) -> str:
+        return f"{100 * np.mean(radius[version] > 1 + 1e-6):.0f} % of speeds unstable"
+
+    shift = float(np.max(np.abs(radius["second at input"] - radius["derived"])))
+    agree = float(np.max(np.abs(radius["derived"] - general)))
+    return Comparison(
+        "Errata",
+        (
+            Row("E₂₁, E₃₁, E₃₂, F₂₁, F₃₁, F₃₂ as printed", "η₁′ …, +η₁/Ω² …", share("printed"),
+                "factors 2 on slopes, terms in η″ and signs are missing: everything would be unstable"),
+            Row("η₂ taken at τ", "η₂(τ)", share("second at input"),
+                f"it belongs at ψ₁(τ), behind joint 1: spectral radii move by up to {shift:.2g}"),
+            Row("derived", "η₂(ψ₁(τ))", share("derived"),
+                f"agrees with the general equations of this program to {agree:.0e}"),
+        ),
+        f"β₁ = {ANGLES[0]}, β₂ = {ANGLES[1]} rad, γ₂ = 10, ζ = 0.001, {len(SPEEDS)} speeds from {SPEEDS[0]:g} to "
+        f"{SPEEDS[-1]:g}.",
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Two shafts and a Hooke joint: what was published, what is computed."""

@@ -1,0 +1,120 @@
+"""S1 computed anew: Tables 1–2, Figures 2–7, errata, conclusions.
+
+Soltan Rezaee and Ghazavi, Modares Mechanical Engineering 14 (12), 2014, 163–170.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from trunnion.analyses.charts.stability_chart import stability_chart
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.results.chart import StabilityChart
+from trunnion.studies.drawing import Panel, panel, side_by_side
+from trunnion.studies.entries import catalogue
+from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_row
+from trunnion.studies.result import Comparison, PaperFigure, Reproduction
+from trunnion.studies.two_shaft_cardan.conclusions import conclusions
+from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
+from trunnion.studies.two_shaft_cardan.published import DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2, group_parameters
+
+NAME = "two-shaft-cardan"
+ANGLE = "HookeJoint 1.angle"
+TOP = 1.5
+"""Largest joint angle of the paper's figures [rad]."""
+BETA = 0.5
+"""Joint angle of Figures 5 and 7 [rad]; the text does not state it."""
+MOST = 20.0
+"""Largest ratio of Figures 5 and 7; the text does not state it, Figures 4 and 6 use it."""
+
+TABLE_1: tuple[Printed, ...] = (
+    ("subharmonic", (1,), 1, 0.072), ("subharmonic", (1,), 2, 0.024),
+    ("subharmonic", (2,), 1, 1.422), ("subharmonic", (2,), 2, 0.474),
+    ("harmonic", (1,), 1, 0.035), ("harmonic", (1,), 2, 0.018),
+    ("harmonic", (2,), 1, 0.712), ("harmonic", (2,), 2, 0.356),
+)  # fmt: skip
+TABLE_2: tuple[Printed, ...] = (
+    ("sum", (1, 2), 1, 0.747), ("sum", (1, 2), 2, 0.373),
+    ("difference", (1, 2), 1, 0.675), ("difference", (1, 2), 2, 0.338),
+)  # fmt: skip
+
+
+def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None = None) -> Reproduction:
+    """Reproduce S1 on ``points`` × ``points`` pixels a chart."""
+    tell = progress or (lambda share: None)
+    heavy = {"inertia_of_disk_2": 100.0}
+
+    def over_angle(low: float, high: float, tolerance: float = 1e-9, **changes: Any) -> StabilityChart:
+        line = catalogue(NAME, **changes)
+        return stability_chart(line, ("speed", low, high, points), (ANGLE, 0.0, TOP, points), tolerance=tolerance)
+
+    slow = over_angle(0.015, 0.4, 1e-10, **heavy)
+    fast = over_angle(0.25, 2.0, **heavy)
+    tell(0.2)
+    faint = tuple(over_angle(*ends, 1e-10, damping_ratio=1e-5, **heavy) for ends in ((0.015, 0.4), (0.25, 2.0)))
+    tell(0.4)
+    base, damped, stiff = (
+        over_angle(0.04, 2.0),
+        over_angle(0.04, 2.0, damping_of_shaft_2=20.0),
+        over_angle(0.06, 2.0, stiffness_of_shaft_2=20.0),
+    )
+    tell(0.6)
+    damping, stiffness = _over_group(DAMPING_OF_SHAFT_2, points), _over_group(STIFFNESS_OF_SHAFT_2, points)
+    tell(0.7)
+    beta = "joint angle β [rad]"
+    whole = (0.0, 2.0)
+    from_zero = "Hatched: not computed, a turn there spans very many vibrations."
+    figures = (
+        _figure("2", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001, at low and at high speed", from_zero,
+                panel(slow, "γ = 100, low speeds", beta, (0.0, 0.4)), panel(fast, "γ = 100", beta, (0.25, 2.0))),
+        _figure("3", "β–Ω, base case α = μ = γ = 1, ζ = 0.001", from_zero, panel(base, "base case", beta, whole)),
+        _figure("4", "β–Ω with 20 times the damping of shaft 2, beside the base case", from_zero,
+                panel(damped, "α = 20", beta, whole), panel(base, "α = 1 (Figure 3)", beta, whole)),
+        _figure("5", "damping ratio α–Ω, μ = γ = 1",
+                f"β = {BETA} rad (29°) and α up to {MOST:g}: the text states neither.",
+                panel(damping, f"β = {BETA} rad", "damping of shaft 2 over shaft 1, α [1]", whole)),
+        _figure("6", "β–Ω with 20 times the stiffness of shaft 2, beside the base case",
+                "The text says damping here; caption, section and figure are about stiffness. " + from_zero,
+                panel(stiff, "μ = 20", beta, whole), panel(base, "μ = 1 (Figure 3)", beta, whole)),
+        _figure("7", "stiffness ratio μ–Ω, α = γ = 1",
+                f"β = {BETA} rad (29°) and μ up to {MOST:g}: the text states neither.",
+                panel(stiffness, f"β = {BETA} rad", "stiffness of shaft 2 over shaft 1, μ [1]", whole, name=False)),
+    )  # fmt: skip
+    modes = natural_frequencies(catalogue(NAME, **heavy)).frequency
+    rows = [resonance_row(p, (slow, fast), faint) for p in (*TABLE_1, *TABLE_2)]
+    tell(0.8)
+    note = "γ = 100, α = μ = 1. Tongues are followed at a hundredth of the damping down to β = 0."
+    tables = (
+        Comparison(
+            "Natural frequencies",
+            frequency_rows("eq 26", (0.072, 1.422), modes, "the paper's own equation 25 gives the computed value"),
+        ),
+        Comparison("Table 1, harmonic and subharmonic resonance", tuple(rows[: len(TABLE_1)]), note),
+        Comparison("Table 2, combination resonance", tuple(rows[len(TABLE_1) :]), note),
+    )
+    evidence = (versions_figure(),)
+    found = Reproduction(
+        NAME,
+        "Two shafts and a Hooke's joint (S1)",
+        "Soltan Rezaee and Ghazavi, Modares Mechanical Engineering 14 (12), 2014, 163–170",
+        figures,
+        tables,
+        errata(),
+        evidence,
+        conclusions(base, damped, stiff, stiffness, fast),
+    )
+    tell(1.0)
+    return found
+
+
+def _over_group(label: str, points: int) -> StabilityChart:
+    line = catalogue(NAME, angle=BETA)
+    parameter = group_parameters(line)[label]
+    low = 0.0 if label == DAMPING_OF_SHAFT_2 else 0.05
+    across, up = ("speed", 0.06, 2.0, points), (parameter, low, MOST, points)
+    return stability_chart(line, across, up, tolerance=1e-9)
+
+
+def _figure(number: str, caption: str, assumed: str, *panels: Panel) -> PaperFigure:
+    return PaperFigure(number, caption, assumed, tuple(p.chart for p in panels), lambda: side_by_side(panels))
