@@ -3,6 +3,7 @@
 import lines
 import numpy as np
 import pytest
+import vector_model
 
 import trunnion as tn
 from trunnion.results.finding import Gravity
@@ -52,15 +53,73 @@ def test_loads_that_grow_with_the_speed(viscous, quadratic, rigid):
     assert not result.findings
 
 
-def test_stages_take_the_loads_that_grow_with_the_speed():
-    """A PiecewiseShaft has the stiffness of the torque at mean speed."""
-    stages = tn.PiecewiseShaft(breakpoints=["-1 deg", "1 deg"], stiffnesses=[1e4, 1e3, 1e4])
-    line = [tn.ConstantSpeed(), stages, tn.HookeJoint(angle=0.2)]
-    said, meant = (
-        tn.kinetostatics(tn.Driveline([*line, tn.Disk(inertia=1, **load)]), speed=10.0, rigid=False)
-        for load in ({"viscous_load": 3.0, "quadratic_load": 0.2}, {"load_torque": 50.0})
-    )
-    assert np.mean(said.torque / said.twist) == pytest.approx(np.mean(meant.torque / meant.twist), rel=1e-12)
+def staged(**disk):
+    """Driven straight, over 100 N m/rad to 0.1 rad and 4000 beyond."""
+    shaft = tn.PiecewiseShaft.symmetric([(100.0, 0.1), (4000.0, None)])
+    return tn.Driveline([tn.ConstantSpeed(), shaft, tn.Disk(inertia=1.0, **disk)])
+
+
+@pytest.mark.parametrize(
+    ("disk", "output"),
+    [
+        ({"load_torque": 50.0}, 0.0),
+        ({}, 50.0),
+        ({"load_torque": 25.0}, 25.0),
+        ({"viscous_load": 3.0, "quadratic_load": 0.2}, 0.0),  # at 10 rad/s
+    ],
+)
+def test_stage_of_the_whole_torque(disk, output):
+    """10 N m to the breakpoint and 40 beyond, whatever the torque comes from."""
+    result = tn.kinetostatics(staged(**disk), speed=10.0, rigid=False, output_torque=output, points=8)
+    assert np.allclose(result.twist, -0.11, rtol=0, atol=1e-15)
+
+
+def _yields(torque):
+    """Twist [rad] under a torque [N m]: 1500 N m/rad to 0.04 rad, 6000 to 0.0467 (100 N m), 10 000 beyond."""
+    far = 0.04 + 40 / 6000 + 10.0
+    return np.sign(torque) * np.interp(abs(torque), [0, 60, 100, 100 + 1e5], [0, 0.04, 0.04 + 40 / 6000, far])
+
+
+def test_stages_twist_by_twist():
+    """Every shaft on the law of its own stages, at every angle: the twists of the rigid bodies in space."""
+    line = lines.random_line(3, 12, load=100.0)
+    stages = [(1500.0, 0.04), (6000.0, 0.04 + 40 / 6000), (1e4, None)]
+    elements = [
+        tn.PiecewiseShaft.symmetric(stages, fork_offset=e.fork_offset, name=f"stages {m}") if e.kind == "Shaft" else e
+        for m, e in enumerate(lines.driveline(line).elements)
+    ]
+    result = tn.kinetostatics(tn.Driveline(elements), speed=line.speed, points=72, rigid=False)
+    assert result.twist[:3].min() < -0.047 < -0.0465 < result.twist[:3].max()
+    for p in range(0, 72, 7):
+        _, truth, twists = vector_model.elastic(line, result.input_angle[p], yields=_yields)
+        assert np.allclose(result.twist[:3, p], twists, rtol=0, atol=1e-12)
+        assert abs(result.drive_torque[p] - truth["drive_torque"]) < 1e-9
+    assert result.power_residual < 1e-12
+    said = [f.sentence for f in result.findings]
+    assert any("changes its stage within the turn, at a twist of -2.674 deg" in s for s in said)
+
+
+def test_a_torque_that_crosses_the_play_is_said():
+    """Inertia torques without load reverse twice a turn."""
+    play = tn.PiecewiseShaft(breakpoints=["-1 deg", "1 deg"], stiffnesses=[1e4, 0, 1e4])
+    line = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.01), tn.HookeJoint(angle=0.3)]
+    free, pressed = (
+        tn.kinetostatics(tn.Driveline([*line, play, tn.Disk(inertia=0.1, load_torque=load)]), 10.0,
+                         rigid=False, inertia=True)
+        for load in (0.0, 20.0)
+    )  # fmt: skip
+    assert any("crosses its free play" in f.sentence and f.gravity is Gravity.CAUTION for f in free.findings)
+    assert not any("play" in f.sentence for f in pressed.findings)
+
+
+def test_a_torque_beyond_the_stages_is_refused():
+    soft = tn.PiecewiseShaft(breakpoints=[-0.1, 0.1], stiffnesses=[0, 100.0, 0])
+    with pytest.raises(tn.InputError, match=r"stages: has no stage that carries its load of -20 N·m"):
+        tn.kinetostatics(
+            tn.Driveline([tn.ConstantSpeed(), soft.model_copy(update={"name": "stages"}), tn.Disk(inertia=1.0)]),
+            rigid=False,
+            output_torque=20.0,
+        )
 
 
 def test_excitation_left_out_is_remarked():

@@ -229,14 +229,15 @@ def shaft_torques(line, state, found):
     return passed
 
 
-def elastic(line, phi, start=None):
-    """State, forces and twists with every shaft but the last yielding by torque/stiffness."""
+def elastic(line, phi, start=None, yields=None):
+    """State, forces and twists with every shaft but the last yielding by torque/stiffness, or as ``yields`` says."""
     n = len(line.angles)
+    yields = yields or (lambda torque: torque / line.stiffness[:n])
 
     def residual(twists):
         state = motion(line, phi, np.append(twists, 0.0))
         passed = shaft_torques(line, state, forces(line, state))
-        return twists + np.array(passed[:n]) / line.stiffness[:n]
+        return twists + yields(np.array(passed[:n]))
 
     solution = root(residual, np.zeros(n) if start is None else start, tol=1e-14, method="hybr")
     twists = solution.x

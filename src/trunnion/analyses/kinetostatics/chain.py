@@ -3,7 +3,7 @@
 A *step* leads from the station in front of an element to the one behind it. A *member* is everything that
 turns about one axis between two joints; its axis changes at every joint. A *train* is a run of members tied
 by joints; a Ratio ends it, because where its gears put the next axis is not part of the description. A GearPair is
-a Ratio here, rigid and in contact; a PiecewiseShaft has the stiffness torque/twist of the loads at mean speed.
+a Ratio here, rigid and in contact; a PiecewiseShaft keeps its law of stages.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 from math import lcm
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ from trunnion.driveline.elements import (
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parameters import pack
 from trunnion.driveline.stages import PiecewiseShaft
-from trunnion.equations.stage_laws import stage_law
+from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.errors import InputError
 from trunnion.laws import double_cardan, tripod
 
@@ -59,7 +60,7 @@ class Step:
     ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the
     tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and ``far_inertia``
     [kg m²] sit at the two stations; ``ratio`` is input speed over output speed; ``load``, ``viscous_load`` and
-    ``quadratic_load`` are a Disk's.
+    ``quadratic_load`` are a Disk's. A Shaft has a ``stiffness`` [N m/rad], one with stages a ``law``.
     """
 
     link: Link
@@ -71,6 +72,7 @@ class Step:
     amplitude: float = 0.0
     fork_offset: float = 0.0
     stiffness: float = np.inf
+    law: StageLaw | None = None
     ratio: float = 1.0
     near_inertia: float = 0.0
     far_inertia: float = 0.0
@@ -148,19 +150,18 @@ def period_turns(chain: Chain) -> int:
     return period
 
 
-def chain(line: Driveline, lengths: dict[str, float] | None = None, speed: float = 0.0) -> Chain:
+def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:
     """Sort ``line`` into steps and members.
 
     Parameters
     ----------
     lengths : joint-to-joint distance [m] by Shaft name, where the Shaft is not a tube of known length.
-    speed : of the input [rad/s], for the loads that grow with it.
 
     Raises
     ------
     InputError : the far end is prescribed as well as the near end.
     """
-    draft = _Draft(line, lengths or {}, speed)
+    draft = _Draft(line, lengths or {})
     for i in range(len(line.elements)):
         draft.add(i)
     members = tuple(
@@ -178,8 +179,8 @@ class _OpenMember:
 
 
 class _Draft:
-    def __init__(self, line: Driveline, lengths: dict[str, float], speed: float) -> None:
-        self.line, self.lengths, self.speed = line, lengths, speed
+    def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
+        self.line, self.lengths = line, lengths
         self.steps = [Step(Link.ROOT, -1, "drive", 0)]
         self.members = [_OpenMember(-1, 0, [], 0.0)]
         self.behind: list[int] = []
@@ -198,8 +199,9 @@ class _Draft:
             self.members[member].shafts.append(name)
             self.members[member].length += self.lengths.get(name, element.length or 0.0)
         elif isinstance(element, PiecewiseShaft):
-            stiffness = _under_load(self.line, i, self.speed)
-            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, stiffness=stiffness)
+            packed = pack(self.line)
+            law = stage_law(self.line, i, packed.column, packed.table(1))
+            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, law=law)
             self.members[member].shafts.append(name)
             self.members[member].length += self.lengths.get(name, 0.0)
         elif isinstance(element, Disk):
@@ -242,30 +244,6 @@ class _Draft:
         self.members.append(_OpenMember(len(self.steps), train, [], 0.0))
         return self._step(link, parent, name, len(self.members) - 1, **numbers)
 
-    def _step(self, link: Link, parent: int, name: str, member: int, **numbers: float) -> int:
-        self.steps.append(Step(link, parent, name, member, **numbers))
+    def _step(self, link: Link, parent: int, name: str, member: int, **more: Any) -> int:
+        self.steps.append(Step(link, parent, name, member, **more))
         return len(self.steps) - 1
-
-
-def _under_load(line: Driveline, place: int, speed: float) -> float:
-    """Torque over twist of a shaft with stages under the loads at mean speed; its stiffest stage without load."""
-    torque = 0.0
-    for i, element in enumerate(line.elements):
-        if isinstance(element, Disk):
-            turning = speed * _ratio_between(line, 0, i)
-            load = element.load_torque + (element.viscous_load + element.quadratic_load * turning) * turning
-            torque -= load * _ratio_between(line, place, i)
-    packed = pack(line)
-    law = stage_law(line, place, packed.column, packed.table(1))
-    twist = float(law.under(np.array([torque]), free=True)[0][0])
-    return torque / twist if twist else float(law.slopes.max())
-
-
-def _ratio_between(line: Driveline, front: int, back: int) -> float:
-    """Mean speed behind over in front, both of elements; 0 where ``back`` does not hang on ``front``."""
-    ratio, i = 1.0, line.parents[back]
-    while i is not None and i != front:
-        element = line.elements[i]
-        ratio /= abs(element.speed_ratio) if isinstance(element, Ratio | GearPair) else 1.0
-        i = line.parents[i]
-    return ratio if i == front else 0.0

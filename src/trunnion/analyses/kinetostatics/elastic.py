@@ -1,6 +1,7 @@
 """Twist of the shafts, consistent with motion and torque at every angle (S2's algorithm, without ξ ≈ const).
 
-A shaft twists by ξ = T/c under the torque T it passes on; the twist shifts the phase of every joint behind
+A shaft twists by ξ = T/c under the torque T it passes on (one with stages by what its law gives for T at that
+angle); the twist shifts the phase of every joint behind
 it, which changes the torques in front of those joints, and so on: a fixed point, found for all angles (and
 for the rates of ξ, as jets) at once. One round changes the twist by its last change times ∂T/∂φ /c, which is
 the twist itself times η′: a few hundredths for steel shafts, so that some ten rounds reach rounding.
@@ -8,7 +9,8 @@ the twist itself times η′: a few hundredths for steel shafts, so that some te
 Inertia torques are those of the rigid line: quasi-static, right as long as the excitation, twice the shaft
 speed, stays well below the lowest elastic natural frequency ω₁ (they are too small by about 1 − (2Ω/ω₁)²).
 Loads that grow with the speed take that of the rigid line too: the twist changes it by its own rate only.
-Damping in the shafts is left out.
+Damping in the shafts is left out. Where a shaft passes from one stage to the next its twist is continuous and its
+rate is not; the rates given are those beside the step.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.kinetostatics.chain import Chain
+from trunnion.analyses.kinetostatics.chain import Chain, Step
 from trunnion.analyses.kinetostatics.motion import Motion, drive_jet, walk
 from trunnion.analyses.kinetostatics.torques import Torques, torques
 from trunnion.errors import ComputationError
@@ -56,7 +58,7 @@ def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Motion, Torques, 
     for _ in range(ROUNDS):
         motion = walk(chain, drive.jet(MOTION_ORDER), twist)
         found = _torques(chain, motion, drive, MOTION_ORDER, rates)
-        new = {i: -found.spring[i] / chain.steps[i].stiffness for i in chain.shafts}
+        new = {i: _yielding(chain.steps[i], found.spring[i]) for i in chain.shafts}
         before, change = change, _change(new, twist, drive.speed)
         twist = new
         if change < 1e-15 or (change < 1e-11 and change >= before):  # rounding
@@ -72,6 +74,23 @@ def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Motio
     """S2's approximation: the motion with every twist held at its mean over the turn."""
     mean = {i: jets.constant(float(np.mean(xi[0])), xi) for i, xi in twist.items()}
     return walk(chain, drive.jet(MOTION_ORDER), mean)
+
+
+def _yielding(step: Step, passed: Array) -> Array:
+    """Jet of the twist [rad] of a shaft that passes the torque with the jet ``passed`` [N m].
+
+    Raises
+    ------
+    InputError : the outermost stage has no stiffness and the torque goes beyond it.
+    """
+    if step.law is None:
+        return -passed / step.stiffness
+    torque = -passed[0]
+    twist, slope, _ = step.law.under(torque, free=True)
+    if np.any((slope == 0) & (torque != 0)):
+        step.law.under(torque[torque != 0])
+    rates = np.divide(-passed, slope, out=np.zeros_like(passed), where=slope > 0)
+    return np.concatenate([twist[None], rates[1:]])
 
 
 @dataclass(frozen=True)

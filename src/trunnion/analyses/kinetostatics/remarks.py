@@ -2,24 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
 from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
 from trunnion.analyses.kinetostatics.elastic import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
+Array = NDArray[np.float64]
 NEAR_RESONANCE = 1 / 3
 """Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
 
 
-def remarks(chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, turns: int) -> tuple[Finding, ...]:
-    """Findings about a result, gravest first where it matters."""
+def remarks(
+    chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, turns: int, twist: Mapping[int, Array]
+) -> tuple[Finding, ...]:
+    """Findings about a result, gravest first where it matters; ``twist`` as ``elastic.solve`` gives it."""
     found = []
     if drive.inertia:
         found += _resonance(chain, drive, rigid)
     found += _repeats(chain, turns)
     found += _left_out(chain)
+    found += _meshes(chain)
+    found += _stages(chain, twist)
     if supports is not None:
         found += [
             Finding(
@@ -77,6 +89,54 @@ def _left_out(chain: Chain) -> list[Finding]:
         for name, element in zip(chain.line.names, chain.line.elements, strict=True)
         if isinstance(element, Disk) and element.excitation
     ]
+
+
+def _meshes(chain: Chain) -> list[Finding]:
+    """Gear pairs, which a turn takes as rigid pairs in contact."""
+    words = {
+        "mesh_stiffness": "the mesh's yielding",
+        "total_backlash": "backlash",
+        "transmission_error": "transmission error",
+        "stiffness_variation": "stiffness variation",
+    }
+    return [
+        Finding(
+            Gravity.NOTE,
+            f"{name} is taken as a rigid pair in contact: {', '.join(w for k, w in words.items() if getattr(e, k))} "
+            "left out; ask periodic_response() or simulate() for what that does",
+        )
+        for name, e in zip(chain.line.names, chain.line.elements, strict=True)
+        if isinstance(e, GearPair)
+    ]
+
+
+def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
+    """Shafts that change their stage within the turn."""
+    found = []
+    for i, jet in twist.items():
+        step = chain.steps[i]
+        if step.law is None:
+            continue
+        knots, slopes = step.law.knots[0], step.law.slopes[0]
+        low, high = float(jet[0].min()), float(jet[0].max())
+        crossed = [knot for knot in knots if low < knot < high]
+        play = any(
+            slope == 0 and low <= a and b <= high for slope, a, b in zip(slopes[1:-1], knots, knots[1:], strict=False)
+        )
+        if play:
+            sentence = (
+                f"the torque in {step.name} reverses within the turn: it crosses its free play, which takes time that "
+                "a quasi-static turn does not have; ask simulate() or periodic_response() for the motion"
+            )
+            found.append(Finding(Gravity.CAUTION, sentence))
+        elif crossed:
+            angles = ", ".join(f"{knot / DEGREE:.4g} deg" for knot in crossed)
+            sentence = (
+                f"{step.name} changes its stage within the turn, at a twist of {angles}: speeds behind it step there, "
+                "and the largest acceleration given is that beside the steps"
+            )
+            found.append(Finding(Gravity.NOTE, sentence))
+    return found
 
 
 def _repeats(chain: Chain, turns: int) -> list[Finding]:

@@ -75,7 +75,7 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
-    train = chain(line, _lengths(line, lengths), drive_speed)
+    train = chain(line, _lengths(line, lengths))
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
@@ -128,7 +128,7 @@ def kinetostatics(
         secondary_couple_rotating=couples.rotating,
         supports=forces,
         constant_twist=constant,
-        findings=remarks(train, drive, rigid, forces, turns),
+        findings=remarks(train, drive, rigid, forces, turns, twist),
         power_loss=couples.friction_power,
         power_residual=_power_residual(train, drive, motion, passed, twist, couples.friction_power),
     )
