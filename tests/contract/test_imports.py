@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 import ast
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import trunnion
+from trunnion.plots import DRAWINGS
 
 ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
-DESCRIBE = {"driveline", "laws"}
-COMPUTE = {"equations", "systems", "numerics", "results", *DESCRIBE}
-ALLOWED = {
-    "errors": set(),
-    "_version": set(),
-    "laws": set(),
-    "numerics": set(),
-    "systems": {"numerics"},
-    "driveline": {"laws", "plots"},  # plots where something draws itself, see test_plots_load_late
-    "equations": {"driveline", "laws", "systems", "numerics"},
-    "results": {"driveline", "numerics", "plots"},  # a chart keeps the patches behind its pixels
-    "analyses": {"plots", *COMPUTE},
-    "plots": {"analyses", *COMPUTE},
-    "reporting": {"plots", "analyses", *COMPUTE},
-    "studies": {"plots", "analyses", "reporting", *COMPUTE},
-    "cli": {"plots", "analyses", "reporting", "studies", *COMPUTE},
-    "__main__": {"cli"},
-}
+LAYERS = (
+    {"errors", "_version"},
+    {"numerics"},
+    {"laws"},
+    {"driveline", "systems"},
+    {"equations"},
+    {"results"},
+    {"analyses"},
+    {"plots"},
+    {"reporting"},
+    {"studies"},
+    {"cli"},
+    {"__main__"},
+)
+"""From the ground up; a part imports what stands below it, and nothing above or beside it, late or for types."""
+LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}
 FILES = sorted(ROOT.rglob("*.py"))
 
 
@@ -56,8 +56,61 @@ def test_layers(path: Path) -> None:
     part = part_of(path)
     if part == "__init__":  # lists the public names and loads them when first used
         return
-    assert part in ALLOWED, f"say in this test what trunnion.{part} may import"
-    assert imported_parts(path) <= ALLOWED[part] | ALWAYS | {part}
+    assert part in LEVEL, f"say in this test where trunnion.{part} stands"
+    above = {other for other in imported_parts(path) if other != part and LEVEL[other] >= LEVEL[part]}
+    assert not above, f"{path} imports {', '.join(sorted(above))} from above or beside it"
+
+
+def test_drawings_exist() -> None:
+    """Every entry of the table of drawings names a public method of a result, and a function."""
+    for key, address in DRAWINGS.items():
+        module, name = address.split(":")
+        assert callable(getattr(import_module(module), name)), key
+    called = {
+        (node.name, call.args[1].value)
+        for path in FILES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+        for call in ast.walk(node)
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "drawing"
+        if isinstance(call.args[1], ast.Constant)
+    }
+    assert {f"{owner}.{method}" for owner, method in called} == set(DRAWINGS)
+
+
+def test_no_import_circle() -> None:
+    """Modules imported when a module is loaded never lead back to it."""
+    needs = {module_of(path): {m for m in loaded_modules(path) if m in MODULES} for path in FILES}
+    done: set[str] = set()
+
+    def visit(name: str, trail: tuple[str, ...]) -> None:
+        assert name not in trail, " → ".join((*trail, name))
+        if name not in done:
+            for other in sorted(needs[name] - {name}):
+                visit(other, (*trail, name))
+            done.add(name)
+
+    for name in sorted(needs):
+        visit(name, ())
+
+
+def module_of(path: Path) -> str:
+    return ".".join(("trunnion", *path.relative_to(ROOT).with_suffix("").parts)).removesuffix(".__init__")
+
+
+MODULES = {module_of(path) for path in FILES}
+
+
+def loaded_modules(path: Path) -> set[str]:
+    """Modules of the package that loading a file imports: its statements outside functions and TYPE_CHECKING."""
+    found: set[str] = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            full = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= {name if name in MODULES else node.module for name in full}
+    return found
 
 
 def test_nothing_imports_the_command_line() -> None:

@@ -1,1 +1,35 @@
 """Pictures of results. matplotlib is loaded when the first one is drawn; no global state is touched."""
+
+DRAWINGS = {
+    # linear
+    "NaturalFrequencies.plot": "trunnion.plots.mode_shapes:draw",
+    "SpeedSweep.plot": "trunnion.plots.torque_over_speed:draw",
+    "StabilityChart.plot": "trunnion.plots.stability_chart:draw",
+    "StableLimit.plot": "trunnion.plots.stable_limit:draw",
+    "Kinetostatics.plot": "trunnion.plots.kinetostatics:draw",
+    # motions
+    "Simulation.plot": "trunnion.plots.motion:draw_history",
+    "Simulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
+    "LineSimulation.plot": "trunnion.plots.motion:draw_line_history",
+    "LineSimulation.plot_order_map": "trunnion.plots.order_map:draw",
+    "RunUp.plot": "trunnion.plots.run_up:draw",
+    "PeriodicOrbit.plot": "trunnion.plots.motion:draw_orbit",
+    "PeriodicResponse.plot": "trunnion.plots.motion:draw_period",
+    "PeriodicResponse.plot_orders": "trunnion.plots.motion:draw_orders",
+    "PeriodicBranch.plot": "trunnion.plots.response_curve:draw",
+    # gaps
+    "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
+    "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
+    "ResponseComparison.plot": "trunnion.plots.frequency_response:draw_compared",
+    "Sweep.plot": "trunnion.plots.frequency_response:draw_sweep",
+    "LineSweep.plot": "trunnion.plots.frequency_response:draw_line_sweep",
+    "Basins.plot": "trunnion.plots.frequency_response:draw_basins",
+    # chaos
+    "LyapunovSpectrum.plot": "trunnion.plots.chaos:draw_convergence",
+    "LyapunovSweep.plot": "trunnion.plots.chaos:draw_sweep",
+    "LyapunovMap.plot": "trunnion.plots.chaos:draw_lyapunov_map",
+    "PoincareMap.plot": "trunnion.plots.chaos:draw_map",
+    "BifurcationDiagram.plot": "trunnion.plots.chaos:draw_bifurcations",
+    "ChaosCertificate.plot": "trunnion.plots.chaos:draw_certificate",
+}
+"""What draws a result: ``Class.method`` → ``module:function``."""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from trunnion.analyses.orbits.exact_sweep import LineSweep
+    from trunnion.analyses.orbits.frequency_response import ResponseComparison
     from trunnion.analyses.orbits.piecewise_sweep import Basins, Sweep
 
 STYLES = {
@@ -247,3 +248,23 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
     plain(axes)
     axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
     return axes
+
+
+def draw_response(response: Any, axes: Axes | None = None, **options: Any) -> Axes:
+    """One method's curve: ``draw_responses`` of it alone."""
+    return draw_responses({response.method: response}, axes, **options)
+
+
+def draw_compared(comparison: ResponseComparison, axes: Axes | None = None, **options: Any) -> Axes:
+    """Every method's curve: ``draw_responses`` of all."""
+    return draw_responses(comparison.responses, axes, **options)
+
+
+def draw_sweep(sweep: Sweep, axes: Axes | None = None, **options: Any) -> Axes:
+    """``draw_sweeps`` of one."""
+    return draw_sweeps([sweep], axes, **options)
+
+
+def draw_line_sweep(sweep: LineSweep, axes: Axes | None = None, **options: Any) -> Axes:
+    """``draw_line_sweeps`` of one."""
+    return draw_line_sweeps([sweep], axes, **options)

@@ -18,6 +18,7 @@ from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.results.drawing import drawing
 from trunnion.results.files import written_whole
 from trunnion.results.units import with_unit
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
@@ -227,9 +228,7 @@ class StabilityChart:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
-        from trunnion.plots.stability_chart import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         counts = ", ".join(f"{n} {v}" for v in Verdict if (n := self.count(v)))

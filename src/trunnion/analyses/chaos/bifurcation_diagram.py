@@ -17,6 +17,7 @@ from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, value
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -76,9 +77,7 @@ class BifurcationDiagram:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
-        from trunnion.plots.chaos import draw_bifurcations
-
-        return draw_bifurcations(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         low, high = self.values[0], self.values[-1]

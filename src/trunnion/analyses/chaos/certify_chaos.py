@@ -34,6 +34,7 @@ from trunnion.analyses.motion.long_motion import motion_size, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -113,9 +114,7 @@ class ChaosCertificate:
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
-        from trunnion.plots.chaos import draw_certificate
-
-        return draw_certificate(self)
+        return drawing(self, "plot")(self)
 
     def __str__(self) -> str:
         what = {"": ""}.get(self.kind, f", {self.kind}")

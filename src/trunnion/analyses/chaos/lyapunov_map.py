@@ -17,6 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
@@ -67,9 +68,7 @@ class LyapunovSweep:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Exponents over the parameter."""
-        from trunnion.plots.chaos import draw_sweep
-
-        return draw_sweep(self, axes)
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         known = np.isfinite(self.exponents[:, 0])
@@ -128,9 +127,7 @@ class LyapunovMap:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
-        from trunnion.plots.chaos import draw_lyapunov_map
-
-        return draw_lyapunov_map(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         known = int(np.isfinite(self.exponent).sum())

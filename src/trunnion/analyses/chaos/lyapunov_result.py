@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from trunnion.numerics.averages import CONFIDENCE
 from trunnion.numerics.integration.integration import End
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
@@ -158,9 +159,7 @@ class LyapunovSpectrum:
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Running means of the exponents over time."""
-        from trunnion.plots.chaos import draw_convergence
-
-        return draw_convergence(self, axes)
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         unit = "forcing period" if self.system.forcing_period is not None else "sample"

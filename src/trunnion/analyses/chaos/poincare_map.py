@@ -20,6 +20,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End, integrate
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
 from trunnion.systems.events import Event, watch
@@ -88,9 +89,7 @@ class PoincareMap:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """One state over another; see ``trunnion.plots.chaos.draw_map``."""
-        from trunnion.plots.chaos import draw_map
-
-        return draw_map(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"

@@ -21,6 +21,7 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart
+from trunnion.results.drawing import drawing
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -105,9 +106,7 @@ class StableLimit:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The limit over speed; see ``plots.stable_limit.draw``."""
-        from trunnion.plots.stable_limit import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         at = self.critical_speed

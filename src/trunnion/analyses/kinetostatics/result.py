@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.driveline import Driveline
+from trunnion.results.drawing import drawing
 from trunnion.results.files import written_whole
 from trunnion.results.finding import Finding
 
@@ -196,9 +197,7 @@ class Kinetostatics:
 
     def plot(self, **options: Any) -> Figure:
         """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
-        from trunnion.plots.kinetostatics import draw
-
-        return draw(self, **options)
+        return drawing(self, "plot")(self, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """The summary that printing gives, the input speed in ``unit``."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.results.drawing import drawing
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -74,9 +75,7 @@ class NaturalFrequencies:
 
     def plot(self, **options: Any) -> Figure:
         """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
-        from trunnion.plots.mode_shapes import draw
-
-        return draw(self, **options)
+        return drawing(self, "plot")(self, **options)
 
     def __str__(self) -> str:
         lines = [f"{len(self.frequency)} natural frequencies of the aligned line (joint angles zero)"]

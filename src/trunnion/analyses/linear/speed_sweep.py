@@ -25,6 +25,7 @@ from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.linear import LineMatrices, line_matrices, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
+from trunnion.results.drawing import drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,9 +94,7 @@ class SpeedSweep:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
-        from trunnion.plots.torque_over_speed import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         rows = [f"linear forced response at {len(self.speed)} speeds"]

@@ -24,6 +24,7 @@ from trunnion.equations.coefficients import Assembly, static_torque
 from trunnion.equations.line_system import line_system
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
 
@@ -133,9 +134,7 @@ class RunUp:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Envelope against the steady response; see ``trunnion.plots.run_up``."""
-        from trunnion.plots.run_up import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """The result in a few lines, speeds in ``unit``."""

@@ -18,6 +18,7 @@ from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -163,15 +164,11 @@ class LineSimulation:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torques over time; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_line_history
-
-        return draw_line_history(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def plot_order_map(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
-        from trunnion.plots.order_map import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot_order_map")(self, axes, **options)
 
     def __str__(self) -> str:
         rows = [

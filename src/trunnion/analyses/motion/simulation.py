@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
 from trunnion.systems.events import Event, watch
@@ -107,15 +108,11 @@ class Simulation:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Time histories; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_history
-
-        return draw_history(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def plot_portrait(self, axes: Axes | None = None, **options: Any) -> Axes:
         """One state over another; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_portrait
-
-        return draw_portrait(self, axes, **options)
+        return drawing(self, "plot_portrait")(self, axes, **options)
 
     def __str__(self) -> str:
         low, high = self.time_range

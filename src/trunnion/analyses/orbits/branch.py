@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.verdict import Verdict
 
@@ -178,9 +179,7 @@ class PeriodicBranch:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
-        from trunnion.plots.response_curve import draw
-
-        return draw(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         if not len(self.parameter):

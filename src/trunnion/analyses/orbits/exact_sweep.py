@@ -18,6 +18,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import kernel, move
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
 
@@ -127,9 +128,7 @@ class LineSweep:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
-        from trunnion.plots.frequency_response import draw_line_sweeps
-
-        return draw_line_sweeps([self], axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """What was found, speeds in ``unit``."""

@@ -36,6 +36,7 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.stage_laws import has_stages
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
 from trunnion.results.verdict import Verdict
@@ -128,9 +129,7 @@ class FrequencyResponse:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
-        from trunnion.plots.frequency_response import draw_responses
-
-        return draw_responses({self.method: self}, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``."""
@@ -180,9 +179,7 @@ class ResponseComparison:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """All on one picture."""
-        from trunnion.plots.frequency_response import draw_responses
-
-        return draw_responses(self.responses, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """The table as text."""

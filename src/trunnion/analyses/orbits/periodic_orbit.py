@@ -22,6 +22,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
 from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
 from trunnion.results.verdict import MEANING, Verdict, verdicts
@@ -143,9 +144,7 @@ class PeriodicOrbit:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Portrait of the orbit; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_orbit
-
-        return draw_orbit(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         if not self.outcome.ok:

@@ -30,6 +30,7 @@ from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.errors import ComputationError, InputError
+from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
@@ -236,15 +237,11 @@ class PeriodicResponse:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_period
-
-        return draw_period(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def plot_orders(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque amplitude of every order; see ``trunnion.plots.motion``."""
-        from trunnion.plots.motion import draw_orders
-
-        return draw_orders(self, axes, **options)
+        return drawing(self, "plot_orders")(self, axes, **options)
 
     def describe(self, unit: str = "rad/s") -> str:
         """The result in a few lines, speeds in ``unit``."""

@@ -26,6 +26,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS, MOST_EVENTS, kernel
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -95,9 +96,7 @@ class Sweep:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        from trunnion.plots.frequency_response import draw_sweeps
-
-        return draw_sweeps([self], axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         best = int(np.nanargmax(self.peak_to_peak))
@@ -245,9 +244,7 @@ class Basins:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Map of the starts; see ``trunnion.plots.frequency_response``."""
-        from trunnion.plots.frequency_response import draw_basins
-
-        return draw_basins(self, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         rows = [

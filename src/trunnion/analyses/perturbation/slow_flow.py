@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_ivp
 
 from trunnion.errors import InputError
+from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -85,9 +86,7 @@ class ApproximateResponse:
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        from trunnion.plots.frequency_response import draw_responses
-
-        return draw_responses({self.method: self}, axes, **options)
+        return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
         at, size = self.peak

@@ -1,0 +1,15 @@
+"""How a result finds its drawing: in the table that ``trunnion.plots`` keeps, by its class and method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+
+def drawing(result: object, method: str) -> Callable[..., Any]:
+    """The function that draws ``method`` of ``result``. A result knows no picture; pictures know results."""
+    drawings: dict[str, str] = import_module("trunnion.plots").DRAWINGS
+    module, name = drawings[f"{type(result).__name__}.{method}"].split(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
+    return found
