@@ -1,7 +1,8 @@
 """Generated kernels: written once into a cache folder, compiled once, loaded from there ever after.
 
 The folder's name is a hash of every source that goes into a kernel and of the versions that compile it, so
-an edit or an upgrade starts a new folder and nothing stale is ever run. ``TRUNNION_CACHE`` moves it.
+an edit or an upgrade starts a new folder and nothing stale is ever run. ``TRUNNION_CACHE`` moves it. Where it
+cannot be written, the same text is compiled for this process alone.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ from types import ModuleType
 import numba
 import numpy as np
 import scipy
-from platformdirs import user_cache_dir
 
+from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.chain import chain_driver_source, chain_tables, half_period
+from trunnion.numerics.jit import keep_module_if_possible
 
 SMALL = 3
 """Largest number of unknowns whose step is written out as straight-line code."""
@@ -61,47 +63,48 @@ def kernel_file(source: str, *used: str) -> ModuleType:
 def _load(name: str, small: tuple[tuple[int, ...], bool] | None) -> ModuleType:
     source = chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
     # In a console or a notebook somebody waits; programs and commands say so in their own way.
-    if hasattr(sys, "ps1") and not any((_folder() / "__pycache__").glob(f"{name}.integrate-*.nbi")):
+    folder = cache_folder(_digest())
+    if hasattr(sys, "ps1") and not (folder and any((folder / "__pycache__").glob(f"{name}.integrate-*.nbi"))):
         print("trunnion: compiling once, some seconds", file=sys.stderr, flush=True)
     return _module(name, source, _digest())
 
 
 def _module(name: str, source: str, digest: str) -> ModuleType:
-    path = _writable(digest) / f"{name}.py"
+    """``source`` as a module, its machine code in the cache; without a cache for this process alone."""
+    full = f"trunnion_kernels.{digest}.{name}"
+    folder = cache_folder(digest)
+    if folder is not None:
+        try:
+            return _kept(folder / f"{name}.py", source, full)
+        except OSError as error:
+            without_a_cache(error)
+    module = ModuleType(full)
+    sys.modules[full] = module
+    exec(compile(source.replace("cache=True", "cache=False"), f"<{name}>", "exec"), vars(module))
+    return module
+
+
+def _kept(path: Path, source: str, full: str) -> ModuleType:
     if not path.exists() or path.read_text(encoding="utf-8") != source:
         _write(path, source)
-    full = f"trunnion_kernels.{digest}.{name}"
     spec = importlib.util.spec_from_file_location(full, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[full] = module
     spec.loader.exec_module(module)
+    keep_module_if_possible(module)
     return module
 
 
 def _write(path: Path, source: str) -> None:
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as stream:
-        stream.write(source)
-    os.replace(temporary, path)
-
-
-def _folder() -> Path:
-    return _writable(_digest())
-
-
-@cache
-def _writable(digest: str) -> Path:
-    chosen = Path(os.environ.get("TRUNNION_CACHE") or user_cache_dir("trunnion", appauthor=False))
-    folder = chosen / digest
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(source)
+        os.replace(temporary, path)
     except OSError:
-        # A read-only home is no reason to fail: compile for this process only.
-        folder = Path(tempfile.mkdtemp(prefix="trunnion-"))
-    return folder
+        os.unlink(temporary)
+        raise
 
 
 @cache

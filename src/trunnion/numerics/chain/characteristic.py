@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from trunnion.numerics.chain.quartic import CHUNK, ERROR, IMAGINARY, LEFT, RADIUS, REAL, ROWS, SETTLED, quartic_chunk
+from trunnion.numerics.jit import njit
 from trunnion.numerics.patches.chebyshev_rows import weighted_sum
 
 Array = NDArray[np.float64]

@@ -14,11 +14,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from trunnion.errors import ComputationError
 from trunnion.numerics.integration.runge_kutta import STAGES, A, B, C
+from trunnion.numerics.jit import njit
 
 Array = NDArray[np.float64]
 MOST_STEPS = 1 << 15

@@ -14,7 +14,6 @@ odd). Here rates are in units of ν, so S stands as S/ν.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from trunnion.numerics.chain.chain_tables import (
     DAMPING,
@@ -28,6 +27,7 @@ from trunnion.numerics.chain.chain_tables import (
     fill,
     gather,
 )
+from trunnion.numerics.jit import njit
 
 _ENDS = np.array([0.0, 1.0])
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from trunnion.numerics.jit import njit
 
 CHUNK = 256
 """Pixels at a time: their working rows stay in the first-level cache."""

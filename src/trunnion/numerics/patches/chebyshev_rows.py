@@ -5,7 +5,7 @@ A library's matrix product would start threads of its own under those that share
 
 from __future__ import annotations
 
-from numba import njit
+from trunnion.numerics.jit import njit
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")

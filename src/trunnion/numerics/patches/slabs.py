@@ -11,9 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from trunnion.numerics.jit import njit
 from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, build
 from trunnion.numerics.threads import on_threads
 

@@ -1,0 +1,71 @@
+"""numba's ``njit`` with the machine code kept in the package's cache folder, or for this process alone.
+
+numba keeps it beside the source, which an installation by somebody else does not allow, and refuses to
+compile where it finds no place at all. Nothing of that kind stops a computation here: a folder that cannot be
+written and a disk that is full cost the time to compile, and a remark.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any, Literal
+
+import numba
+from numba.core.dispatcher import Dispatcher
+
+from trunnion.numerics.cache_folder import cache_folder, without_a_cache
+
+
+def njit(
+    *,
+    cache: bool = True,
+    nogil: bool = False,
+    fastmath: bool | set[str] = False,
+    error_model: Literal["python", "numpy"] = "python",
+) -> Callable[[Callable[..., Any]], Any]:
+    """As numba's decorator of that name; ``cache`` is a wish."""
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        folder = cache_folder("package") if cache else None
+        made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model)(function)
+        if folder is not None:
+            _keep_in(str(folder), made)
+        return made
+
+    return decorate
+
+
+def _keep_in(folder: str, function: Any) -> None:
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, folder
+    try:
+        function.enable_caching()
+    except RuntimeError:  # the folder went away since it was tried, or the source is no file
+        return
+    finally:
+        config.CACHE_DIR = before
+    keep_if_possible(function)
+
+
+def keep_if_possible(function: Any) -> None:
+    """Let a failure to keep the machine code of a compiled ``function`` end in a remark, not in an error."""
+    kept = getattr(function, "_cache", None)
+    save = getattr(kept, "save_overload", None)
+    if kept is None or save is None:
+        return
+
+    def save_overload(signature: Any, data: Any) -> None:
+        try:
+            save(signature, data)
+        except OSError as error:
+            without_a_cache(error)
+
+    kept.save_overload = save_overload
+
+
+def keep_module_if_possible(module: ModuleType) -> None:
+    """The same for all compiled functions of a module."""
+    for value in vars(module).values():
+        if isinstance(value, Dispatcher):
+            keep_if_possible(value)

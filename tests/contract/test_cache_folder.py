@@ -1,0 +1,68 @@
+"""Where machine code is kept: moved by TRUNNION_CACHE, never a folder named "~", and never a reason to fail."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trunnion
+
+STEP = """
+import warnings
+from trunnion.errors import InputRemark
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always", InputRemark)
+    from trunnion.numerics.jit import njit
+    from trunnion.numerics.compiled import _module
+    @njit(cache=True)
+    def double(x):
+        return 2 * x
+    text = "from numba import njit\\n@njit(cache=True)\\ndef triple(x):\\n    return 3 * x\\n"
+    assert double(2) + _module("triple", text, "digest").triple(2) == 10
+print(*(s.message for s in said if issubclass(s.category, InputRemark)), sep="\\n")
+"""
+
+
+def said_where(folder: Path, *before: str, cache: Path | str | None) -> list[str]:
+    """What a fresh process says that compiles two functions, working in ``folder`` without a home."""
+    kept = {key: value for key, value in os.environ.items() if key not in ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR")}
+    env = {**kept, "PYTHONPATH": str(Path(trunnion.__file__).parents[1])}
+    env |= {} if cache is None else {"TRUNNION_CACHE": str(cache)}
+    script = folder / "step.py"
+    script.write_text("\n".join((*before, STEP)), encoding="utf-8")
+    done = subprocess.run([sys.executable, script], cwd=folder, env=env, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert not (folder / "~").exists()
+    return done.stdout.split("\n")[:-1]
+
+
+def test_the_cache_goes_where_it_is_told(tmp_path):
+    assert said_where(tmp_path, cache=tmp_path / "deep" / "cache") == [""]
+    assert {path.name for path in (tmp_path / "deep" / "cache").iterdir()} == {"package", "digest"}
+
+
+def test_a_cache_that_cannot_be_written_is_said_once(tmp_path):
+    (tmp_path / "file").write_text("")
+    said = said_where(tmp_path, cache=tmp_path / "file")
+    assert len(said) == 1 and "is not used (it cannot be written)" in said[0] and "TRUNNION_CACHE" in said[0]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a home is always known there")
+def test_without_a_home_no_folder_named_after_the_tilde_appears(tmp_path):
+    nobody = "import pwd\npwd.getpwuid = lambda uid: (_ for _ in ()).throw(KeyError(uid))"
+    said = said_where(tmp_path, nobody, cache=None)
+    assert len(said) == 1 and "there is no home folder" in said[0]
+
+
+def test_a_full_disk_costs_the_cache_only(tmp_path):
+    full = (
+        "import numba.core.caching as caching\n"
+        "def save(*_):\n    raise OSError(28, 'No space left on device')\n"
+        "caching.IndexDataCacheFile.save = save"
+    )
+    said = said_where(tmp_path, full, cache=tmp_path / "cache")
+    assert len(said) == 1 and "No space left on device" in said[0]
