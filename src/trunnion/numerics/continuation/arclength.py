@@ -22,6 +22,8 @@ Test = Callable[["CurvePoint"], float]
 """A function of a point whose zero is sought between two of them."""
 
 MOST_CORRECTIONS = 8
+ROUNDING, ILL_CONDITIONED = 100 * float(np.finfo(float).eps), 1e-8
+"""A residual of this size, in units of the unknowns, is rounding; a step that it makes is no longer than this."""
 SWIFT, SLOW = 3, 5
 """Corrections up to which the step grows, and from which it shrinks."""
 GROWTH, SHRINKAGE, RETREAT = 1.5, 0.7, 0.35
@@ -170,7 +172,9 @@ def correct(
         if not size < 2 * before:
             return None
         y, before = y + change, size
-        if size < tolerance:
+        # Where the equations are ill-conditioned, steps stop shrinking at what the rounding of the residual makes.
+        settled = size < ILL_CONDITIONED and np.linalg.norm(residual) < ROUNDING * (1 + np.linalg.norm(y))
+        if size < tolerance or settled:
             return CurvePoint(y * scale, tangent / np.linalg.norm(tangent), count + 1)
     return None
 
