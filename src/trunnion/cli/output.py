@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import sys
 import time
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
 from trunnion.errors import ComputationError
+from trunnion.results.plain import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,19 +73,7 @@ def findings(out: Console, found: Sequence[Finding]) -> None:
 def write_json(command: str, content: Mapping[str, Any]) -> None:
     """One JSON object on stdout; NaN and infinity become null."""
     whole = {"command": command, "trunnion": __version__, **content}
-    print(json.dumps(_plain(whole), indent=2, allow_nan=False))
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, complex):
-        return {"real": _plain(value.real), "imag": _plain(value.imag)}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    print(json.dumps(plain(whole), indent=2, allow_nan=False))
 
 
 def finish(outcome: Outcome, written: Sequence[Path] = ()) -> None:

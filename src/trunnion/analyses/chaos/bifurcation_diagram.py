@@ -6,7 +6,7 @@ that exists; where up and down differ, there are several.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,21 +17,21 @@ from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, value
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 DIRECTIONS = ("up", "down")
 
 
-@dataclass(frozen=True)
-class BifurcationDiagram:
+@dataclass(frozen=True, repr=False)
+class BifurcationDiagram(Result):
     """Points (directions, values, points, n) of the map over a parameter, NaN where the motion failed.
 
     repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed.
@@ -48,32 +48,19 @@ class BifurcationDiagram:
     tolerance: float
     outcome: Outcome
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        unit = self.system.parameter_units.get(self.parameter, "1")
-        states = {
-            name: (("direction", "value", "point"), self.points[..., i], {"units": u})
-            for i, (name, u) in enumerate(zip(self.system.states, self.system.units, strict=True))
-        }
-        return xr.Dataset(
-            {**states, "repeat": (("direction", "value"), self.repeat)},
-            coords={
-                "value": ("value", self.values, {"units": unit, "long_name": self.parameter}),
-                "direction": list(self.directions),
-            },
-            attrs={
-                "system": self.system.name,
-                "section": self.section,
-                "transient": self.transient,
-                "tolerance": self.tolerance,
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
-            },
-        )
+    def declared(self) -> Iterator[Held]:
+        """Every state over (direction, value, point), and after how many points the motion repeats."""
+        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
+        yield axis("direction", self.directions)
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("direction value point", name, self.points[..., i], unit)
+        yield over("direction value", "repeat", self.repeat)
+        yield remark("system", self.system.name)
+        yield remark("section", self.section)
+        yield remark("transient", self.transient)
+        yield remark("tolerance", self.tolerance)
+        yield from ending(self.outcome)
+        yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
@@ -90,8 +77,6 @@ class BifurcationDiagram:
             told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
             rows.append(f"  {direction}: {told or 'none repeats'}; {int(np.sum(repeat == 0))} do not repeat")
         return "\n".join([*rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 def bifurcation_diagram(

@@ -14,7 +14,7 @@ time history (THA: is the motion bounded, has it settled), Lyapunov exponents (L
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -34,13 +34,13 @@ from trunnion.analyses.motion.long_motion import motion_size, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
+from trunnion.results.declared import Held, Result, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
@@ -75,8 +75,8 @@ class Witness:
     reasons: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class ChaosCertificate:
+@dataclass(frozen=True, repr=False)
+class ChaosCertificate(Result):
     """A verdict with its evidence.
 
     verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion, "at rest on an unstable equilibrium"
@@ -97,20 +97,18 @@ class ChaosCertificate:
     zero_one: ZeroOne | None
     sweep: LyapunovSweep | None
 
-    @property
-    def data(self) -> xr.Dataset:
-        """The exponents, with the verdict and its reasons as attributes."""
-        data = self.spectrum.data
-        data.attrs |= {
-            "verdict": str(self.verdict),
-            "kind": self.kind,
-            "repeat": self.repeat,
-            "reasons": "\n".join(self.reasons),
-            "criteria": "\n".join(map(str, self.criteria)),
-            **({} if self.zero_one is None else {"zero_one_test": self.zero_one.k}),
-            **({} if not np.isfinite(self.period) else {"period": self.period}),
-        }
-        return data
+    def declared(self) -> Iterator[Held]:
+        """The exponents, with the verdict and its reasons."""
+        yield from self.spectrum.declared()
+        yield remark("verdict", str(self.verdict))
+        yield remark("kind", self.kind)
+        yield remark("repeat", self.repeat)
+        yield remark("reasons", "\n".join(self.reasons))
+        yield remark("criteria", "\n".join(map(str, self.criteria)))
+        if self.zero_one is not None:
+            yield remark("zero_one_test", self.zero_one.k)
+        if np.isfinite(self.period):
+            yield remark("period", self.period)
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
@@ -127,8 +125,6 @@ class ChaosCertificate:
         if self.zero_one is not None:
             lines.append(f"  {self.zero_one}")
         return "\n".join(lines)
-
-    __repr__ = __str__
 
 
 def certify_chaos(

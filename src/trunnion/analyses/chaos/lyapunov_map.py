@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,20 +17,20 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 Request = tuple[str, float, float, int]
 
 
-@dataclass(frozen=True)
-class LyapunovSweep:
+@dataclass(frozen=True, repr=False)
+class LyapunovSweep(Result):
     """exponents, half_width (values, k) [1/s] over one parameter, the largest first; NaN where the motion failed."""
 
     system: System
@@ -48,23 +48,13 @@ class LyapunovSweep:
         """Where (values,) the largest exponent is above 0 by more than its interval."""
         return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        unit = self.system.parameter_units.get(self.parameter, "1")
-        return xr.Dataset(
-            {
-                "exponent": (("value", "order"), self.exponents, {"units": "1/s"}),
-                "half_width": (("value", "order"), self.half_width, {"units": "1/s"}),
-            },
-            coords={
-                "value": ("value", self.values, {"units": unit, "long_name": self.parameter}),
-                "order": np.arange(1, self.exponents.shape[1] + 1),
-            },
-            attrs=_attributes(self),
-        )
+    def declared(self) -> Iterator[Held]:
+        """Exponents [1/s] and their half-widths over (value, order)."""
+        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
+        yield axis("order", np.arange(1, self.exponents.shape[1] + 1))
+        yield over("value order", "exponent", self.exponents, "1/s")
+        yield over("value order", "half_width", self.half_width, "1/s")
+        yield from _remarks(self)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Exponents over the parameter."""
@@ -83,11 +73,9 @@ class LyapunovSweep:
         share = f"positive at {int(self.positive.sum())} of {int(known.sum())}"
         return f"{head}\n  {share}; the largest is {most}\n  {self.outcome}"
 
-    __repr__ = __str__
 
-
-@dataclass(frozen=True)
-class LyapunovMap:
+@dataclass(frozen=True, repr=False)
+class LyapunovMap(Result):
     """exponent, half_width (y, x) [1/s]: the largest exponent over two parameters; NaN where the motion failed."""
 
     system: System
@@ -107,23 +95,13 @@ class LyapunovMap:
         """Where (y, x) the exponent is above 0 by more than its interval."""
         return np.asarray(self.exponent - self.half_width > 0)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        units = [self.system.parameter_units.get(name, "1") for name in self.parameters]
-        return xr.Dataset(
-            {
-                "exponent": (("y", "x"), self.exponent, {"units": "1/s"}),
-                "half_width": (("y", "x"), self.half_width, {"units": "1/s"}),
-            },
-            coords={
-                "x": ("x", self.x, {"units": units[0], "long_name": self.parameters[0]}),
-                "y": ("y", self.y, {"units": units[1], "long_name": self.parameters[1]}),
-            },
-            attrs=_attributes(self),
-        )
+    def declared(self) -> Iterator[Held]:
+        """Largest exponent [1/s] and its half-width over (y, x)."""
+        for name, values, parameter in zip("xy", (self.x, self.y), self.parameters, strict=True):
+            yield axis(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
+        yield over("y x", "exponent", self.exponent, "1/s")
+        yield over("y x", "half_width", self.half_width, "1/s")
+        yield from _remarks(self)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
@@ -138,8 +116,6 @@ class LyapunovMap:
             f"  positive at {share:.3g} % of {known}; from {np.nanmin(self.exponent):+.4g} to "
             f"{np.nanmax(self.exponent):+.4g} 1/s\n  {self.outcome}"
         )
-
-    __repr__ = __str__
 
 
 def lyapunov_sweep(
@@ -270,13 +246,10 @@ def _told(told: list[str], total: int) -> Outcome:
     )
 
 
-def _attributes(result: LyapunovSweep | LyapunovMap) -> dict[str, Any]:
-    return {
-        "system": result.system.name,
-        "periods": result.periods,
-        "transient": result.transient,
-        "tolerance": result.tolerance,
-        "outcome": result.outcome.kind,
-        "outcome_sentence": result.outcome.sentence,
-        **{f"parameter {k}": v for k, v in result.system.parameters.items()},
-    }
+def _remarks(result: LyapunovSweep | LyapunovMap) -> Iterator[Held]:
+    yield remark("system", result.system.name)
+    yield remark("periods", result.periods)
+    yield remark("transient", result.transient)
+    yield remark("tolerance", result.tolerance)
+    yield from ending(result.outcome)
+    yield from parameters_of(result.system)

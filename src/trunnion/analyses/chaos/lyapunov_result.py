@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,12 +11,12 @@ from numpy.typing import NDArray
 
 from trunnion.numerics.averages import CONFIDENCE
 from trunnion.numerics.integration.integration import End
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -35,8 +36,8 @@ class Run:
     wanted: int
 
 
-@dataclass(frozen=True)
-class LyapunovSpectrum:
+@dataclass(frozen=True, repr=False)
+class LyapunovSpectrum(Result):
     """Exponents of a system's motion, the largest first.
 
     exponents, half_width (k,) [1/s]: means over all starts and half of their intervals of confidence (95 %), never
@@ -119,43 +120,31 @@ class LyapunovSpectrum:
         ]
         return places * self.interval, np.array(means)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
+    def declared(self) -> Iterator[Held]:
+        """Exponents [1/s] with half-widths, of each start too, their running means over time, and the sum rule."""
         time, history = self.histories
-        rate = {"units": "1/s"}
-        known = {} if np.isnan(self.divergence) else {"divergence": self.divergence, "sum_error": self.sum_error}
-        return xr.Dataset(
-            {
-                "exponent": ("order", self.exponents, rate),
-                "half_width": ("order", self.half_width, rate),
-                "exponent_of_start": (("start", "order"), self.by_start, rate),
-                "half_width_of_start": (("start", "order"), self.by_start_half_width, rate),
-                "running_mean": (("start", "time", "order"), history, rate),
-                "start_state": (("start", "state"), self.starts),
-            },
-            coords={
-                "order": np.arange(1, len(self.exponents) + 1),
-                "time": ("time", time, {"units": "s"}),
-                "state": list(self.system.states),
-            },
-            attrs={
-                "system": self.system.name,
-                "sum": self.sum,
-                **known,
-                "confidence": CONFIDENCE,
-                "interval": self.interval,
-                "samples": self.samples,
-                "transient": self.transient,
-                "tolerance": self.tolerance,
-                "averaging": "windowed" if self.windowed else "plain",
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
-            },
-        )
+        yield axis("order", np.arange(1, len(self.exponents) + 1))
+        yield axis("time", time, "s")
+        yield axis("state", self.system.states)
+        yield over("order", "exponent", self.exponents, "1/s")
+        yield over("order", "half_width", self.half_width, "1/s")
+        yield over("start order", "exponent_of_start", self.by_start, "1/s")
+        yield over("start order", "half_width_of_start", self.by_start_half_width, "1/s")
+        yield over("start time order", "running_mean", history, "1/s")
+        yield over("start state", "start_state", self.starts)
+        yield remark("system", self.system.name)
+        yield remark("sum", self.sum)
+        if not np.isnan(self.divergence):
+            yield remark("divergence", self.divergence)
+            yield remark("sum_error", self.sum_error)
+        yield remark("confidence", CONFIDENCE)
+        yield remark("interval", self.interval)
+        yield remark("samples", self.samples)
+        yield remark("transient", self.transient)
+        yield remark("tolerance", self.tolerance)
+        yield remark("averaging", "windowed" if self.windowed else "plain")
+        yield from ending(self.outcome)
+        yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Running means of the exponents over time."""
@@ -176,5 +165,3 @@ class LyapunovSpectrum:
         if np.isfinite(self.dimension) and self.outcome.ok:
             rows.append(f"  Kaplan–Yorke dimension {self.dimension:.4g}")
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__

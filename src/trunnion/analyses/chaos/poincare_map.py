@@ -7,6 +7,7 @@ periods to close, a quasi-periodic one closed curves, a chaotic one a cloud with
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End, integrate
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
@@ -27,7 +29,6 @@ from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -35,8 +36,8 @@ SAME = 1e-9
 """Time between two crossings, over that between looks, below which they are one."""
 
 
-@dataclass(frozen=True)
-class PoincareMap:
+@dataclass(frozen=True, repr=False)
+class PoincareMap(Result):
     """Points of a motion on a section.
 
     points (points, n); time (points,) [s] of each, after the transient; size (n,): how far each state moves
@@ -64,28 +65,18 @@ class PoincareMap:
         """The points with angles between −π and π."""
         return wrapped(self.points, self.angles)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        states = {
-            name: ("point", self.points[:, i], {"units": unit})
-            for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
-        }
-        return xr.Dataset(
-            {**states, "time": ("point", self.time, {"units": "s"})},
-            attrs={
-                "system": self.system.name,
-                "section": self.section,
-                "repeat": self.repeat,
-                "transient": self.transient,
-                "tolerance": self.tolerance,
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
-            },
-        )
+    def declared(self) -> Iterator[Held]:
+        """Every state and the time over the points."""
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("point", name, self.points[:, i], unit)
+        yield over("point", "time", self.time, "s")
+        yield remark("system", self.system.name)
+        yield remark("section", self.section)
+        yield remark("repeat", self.repeat)
+        yield remark("transient", self.transient)
+        yield remark("tolerance", self.tolerance)
+        yield from ending(self.outcome)
+        yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """One state over another; see ``trunnion.plots.chaos.draw_map``."""
@@ -104,8 +95,6 @@ class PoincareMap:
         elif self.outcome.ok:
             rows.append(f"  does not repeat within {LONGEST_REPEAT} points")
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 def poincare_map(

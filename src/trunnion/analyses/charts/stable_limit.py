@@ -7,7 +7,7 @@ than a step of the scan is missed; where the line is stable again above the limi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
@@ -21,11 +21,11 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart
+from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -53,8 +53,8 @@ MEANING = {
 }
 
 
-@dataclass(frozen=True)
-class StableLimit:
+@dataclass(frozen=True, repr=False)
+class StableLimit(Result):
     """Largest stable value of ``parameter`` at each speed.
 
     speed (speed,) [rad/s]; limit (speed,) in SI units: the value below which no instability was found; kind
@@ -85,24 +85,18 @@ class StableLimit:
             return None
         return float(self.speed[int(np.nanargmin(self.limit))])
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        flags = {
-            "flag_values": np.array([int(k) for k in LimitKind], dtype=np.int8),
-            "flag_meanings": " ".join(k.name.lower() for k in LimitKind),
-        }
-        return xr.Dataset(
-            {
-                "limit": ("speed", self.limit, {"units": self.unit, "long_name": f"largest stable {self.parameter}"}),
-                "kind": ("speed", self.kind, flags),
-                "intervals": ("speed", self.intervals, {"units": "1"}),
-            },
-            coords={"speed": ("speed", self.speed, {"units": "rad/s"})},
-            attrs={"scan_low": self.low, "scan_high": self.high, "scan_step": self.step, "accuracy": self.accuracy},
-        )
+    def declared(self) -> Iterator[Held]:
+        """The limit, its kind and the stable intervals above it over speed."""
+        meanings = " ".join(k.name.lower() for k in LimitKind)
+        codes = np.array([int(k) for k in LimitKind], dtype=np.int8)
+        yield axis("speed", self.speed, "rad/s")
+        yield over("speed", "limit", self.limit, self.unit, f"largest stable {self.parameter}")
+        yield over("speed", "kind", self.kind, flag_values=codes, flag_meanings=meanings)
+        yield over("speed", "intervals", self.intervals, "1")
+        yield remark("scan_low", self.low)
+        yield remark("scan_high", self.high)
+        yield remark("scan_step", self.step)
+        yield remark("accuracy", self.accuracy)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The limit over speed; see ``plots.stable_limit.draw``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,18 +12,18 @@ from numpy.typing import NDArray
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import drawing
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class NaturalFrequencies:
+@dataclass(frozen=True, repr=False)
+class NaturalFrequencies(Result):
     """Modes of the aligned line, by ascending frequency.
 
     frequency (mode,) undamped [rad/s]; damping_ratio (mode,) [1], from the damped eigenvalues where the mode
@@ -46,19 +47,13 @@ class NaturalFrequencies:
         """Frequencies without the rigid-body mode [rad/s]."""
         return self.frequency[1:] if self.rigid_body else self.frequency
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        return xr.Dataset(
-            {
-                "frequency": ("mode", self.frequency, {"units": "rad/s"}),
-                "damping_ratio": ("mode", self.damping_ratio, {"units": "1"}),
-                "shape": (("rotation", "mode"), self.shape, {"units": "1", "long_name": "mode shape"}),
-            },
-            coords={"mode": np.arange(1, len(self.frequency) + 1), "rotation": list(self.names)},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Frequency and damping ratio over the modes, mode shapes over (rotation, mode)."""
+        yield axis("mode", np.arange(1, len(self.frequency) + 1))
+        yield axis("rotation", self.names)
+        yield over("mode", "frequency", self.frequency, "rad/s")
+        yield over("mode", "damping_ratio", self.damping_ratio, "1")
+        yield over("rotation mode", "shape", self.shape, "1", "mode shape")
 
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:
         """One row per mode, frequencies in ``unit``; the mode's largest motion named."""

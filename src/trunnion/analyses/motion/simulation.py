@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
@@ -19,15 +20,14 @@ from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Simulation:
+@dataclass(frozen=True, repr=False)
+class Simulation(Result):
     """A motion.
 
     time (points,) [s] and state (points, n) where asked for (by default at every step); event_time (events,),
@@ -77,34 +77,23 @@ class Simulation:
         start = self.trajectory.start
         return (float(start[0]) if len(start) else self.trajectory.time), self.trajectory.time
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        states = {
-            name: ("time", self.state[:, i], {"units": unit})
-            for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
-        }
-        events = {
-            "event_time": ("event", self.event_time, {"units": "s"}),
-            "event_name": ("event", np.array(self.event_name, dtype=str)),
-            "state_before": (("event", "state"), self.event_before),
-            "state_after": (("event", "state"), self.event_after),
-        }
-        return xr.Dataset(
-            {**states, "regime": ("time", self.regime), **events},
-            coords={"time": ("time", self.time, {"units": "s"}), "state": list(self.system.states)},
-            attrs={
-                "system": self.system.name,
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                "tolerance": self.tolerance,
-                "steps": self.trajectory.steps,
-                "tangents": "exact" if self.system.exact_tangents else "differenced",
-                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
-            },
-        )
+    def declared(self) -> Iterator[Held]:
+        """Every state and the regime over time, and the located events."""
+        yield axis("time", self.time, "s")
+        yield axis("state", self.system.states)
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("time", name, self.state[:, i], unit)
+        yield over("time", "regime", self.regime)
+        yield over("event", "event_time", self.event_time, "s")
+        yield over("event", "event_name", np.array(self.event_name, dtype=str))
+        yield over("event state", "state_before", self.event_before)
+        yield over("event state", "state_after", self.event_after)
+        yield remark("system", self.system.name)
+        yield from ending(self.outcome)
+        yield remark("tolerance", self.tolerance)
+        yield remark("steps", self.trajectory.steps)
+        yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Time histories; see ``trunnion.plots.motion``."""
@@ -127,8 +116,6 @@ class Simulation:
             f"tolerance {self.tolerance:g}{events}"
         )
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 def simulate_system(

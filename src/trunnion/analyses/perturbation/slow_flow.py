@@ -7,6 +7,7 @@ eigenvalues of the rates' derivative there have negative real parts.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_ivp
 
 from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -39,8 +40,8 @@ class SteadyState:
     stable: bool
 
 
-@dataclass(frozen=True)
-class ApproximateResponse:
+@dataclass(frozen=True, repr=False)
+class ApproximateResponse(Result):
     """A frequency response in order along its curve: frequency [rad/s], amplitude (half peak-to-peak), mean, stable.
 
     A point of NaN parts stretches between which the curve is outside the range.
@@ -73,16 +74,15 @@ class ApproximateResponse:
         turns = np.flatnonzero(np.diff(self.frequency)[:-1] * np.diff(self.frequency)[1:] < 0) + 1
         return tuple((float(self.frequency[i]), float(self.amplitude[i])) for i in turns)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset."""
-        import xarray as xr
-
-        names = ("frequency", "amplitude", "mean", "stable")
-        return xr.Dataset(
-            {name: ("point", getattr(self, name)) for name in names},
-            attrs={"method": self.method, "note": self.note, "outcome_sentence": self.outcome.sentence},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Frequency, amplitude, mean and stability over the points."""
+        yield over("point", "frequency", self.frequency, "rad/s")
+        yield over("point", "amplitude", self.amplitude)
+        yield over("point", "mean", self.mean)
+        yield over("point", "stable", self.stable)
+        yield remark("method", self.method)
+        yield remark("note", self.note)
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
@@ -95,8 +95,6 @@ class ApproximateResponse:
             f"{int(self.stable.sum())} stable; largest stable half peak-to-peak {size:.6g} at {at:.6g} rad/s\n"
             f"  {self.note}\n  {self.outcome}"
         )
-
-    __repr__ = __str__
 
 
 class SlowFlow(ABC):
