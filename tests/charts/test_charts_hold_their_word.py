@@ -164,10 +164,6 @@ REFUSED = [
         "it is called as coefficients(tau, a, q, z)",
     ),
     (
-        lambda c: tn.stability_chart(_uneven_pair(), ("speed", 1, 2, 5), ("Disk 1.viscous_load", 0, 1, 5)),
-        "Disk 1.viscous_load: depends on the speed",
-    ),
-    (
         lambda c: tn.stability_chart(_uneven_pair(), ("speed", 1, 2, 5), ("factor of HookeJoint 1.angle", 1, 5.5, 5)),
         "would bend HookeJoint 1 by 94.538°",
     ),

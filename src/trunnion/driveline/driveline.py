@@ -84,6 +84,7 @@ class Driveline(BaseModel):
         _check_ends(self, self.parents)
         _check_damping(self)
         _check_loads(self)
+        _check_drives(self)
         return self
 
     @cached_property
@@ -224,6 +225,21 @@ def _check_loads(line: Driveline) -> None:
                     problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
                 where = f"load case {case.name}"
                 raise InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
+
+
+def _check_drives(line: Driveline) -> None:
+    """A ConstantSpeed carries whatever torque is left, so nothing is left to share beside it."""
+    if not any(isinstance(element, ConstantSpeed) for element in line.elements):
+        return
+    for element, name in zip(line.elements, line.names, strict=True):
+        if isinstance(element, Disk) and element.drive_share:
+            raise InputError(
+                "shares the drive of a line that a ConstantSpeed drives",
+                element=name,
+                key="drive_share",
+                value=element.drive_share,
+                remedy="leave out the ConstantSpeed, or write what this disk drives with as a negative load_torque",
+            )
 
 
 def hooke_joints(line: Driveline) -> list[tuple[str, float]]:

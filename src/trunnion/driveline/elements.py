@@ -223,9 +223,9 @@ class Disk(Element):
     load_torque : outer torque [N m]; positive resists rotation.
     viscous_load, quadratic_load : outer torques proportional to the speed [N m s/rad] and to its square
         [N m s²/rad²]; positive resists rotation.
+    drive_share : in a line that starts free (no ConstantSpeed), the disk's share of the power that balances the
+        loads at the mean speed asked for; shares count relative to each other, so one drive has any positive one.
     excitation : harmonic torques on the disk, see ``Excitation``.
-
-    The last three enter simulations and periodic responses; linear analyses refuse speed-dependent loads.
     """
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
@@ -240,6 +240,9 @@ class Disk(Element):
     quadratic_load: QuadraticLoad = Field(
         default=0.0, description="outer torque per square of the speed; positive resists rotation"
     )
+    drive_share: Dimensionless = Field(
+        default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
+    )
     excitation: Excitations = Field(default=(), description="harmonic torques, in time or in the disk's rotation")
 
     @model_validator(mode="before")
@@ -252,7 +255,7 @@ class Disk(Element):
         needed = ("outer_diameter", "thickness", "density")
         _one_way(self, "inertia", ("inner_diameter", *needed), needed)
         _positive(self, "inertia", *needed)
-        _not_negative(self, "inner_diameter")
+        _not_negative(self, "inner_diameter", "drive_share")
         _bore(self)
         return self
 

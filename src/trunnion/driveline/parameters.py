@@ -44,6 +44,7 @@ UNITS = {
     "load_torque": "N*m",
     "viscous_load": "N*m*s/rad",
     "quadratic_load": "N*m*s^2/rad^2",
+    "drive_share": "1",
     "angle": "rad",
     "plane": "rad",
     "radius": "m",

@@ -17,6 +17,7 @@ from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoin
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Topology, topology
 
@@ -28,9 +29,11 @@ class LineCoefficients:
     """What the equations of a line need, one row per case (axes: case, then as named).
 
     speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad]
-    per compliance; inertia [kg m²] and load [N m] per station; angle [rad] per joint; ``shift`` [rad] per
-    station: what a shaft adds to the angle at its far end (fork offset and static twist), and what a joint
-    subtracts from its input angle to measure it from its own plane.
+    per compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
+    station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
+    drive_share carries included in ``load``; angle [rad] per joint; ``shift`` [rad] per station: what a shaft adds
+    to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
+    measure it from its own plane.
     """
 
     speed: Array
@@ -40,6 +43,8 @@ class LineCoefficients:
     twist: Array
     inertia: Array
     load: Array
+    viscous: Array
+    quadratic: Array
     angle: Array
     shift: Array
 
@@ -142,27 +147,6 @@ def _station_inertia(assembly: Assembly, table: Array) -> Array:
     return inertia
 
 
-def static_torque(topo: Topology, load: Array) -> Array:
-    """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
-
-    Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
-    shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged).
-    """
-    torque = np.zeros((len(load), len(topo.compliances)))
-    for e in range(len(topo.compliances) - 1, -1, -1):
-        far = topo.compliances[e].far_group
-        own = float(topo.speed_ratio[topo.reference[far]])
-        for s, station in enumerate(topo.stations):
-            if station.group == far:
-                torque[:, e] -= load[:, s] * abs(float(topo.speed_ratio[s])) / own
-        for d in range(e + 1, len(topo.compliances)):
-            next_one = topo.compliances[d]
-            if topo.group_of(next_one.near) == far:
-                ratio = float(topo.speed_ratio[topo.reference[next_one.far_group]]) / own
-                torque[:, e] += torque[:, d] * ratio
-    return torque
-
-
 def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
     """Sum of the planes of constant-velocity joints between a joint and the bend before them.
 
@@ -183,10 +167,8 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     cases, stations = len(table), len(topo.stations)
-    load = np.zeros((cases, stations))
-    for station, element in topo.disks:
-        load[:, station] += table[:, column(element, "load_torque")]
-    static = static_torque(topo, load)
+    loads = station_loads(topo, column, table)
+    static = static_torque(topo, mean_load(topo, loads, table[:, 0]))
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist = np.empty_like(static), np.empty_like(static), np.empty_like(static)
     each: dict[int, Array] = {}
@@ -224,7 +206,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         torque=torque,
         twist=twist,
         inertia=_station_inertia(assembly, table),
-        load=load,
+        load=loads.constant,
+        viscous=loads.viscous,
+        quadratic=loads.quadratic,
         angle=angle,
         shift=shift,
     )

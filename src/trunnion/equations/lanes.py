@@ -44,8 +44,11 @@ class _Walk:
                 self.phase[:, s] = self.phase[:, b] / ratios[s]
 
 
-def chain_program(topo: Topology) -> ChainProgram:
-    """The topology as index arrays; see ``ChainProgram``."""
+def chain_program(topo: Topology, by_speed: frozenset[int] = frozenset()) -> ChainProgram:
+    """The topology as index arrays; see ``ChainProgram``.
+
+    ``by_speed``: stations with loads that depend on the speed, as ``loaded_by_speed`` finds them.
+    """
     walk = _Walk(topo, np.zeros((1, len(topo.stations))))
     n = topo.size
     parent = np.full(n, -1, dtype=np.int64)
@@ -57,7 +60,7 @@ def chain_program(topo: Topology) -> ChainProgram:
         parent[i] = topo.coordinate[group]
         near[i] = walk.within[compliance.near]
         near_speed[i] = walk.speed[topo.reference[group]]
-    members = _members(topo)
+    members = _members(topo, by_speed)
     member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
     return ChainProgram(
         parent,
@@ -71,7 +74,13 @@ def chain_program(topo: Topology) -> ChainProgram:
     )
 
 
-def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
+def loaded_by_speed(topo: Topology, coefficients: LineCoefficients) -> frozenset[int]:
+    """Stations whose load depends on the speed in any case."""
+    depends = np.any((coefficients.viscous != 0) | (coefficients.quadratic != 0), axis=0)
+    return frozenset(s for s in range(len(topo.stations)) if depends[s])
+
+
+def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozenset[int] = frozenset()) -> ChainLanes:
     """The numbers of each case as a lane (lanes on the last axis), scaled as the kernel wants them."""
     co, n = coefficients, topo.size
     cases = len(co.speed)
@@ -92,7 +101,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
             scale[:, i] = np.sqrt(inertia[:, i] / inertia[:, p])
             torque[:, i] = co.torque[:, e] / inertia[:, p] * over_speed**2
             trace += stiffness[:, i] * (scale[:, i] * relative_ratio(topo, compliance.near)) ** 2
-    members = _members(topo)
+    members = _members(topo, by_speed)
     owner = [topo.coordinate[topo.group_of(s)] for s in members]
     sign = np.sign([float(topo.speed_ratio[s]) for s in members])
     walk = _Walk(topo, co.shift)
@@ -106,17 +115,19 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients) -> ChainLanes:
         torque=np.ascontiguousarray(torque.T),
         member_inertia=np.ascontiguousarray((co.inertia[:, members] / inertia[:, owner]).T),
         member_load=np.ascontiguousarray((sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
+        member_viscous=np.ascontiguousarray((co.viscous[:, members] / inertia[:, owner] * over_speed[:, None]).T),
+        member_quadratic=np.ascontiguousarray((co.quadratic[:, members] / inertia[:, owner]).T),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
         frequency=np.sqrt(np.where(trace > 0, trace / n, 1.0)),
     )
 
 
-def _members(topo: Topology) -> list[int]:
-    """Stations with inertia in groups whose inertia depends on the angle, grouped by unknown."""
+def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
+    """Stations with inertia in groups whose inertia depends on the angle or that carry loads by speed, by unknown."""
     heavy = sorted({s for s, _ in topo.disks + topo.tube_ends})
-    behind = {topo.group_of(s) for s in heavy if _behind_joint(topo, s)}
-    chosen = [s for s in heavy if topo.group_of(s) in behind and topo.coordinate[topo.group_of(s)] >= 0]
-    return sorted(chosen, key=lambda s: topo.coordinate[topo.group_of(s)])
+    chosen = {topo.group_of(s) for s in heavy if s in by_speed or _behind_joint(topo, s)}
+    members = [s for s in heavy if topo.group_of(s) in chosen and topo.coordinate[topo.group_of(s)] >= 0]
+    return sorted(members, key=lambda s: topo.coordinate[topo.group_of(s)])
 
 
 def _behind_joint(topo: Topology, station: int) -> bool:

@@ -3,12 +3,13 @@
 With q_e = δ_far − r δ_near the elongation of compliance e, r the ratio from the near group's first station
 to the shaft's near end, and T̄ the static torque (positive with the twist),
 
-    J δ″ + J′wδ′ + (J′w′ + ½J″w²) δ + Σ_e (∂q_e/∂δ)(c q̇_e + k q_e) − r₁ T̄ δ + r₁ M δ
+    J δ″ + J′wδ′ + (J′w′ + ½J″w²) δ + Σ_e (∂q_e/∂δ)(c q̇_e + k q_e) − r₁ T̄ δ + r₁ M δ + r M′ (r δ′ + r₁ w δ)
         = −J w′ − ½J′w² − Σ_e (∂q_e/∂δ) T̄_e − r M,
 
 where J(a) = Σ J_s r_s² is the inertia of a group (it depends on the angle when a joint lies inside the
-group), J′ and J″ its derivatives by the angle of the group, M the load torques, and q̇_e the full
-derivative with ṙ. Each group inherits w, w′ from ``kinematics``.
+group), J′ and J″ its derivatives by the angle of the group, M = M₀ + c₁v + c₂v|v| the load torques at the
+station's own speed v = rw, behind a bent joint a periodic one, M′ = c₁ + 2c₂|v| their slope, and q̇_e the
+full derivative with ṙ. Each group inherits w, w′ from ``kinematics``.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
@@ -60,12 +62,15 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         r, r1, r2 = motion.relative[..., s], motion.relative_slope[..., s], motion.relative_curvature[..., s]
         w, w1 = motion.speed[..., ref] * speed, motion.acceleration[..., ref] * speed**2
         inertia, load = coefficients.inertia[:, s, None], coefficients.load[:, s, None]
-        # A load resists the mean sense of rotation of its own station.
-        load = load * np.sign(float(topo.speed_ratio[s]))
+        viscous, quadratic = coefficients.viscous[:, s, None], coefficients.quadratic[:, s, None]
+        v = r * w
+        growth = viscous + 2 * quadratic * np.abs(v)
+        # A constant load resists the mean sense of rotation of its own station, the others the rotation itself.
+        load = load * np.sign(float(topo.speed_ratio[s])) + (viscous + quadratic * np.abs(v)) * v
         j, j1, j2 = inertia * r**2, 2 * inertia * r * r1, 2 * inertia * (r1**2 + r * r2)
         mass[..., i, i] += j
-        damping[..., i, i] += j1 * w
-        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * load
+        damping[..., i, i] += j1 * w + r**2 * growth
+        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * load + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
     for e, compliance in enumerate(topo.compliances):
         near_group = topo.group_of(compliance.near)
@@ -102,7 +107,8 @@ def periodic_linear_system(
         ``require_steady_base``).
     """
     topo = assembly.topology
-    require_steady_base(assembly)
+    require_steady_base(assembly, table)
+    refuse_own_motion(assembly, "put a ConstantSpeed in front")
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     speed = float(coefficients.speed[0])
     if not (np.isfinite(speed) and speed > 0):
@@ -117,45 +123,17 @@ def periodic_linear_system(
     return PeriodicLinearSystem(period, at, topo.size, speed, topo.names, tuple(map(float, aligned / speed)))
 
 
-def require_steady_base(assembly: Assembly) -> None:
-    """Refuse lines whose zero-twist motion at constant input speed is not a motion to linearise about.
+def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
+    """States (x, dx/dτ) as columns (2n, k) that a straight free line keeps for ever: multipliers exactly 1.
 
-    A free line with bent joints does not turn at constant speed, and a far end held at constant speed
-    fights the joints in front of it: both need their own periodic motion as the base.
+    A turn of the whole line always; a change of its speed where no load depends on the speed. Without bent joints
+    only; k is 0 for a driven line.
     """
-    topo = assembly.topology
-    for part, name in zip(assembly.line.elements, assembly.line.names, strict=True):
-        for key in ("viscous_load", "quadratic_load"):
-            if getattr(part, key, 0.0):
-                raise InputError(
-                    "depends on the speed, which the linear equations do not have",
-                    element=name,
-                    key=key,
-                    value=getattr(part, key),
-                    remedy="use tn.periodic_response, or write its mean as load_torque",
-                )
-    if topo.free and topo.joints:
-        raise InputError(
-            "starts free, so it does not turn steadily through bent joints and has no base for stability",
-            element="driveline",
-            remedy="put a ConstantSpeed in front; natural frequencies are available as it is",
-        )
-    if sum(topo.prescribed) > 1:
-        end = [g for g, fixed in enumerate(topo.prescribed) if fixed][-1]
-        element = assembly.line.names[topo.stations[topo.reference[end]].element]
-        raise InputError(
-            "a second prescribed speed leads nowhere in a stability analysis",
-            element=f"ConstantSpeed behind {element}",
-            remedy="end the line with a Disk; natural frequencies are available as it is",
-        )
-    if topo.free:
-        load = assembly.coefficients(assembly.table(1)).load[0]
-        ratio = np.abs(np.array([float(q) for q in topo.speed_ratio]))
-        if abs(load @ ratio) > 1e-9 * max(np.abs(load).max(), 1e-300):
-            raise InputError(
-                "is free and its load torques do not balance, so it does not turn steadily",
-                element="driveline",
-                key="load_torque",
-                value=float(load @ ratio),
-                remedy="drive it with a ConstantSpeed, or give the driving disk a negative load_torque",
-            )
+    n = topo.size
+    if not topo.free:
+        return np.zeros((2 * n, 0))
+    turn = np.array([float(topo.speed_ratio[topo.reference[g]]) for g, c in enumerate(topo.coordinate) if c >= 0])
+    kept = np.zeros((2 * n, 2))
+    kept[:n, 0], kept[n:, 1] = turn, turn
+    constant = not (coefficients.viscous.any() or coefficients.quadratic.any())
+    return kept if constant else kept[:, :1]

@@ -47,6 +47,17 @@ def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:
     return values, 2 * bound
 
 
+def without(matrix: Array, vectors: Array) -> Array:
+    """What is left of ``matrix`` (m, m) when an invariant subspace spanned by ``vectors`` (m, k) is set aside.
+
+    The eigenvalues of the result (m − k, m − k) are the others, each known as well as ``matrix`` is: no choice among
+    computed eigenvalues is made, which collide where the subspace's own does.
+    """
+    basis = np.linalg.qr(vectors, mode="complete")[0]
+    rest = basis[:, vectors.shape[1] :]
+    return np.asarray(rest.T @ matrix @ rest)
+
+
 def spectral_radius(values: Complex, bound: Array) -> tuple[Array, Array]:
     """ρ = max |σ| and the bound on its error, from multipliers and their bounds."""
     size = np.abs(values)

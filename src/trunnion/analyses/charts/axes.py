@@ -24,7 +24,6 @@ POSITIVE = {
     "stiffness", "inertia", "outer_diameter", "length", "thickness", "shear_modulus",
     "damping_ratio_frequency", "loss_factor_frequency", "speed",
 }  # fmt: skip
-SPEED_LOADS = {"viscous_load", "quadratic_load"}
 
 
 @dataclass(frozen=True)
@@ -214,11 +213,6 @@ def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
     for c in columns.index:
         key = assembly.packed.labels[c].rpartition(".")[2]
         worst = float(table[:, c].min())
-        if key in SPEED_LOADS:
-            raise InputError(
-                "depends on the speed, which the linear equations do not have", key=columns.label,
-                remedy="give the torque it takes as load_torque, its slope as damping; or use a nonlinear analysis",
-            )  # fmt: skip
         if key in POSITIVE and worst <= 0:
             raise InputError(
                 f"would make {assembly.packed.labels[c]} {worst:g}; it must be positive",

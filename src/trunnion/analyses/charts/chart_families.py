@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.axes import Axis
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.lanes import chain_lanes, chain_program
+from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.chain.chain_monodromy import (
@@ -117,7 +117,18 @@ class LineFamily:
 
     def lanes(self, x: Array, y: Array) -> ChainLanes:
         """The kernel's numbers at points (x, y)."""
-        return chain_lanes(self.assembly.topology, self._coefficients(x, y))
+        return chain_lanes(self.assembly.topology, self._coefficients(x, y), self._by_speed)
+
+    @cached_property
+    def _by_speed(self) -> frozenset[int]:
+        """Stations with loads that depend on the speed anywhere on the axes."""
+        ends = [np.array([a.values[0], a.values[-1]] * 2) for a in (self.x, self.y)]
+        return loaded_by_speed(self.assembly.topology, self._coefficients(*ends))
+
+    @cached_property
+    def program(self) -> ChainProgram:
+        """The line's topology as the kernel reads it."""
+        return chain_program(self.assembly.topology, self._by_speed)
 
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
         table = self.assembly.table(len(x), self.speed)
@@ -127,7 +138,7 @@ class LineFamily:
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
-        program, period = chain_program(self.assembly.topology), self.period
+        program, period = self.program, self.period
         lanes = self.lanes(x, y)
         window = _window(program, lanes, period)
         # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
@@ -147,7 +158,7 @@ class LineFamily:
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
         ends = np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2)
         corners = self._patch_lanes(*ends)
-        program = chain_program(self.assembly.topology)
+        program = self.program
         window = _window(program, corners, self.period)
         length = window.period / 2 if window.half else window.period
         # ν is the root mean square of the modes; the highest is at most √n times that.

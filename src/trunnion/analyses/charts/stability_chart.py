@@ -20,7 +20,7 @@ from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices,
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.linear import require_steady_base
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction, build
@@ -127,7 +127,6 @@ class _Task:
 
 def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed: float | None, twisted: bool) -> _Task:
     assembly = line if isinstance(line, Assembly) else assemble(line)
-    require_steady_base(assembly)
     require_period(assembly.line, assembly.topology)
     across, said_x = axis(assembly, x, "x")
     up, said_y = axis(assembly, y, "y")
@@ -139,10 +138,19 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
             key=name,
             remedy="give y a parameter that leaves it alone",
         )
+    refuse_own_motion(
+        assembly,
+        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
+        bends=across.is_joint_angle or up.is_joint_angle,
+    )
     swept = across.is_speed or up.is_speed
     if swept and speed is not None:
         raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
     base = float("nan") if swept else operating_speed(assembly.line, speed)
+    corners = assembly.table(4, base)
+    across.columns.put(corners, across.values[[0, 0, -1, -1]])
+    up.columns.put(corners, up.values[[0, -1, 0, -1]])
+    require_steady_base(assembly, corners)
     family = LineFamily(assembly, across, up, base, twisted)
 
     remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line")) if s)

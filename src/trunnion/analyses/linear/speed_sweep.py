@@ -22,7 +22,8 @@ from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotatio
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
-from trunnion.equations.linear import LineMatrices, line_matrices, require_steady_base
+from trunnion.equations.linear import LineMatrices, line_matrices
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.results.drawing import drawing
@@ -123,12 +124,15 @@ def speed_sweep(
     InputError : speeds that are not positive; a line without steady base motion or with too long a period.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
-    require_steady_base(assembly)
     speed = np.atleast_1d(np.asarray(speeds, dtype=float))
     if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
         raise InputError(
             "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
         )
+    every = assembly.table(len(speed))
+    every[:, 0] = speed
+    require_steady_base(assembly, every)
+    refuse_own_motion(assembly, "put a ConstantSpeed in front")
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
     harmonics = int(np.ceil(_harmonics(assembly) * float(half_turns)))

@@ -21,11 +21,11 @@ from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonan
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.linear import periodic_linear_system
+from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
-from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.numerics.spectrum import multipliers, spectral_radius, without
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
@@ -36,6 +36,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 TIMES_PER_PERIOD = 128
+SET_ASIDE = {
+    1: "the multiplier at 1 of a turn of the whole line is set aside; that of its speed is judged",
+    2: "the rigid-body pair of multipliers at 1 is set aside",
+}
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,8 @@ class Stability:
     """Floquet stability at one speed.
 
     multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
-    error_estimate leave out the rigid-body pair of a free line; period [rad of input angle]; speed [rad/s]
+    error_estimate leave out the ``set_aside`` multipliers, exactly 1, of a line that starts free: a turn of the whole
+    line, and its speed where no torque depends on it; period [rad of input angle]; speed [rad/s]
     (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
     floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
     resonance: the one the critical multiplier names; response: the linear forced response (None for a system
@@ -62,7 +67,7 @@ class Stability:
     response: LinearResponse | None
     liouville_defect: float
     names: tuple[str, ...]
-    rigid_body: bool
+    set_aside: int
 
     @property
     def exponents(self) -> NDArray[np.complex128]:
@@ -128,8 +133,8 @@ class Stability:
         if self.resonance is not None:
             at = show_speed(self.resonance.speed, unit)
             lines.append(f"  the critical multiplier belongs to the {self.resonance} (at {at})")
-        if self.rigid_body:
-            lines.append("  the rigid-body pair of multipliers at 1 is set aside")
+        if self.set_aside:
+            lines.append(f"  {SET_ASIDE[self.set_aside]}")
         if self.response is not None:
             lines.append("  " + str(self.response).replace("\n", "\n  "))
         return "\n".join(lines)
@@ -165,7 +170,7 @@ def stability(
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
         run = _propagate(line, tolerance)
-        return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, rigid_body=False)
+        return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, np.zeros((2 * line.size, 0)))
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
@@ -176,7 +181,7 @@ def stability(
     response = linear_response(assembly, coefficients, run)
     frequency = np.array(system.frequencies)
     half_turns = 2 * require_period(assembly.line, topo)
-    return _judge(system, run, rates, half_turns, frequency, response, rigid_body=topo.free)
+    return _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
 
 
 def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
@@ -194,26 +199,25 @@ def _judge(
     half_turns: Fraction,
     frequency: Array,
     response: LinearResponse | None,
-    *,
-    rigid_body: bool,
+    aside: Array,
 ) -> Stability:
     matrix = run.scaled_monodromy
     values, bound = multipliers(matrix, np.array(run.error))
     order = np.argsort(-np.abs(values))
     values, bound = values[order], bound[order]
     modes = np.linalg.eig(matrix)[1][:, order] * run.scale[:, None]
-    kept = np.arange(len(values))
-    if rigid_body:
-        kept = np.sort(np.argsort(np.abs(values - 1))[2:])
+    judged, off = values, bound
+    if aside.shape[1]:
+        judged, off = multipliers(without(matrix, aside / run.scale[:, None]), np.array(run.error))
     # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
-    radius, error = spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(1.0), np.array(0.0))
+    radius, error = spectral_radius(judged, off) if len(judged) else (np.array(1.0), np.array(0.0))
     undamped = abs(run.damping_trace) < 1e-13 * system.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
     named = None
-    if len(kept) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+    if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
         farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
-        named = nearest_resonance(frequency, complex(values[kept[0]]), rates, half_turns, farthest)
+        named = nearest_resonance(frequency, complex(judged[np.abs(judged).argmax()]), rates, half_turns, farthest)
     if named is not None:
         named = Resonance(named.speed * system.rate, named.kind, named.modes, named.order, named.rate)
     sign, log_det = np.linalg.slogdet(matrix)
@@ -230,7 +234,7 @@ def _judge(
         response=response,
         liouville_defect=float(abs(log_det + run.damping_trace)) if sign > 0 else float("inf"),
         names=system.names,
-        rigid_body=rigid_body,
+        set_aside=aside.shape[1],
     )
 
 

@@ -20,8 +20,9 @@ from trunnion.analyses.motion.simulate import LineSimulation, simulate
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.coefficients import Assembly, static_torque
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
+from trunnion.equations.loads import static_torque
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
 from trunnion.results.drawing import drawing

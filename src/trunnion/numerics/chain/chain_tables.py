@@ -58,7 +58,8 @@ class ChainLanes(NamedTuple):
 
     cosine, phase (joints, lanes): cos β, and the constant part of χ since the source [rad].
     stiffness κ = k/(JΩ²), damping d = c/(JΩ), scale √(J_i/J_parent), torque T̄/(J_parent Ω²): (n, lanes).
-    member_inertia J/J_i and member_load M/(J_i Ω²): (members, lanes).
+    member_inertia J/J_i, member_load M₀/(J_i Ω²), member_viscous c₁/(J_i Ω) and member_quadratic c₂/J_i of the outer
+        torque M₀ + c₁v + c₂v|v|: (members, lanes).
     frequency ν (lanes,): unit of the rates.
     """
 
@@ -70,6 +71,8 @@ class ChainLanes(NamedTuple):
     torque: Array
     member_inertia: Array
     member_load: Array
+    member_viscous: Array
+    member_quadratic: Array
     frequency: Array
 
 
@@ -100,6 +103,8 @@ class Block(NamedTuple):
     unknown: Array
     member_inertia: Array
     member_load: Array
+    member_viscous: Array
+    member_quadratic: Array
     alike: bool
 
 
@@ -111,6 +116,7 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     unknown = np.zeros(n * PER_UNKNOWN)
     members = lanes.member_inertia.shape[0]
     inertia, load = np.zeros((members, LANES)), np.zeros((members, LANES))
+    viscous, quadratic = np.zeros((members, LANES)), np.zeros((members, LANES))
     alike = True
     for lane in range(LANES):
         at, first = picked[lane], picked[0]
@@ -139,7 +145,9 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
         for k in range(members):
             inertia[k, lane] = lanes.member_inertia[k, at]
             load[k, lane] = lanes.member_load[k, at]
-    return Block(joint, unknown, inertia, load, alike)
+            viscous[k, lane] = lanes.member_viscous[k, at]
+            quadratic[k, lane] = lanes.member_quadratic[k, at]
+    return Block(joint, unknown, inertia, load, viscous, quadratic, alike)
 
 
 @njit(cache=True, nogil=True)
@@ -412,7 +420,7 @@ def _torque_on_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyp
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def _members(program, block, count, table):  # type: ignore[no-untyped-def]
-    """Inertia that depends on the angle: members behind a joint of their own group."""
+    """Inertia that depends on the angle and loads that depend on the speed, in groups that have such members."""
     w, owner = block.joint, program.member_unknown
     for m in range(count):
         for k in range(len(owner)):
@@ -436,7 +444,11 @@ def _members(program, block, count, table):  # type: ignore[no-untyped-def]
                 table[t + OVER_MASS * LANES + lane] += inertia * r * r
                 table[t + EXTRA_DAMPING * LANES + lane] += 2 * inertia * r * r1 * speed
                 curved = 2 * r * r1 * acceleration + (r1 * r1 + r * r2) * speed * speed
-                pull = inertia * curved + r1 * block.member_load[k, lane]
+                turning, drag = r * speed, block.member_quadratic[k, lane]
+                growth = block.member_viscous[k, lane] + 2 * drag * abs(turning)
+                load = block.member_load[k, lane] + (growth - drag * abs(turning)) * turning
+                table[t + EXTRA_DAMPING * LANES + lane] += r * r * growth
+                pull = inertia * curved + r1 * load + r * growth * r1 * speed
                 table[t + EXTRA_STIFFNESS * LANES + lane] += pull / nu
         done = -1
         for k in range(len(owner)):

@@ -1,0 +1,126 @@
+"""Outer torques of a line, and how drives balance them where no speed is prescribed.
+
+A station of speed ratio R carries the torque M(ω) = M₀ + c₁ω + c₂ω|ω| against its mean sense of rotation. At the
+mean input speed Ω of a line that starts free the powers M_s(|R_s|Ω)|R_s|Ω must add up to nothing; where disks have
+a ``drive_share``, each carries its share of what is left as a constant torque.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.topology import Topology
+
+Array = NDArray[np.float64]
+Column = Callable[[int, str], int]
+
+
+@dataclass(frozen=True)
+class StationLoads:
+    """Per case and station: constant [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] torque that resists.
+
+    ``constant`` includes what the drives carry.
+    """
+
+    constant: Array
+    viscous: Array
+    quadratic: Array
+
+
+def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
+    """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0."""
+    constant, viscous, quadratic = (np.zeros((len(table), len(topo.stations))) for _ in range(3))
+    for station, element in topo.disks:
+        constant[:, station] += table[:, column(element, "load_torque")]
+        viscous[:, station] += table[:, column(element, "viscous_load")]
+        quadratic[:, station] += table[:, column(element, "quadratic_load")]
+    loads = StationLoads(constant, viscous, quadratic)
+    if topo.free and (share := given_shares(topo, column, table)).any():
+        left = unbalanced(topo, loads, table[:, 0])
+        loads = StationLoads(constant + drive_torques(topo, share, left), viscous, quadratic)
+    return loads
+
+
+def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
+    """Torque [N m] of every station (case, station) where it turns at its mean speed |R|Ω.
+
+    A load that does not depend on the speed is known without one (``speed`` NaN).
+    """
+    turning = np.abs(_ratios(topo)) * np.asarray(speed)[:, None]
+    by_speed = (loads.viscous + loads.quadratic * turning) * turning
+    return np.asarray(loads.constant + np.where((loads.viscous != 0) | (loads.quadratic != 0), by_speed, 0.0))
+
+
+def load_slope(topo: Topology, viscous: Array, quadratic: Array, speed: Array) -> Array:
+    """Slope c₁ + 2c₂|ω| of every station's load by its speed [N m s/rad], (case, station), at its mean speed."""
+    turning = np.abs(_ratios(topo)) * np.asarray(speed)[:, None]
+    return np.asarray(viscous + np.where(quadratic != 0, 2 * quadratic * turning, 0.0))
+
+
+def unbalanced(topo: Topology, loads: StationLoads, speed: Array) -> Array:
+    """Torque at the input [N m], (case,), that would keep the line at its mean speed: Σ M_s |R_s|."""
+    return np.asarray(mean_load(topo, loads, speed) @ np.abs(_ratios(topo)))
+
+
+def given_shares(topo: Topology, column: Column, table: Array) -> Array:
+    """The shares as described, (case, station)."""
+    share = np.zeros((len(table), len(topo.stations)))
+    for station, element in topo.disks:
+        share[:, station] += table[:, column(element, "drive_share")]
+    return share
+
+
+def drive_torques(topo: Topology, share: Array, torque: Array) -> Array:
+    """Loads (case, station) [N m], negative, of drives that together put ``torque`` (case,) on the input.
+
+    ``share`` (case, station) is relative: each takes its part of the power.
+    """
+    total = share.sum(axis=1, keepdims=True)
+    part = share / np.where(total > 0, total, np.nan)
+    return np.asarray(-part * np.asarray(torque)[:, None] / np.abs(_ratios(topo)))
+
+
+def drive_places(topo: Topology, column: Column, table: Array) -> Array:
+    """Shares (case, station) of whatever else a drive must give to keep the speed.
+
+    The given shares; without any, disks that drive (a negative load_torque), by their power; without any, the
+    first disk.
+    """
+    share = given_shares(topo, column, table)
+    driving = np.zeros_like(share)
+    for station, element in topo.disks:
+        driving[:, station] += np.maximum(-table[:, column(element, "load_torque")], 0.0)
+    driving *= np.abs(_ratios(topo))
+    first = np.zeros_like(share)
+    first[:, topo.disks[0][0] if topo.disks else 0] = 1.0
+    share = np.where(share.any(axis=1, keepdims=True), share, driving)
+    return np.where(share.any(axis=1, keepdims=True), share, first)
+
+
+def _ratios(topo: Topology) -> Array:
+    return np.array([float(q) for q in topo.speed_ratio])
+
+
+def static_torque(topo: Topology, load: Array) -> Array:
+    """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
+
+    Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
+    shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged).
+    """
+    torque = np.zeros((len(load), len(topo.compliances)))
+    for e in range(len(topo.compliances) - 1, -1, -1):
+        far = topo.compliances[e].far_group
+        own = float(topo.speed_ratio[topo.reference[far]])
+        for s, station in enumerate(topo.stations):
+            if station.group == far:
+                torque[:, e] -= load[:, s] * abs(float(topo.speed_ratio[s])) / own
+        for d in range(e + 1, len(topo.compliances)):
+            next_one = topo.compliances[d]
+            if topo.group_of(next_one.near) == far:
+                ratio = float(topo.speed_ratio[topo.reference[next_one.far_group]]) / own
+                torque[:, e] += torque[:, d] * ratio
+    return torque

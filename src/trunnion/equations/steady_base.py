@@ -1,0 +1,104 @@
+"""Which lines turn steadily enough to be linearised, and what the others lack."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.loads import drive_places, given_shares, mean_load, station_loads
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+BALANCED = 1e-9
+"""Torque left over, relative to the largest load, that counts as none."""
+
+
+def require_steady_base(assembly: Assembly, table: Array) -> None:
+    """Refuse lines that do not turn steadily at the rows of packed numbers ``table`` (cases, columns).
+
+    A far end held at constant speed fights the joints in front of it, and a free line whose torques do not
+    balance speeds up or slows down.
+    """
+    topo = assembly.topology
+    if sum(topo.prescribed) > 1:
+        end = [g for g, fixed in enumerate(topo.prescribed) if fixed][-1]
+        element = assembly.line.names[topo.stations[topo.reference[end]].element]
+        raise InputError(
+            "a second prescribed speed leads nowhere in a stability analysis",
+            element=f"ConstantSpeed behind {element}",
+            remedy="end the line with a Disk; natural frequencies are available as it is",
+        )
+    require_balance(assembly, table)
+
+
+def refuse_own_motion(assembly: Assembly, remedy: str, *, bends: bool = False) -> None:
+    """Refuse a free line with bent joints (or one that an axis ``bends``) linearised about the motion of rigid shafts.
+
+    About that motion its rigid-body pair grows, which its own motion does not.
+    """
+    if assembly.topology.free and (bent(assembly) or bends):
+        raise InputError(
+            "starts free and is bent: it is judged about its own periodic motion, which is found speed by speed",
+            element="driveline",
+            remedy=remedy,
+        )
+
+
+def bent(assembly: Assembly) -> bool:
+    """Whether any joint of the line is bent."""
+    topo, packed = assembly.topology, assembly.packed
+    return any(packed.values[packed.column(topo.stations[j].element, "angle")] for j in topo.joints)
+
+
+def require_balance(assembly: Assembly, table: Array) -> None:
+    """Refuse a free line whose torques do not add up to nothing at the rows of ``table``, and name them."""
+    left = imbalance(assembly, table)
+    worst = int(np.argmax(np.abs(left)))
+    if left[worst]:
+        raise InputError(
+            f"starts free and its torques do not balance: {torques_in_words(assembly, table[worst])}",
+            element="driveline",
+            key="load_torque",
+            remedy=_remedy(assembly, table[worst], float(left[worst])),
+        )
+
+
+def imbalance(assembly: Assembly, table: Array) -> Array:
+    """Torque at the input [N m] (cases,) that a free line lacks to keep its speed; 0 where its torques balance."""
+    topo, column = assembly.topology, assembly.packed.column
+    if not topo.free or given_shares(topo, column, table).any():
+        return np.zeros(len(table))
+    torques = _at_input(assembly, table)
+    left = torques.sum(axis=1)
+    return np.where(np.abs(left) > BALANCED * np.abs(torques).max(axis=1), left, 0.0)
+
+
+def torques_in_words(assembly: Assembly, row: Array) -> str:
+    """What resists and what drives a free line at one row of packed numbers, without a full stop."""
+    torques = _at_input(assembly, row[None])[0]
+    names = assembly.line.names
+    named = [(names[i], float(torques[s])) for s, i in assembly.topology.disks if torques[s]]
+    resist = ", ".join(f"{name} {torque:.5g}" for name, torque in named if torque > 0)
+    drive = ", ".join(f"{name} {-torque:.5g}" for name, torque in named if torque < 0)
+    at = f" at {row[0] * 30 / np.pi:.5g} rpm" if np.isfinite(row[0]) else ""
+    loads = f"the loads add up to {torques[torques > 0].sum():.5g} N m at the input{at}" + (resist and f" ({resist})")
+    drives = f"the drives to {-torques[torques < 0].sum():.5g} N m ({drive})"
+    return f"{loads} and nothing drives" if not drive else f"{loads}, {drives}"
+
+
+def _at_input(assembly: Assembly, table: Array) -> Array:
+    """Mean load torques taken to the input (cases, station) [N m]."""
+    topo = assembly.topology
+    loads = station_loads(topo, assembly.packed.column, table)
+    return mean_load(topo, loads, table[:, 0]) * np.abs(np.array([float(q) for q in topo.speed_ratio]))
+
+
+def _remedy(assembly: Assembly, row: Array, left: float) -> str:
+    topo = assembly.topology
+    place = drive_places(topo, assembly.packed.column, row[None])[0]
+    station, element = max(topo.disks, key=lambda pair: float(place[pair[0]]))
+    own = float(row[assembly.packed.column(element, "load_torque")])
+    needed = own - left / abs(float(topo.speed_ratio[station]))
+    name = assembly.line.names[element]
+    return f'give the driving disk, "{name}" say, drive_share = 1, or load_torque = "{needed:.6g} N*m"'
