@@ -10,13 +10,14 @@ sweep up, sweep down  settled motion step by step, as a bench would find it
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from inspect import signature
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.analyses.orbits.free_play import require_contact, require_forced
@@ -216,7 +217,20 @@ def frequency_response(
     method: str = "",
     parameter: str = "",
     curve: str = "",
-    **options: Any,
+    begin: float | None = None,
+    start: ArrayLike | None = None,
+    periods: int | None = None,
+    longest_step: float | None = None,
+    most_points: int | None = None,
+    tolerance: float | None = None,
+    harmonics: int | None = None,
+    tail: float | None = None,
+    points: int | None = None,
+    least: int | None = None,
+    most: int | None = None,
+    epsilon: float | None = None,
+    fit_range: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> FrequencyResponse:
     """The frequency response between two frequencies by one method.
 
@@ -230,13 +244,24 @@ def frequency_response(
         ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
-    options : of the method: ``begin``, ``start``, ``longest_step``, ``periods``, ``progress`` (exact, shooting);
-        ``harmonics`` and the same but the last (harmonic balance); ``epsilon``, ``fit_range`` (multiple scales,
-        averaging); ``points``, ``start``, ``least``, ``most`` (sweeps).
+    begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.
+    start : near the first motion: a state, or of harmonic balance a series; of sweeps the first start.
+    periods : forcing periods in one of the motion.
+    longest_step : of the continuation, over the range and over the size of the motion.
+    most_points : of the continuation.
+    tolerance : of the integration (shooting).
+    harmonics, tail : how many, or how small the last ones have to be (harmonic balance).
+    points : frequencies of a sweep; least, most : forcing periods at each.
+    epsilon, fit_range : of multiple scales and averaging.
+    progress : called with the share done (exact, shooting).
+
+    What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
+    ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
+    ``multiple_scales``.
 
     Raises
     ------
-    InputError : an unknown method or option, or what the method itself refuses.
+    InputError : an unknown method, an argument that the method does not take, or what it refuses itself.
     """
     known = methods_of(system)
     chosen = method or known[0]
@@ -244,19 +269,20 @@ def frequency_response(
         raise InputError("is no method for this", key="method", value=chosen, remedy=nearest(chosen, list(known)))
     if curve:
         _place(_curves(system, high), curve)  # before anything is computed
+    given: dict[str, Any] = {
+        "begin": begin, "start": start, "periods": periods, "longest_step": longest_step, "most_points": most_points,
+        "tolerance": tolerance, "harmonics": harmonics, "tail": tail, "points": points, "least": least, "most": most,
+        "epsilon": epsilon, "fit_range": fit_range, "progress": progress,
+    }  # fmt: skip
+    options = {name: value for name, value in given.items() if value is not None}
+    _check_options(system, chosen, options, list(given))
     began = perf_counter()
-    try:
-        if isinstance(system, PiecewiseOscillator):
-            result = _of_oscillator(system, low, high, chosen, options)
-        elif isinstance(system, SecondOrder):
-            result = balance_springs(system, low, high, **options)
-        else:
-            result = _of_system(system, low, high, chosen, parameter, options)
-    except TypeError as error:
-        if "unexpected keyword" not in str(error):
-            raise
-        words = str(error).split(") ", 1)[-1]
-        raise InputError(words, element=chosen, remedy="see help(tn.frequency_response)") from None
+    if isinstance(system, PiecewiseOscillator):
+        result = _of_oscillator(system, low, high, chosen, options)
+    elif isinstance(system, SecondOrder):
+        result = balance_springs(system, low, high, **options)
+    else:
+        result = _of_system(system, low, high, chosen, parameter, options)
     return _gathered(chosen, result, perf_counter() - began, curve)
 
 
@@ -268,11 +294,31 @@ def compare_responses(
     methods: Sequence[str] = METHODS,
     options: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> ResponseComparison:
-    """The same response by several methods; ``options`` by method."""
+    """The same response by several methods; ``options``: arguments of ``frequency_response`` by method."""
     more = options or {}
     return ResponseComparison(
         {name: frequency_response(system, low, high, method=name, **more.get(name, {})) for name in methods}
     )
+
+
+def _check_options(system: object, method: str, options: Mapping[str, Any], known: Sequence[str]) -> None:
+    """Refuse arguments that belong to other methods."""
+    springs = isinstance(system, PiecewiseOscillator | SecondOrder)
+    works: dict[str, Callable[..., Any]] = {
+        "exact": piecewise_branch,
+        "shooting": periodic_branch,
+        "harmonic balance": balance_springs if springs else harmonic_balance,
+        "describing function": DescribingFunction,
+        "averaging": averaging,
+        "multiple scales": multiple_scales,
+    }
+    work = works.get(method, sweep)
+    takes = {name for name in signature(work).parameters if name in known}
+    takes |= {"points"} if work is sweep else set()
+    for name, value in options.items():
+        if name not in takes:
+            remedy = f"leave it out: it takes {', '.join(n for n in known if n in takes) or 'none'}"
+            raise InputError("does not belong to this method", element=method, key=name, value=value, remedy=remedy)
 
 
 def _of_oscillator(o: PiecewiseOscillator, low: float, high: float, method: str, options: Mapping[str, Any]) -> Any:

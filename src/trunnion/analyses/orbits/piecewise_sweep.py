@@ -212,15 +212,25 @@ def sweep(
     )
 
 
-def rattle_index(oscillator: PiecewiseOscillator, frequencies: ArrayLike, **options: Any) -> xr.Dataset:
-    """Impulse and energy of the impacts per period over frequency, swept up and down.
+def rattle_index(
+    oscillator: PiecewiseOscillator,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> xr.Dataset:
+    """Impulse and energy of the impacts per period over ``frequencies`` [rad/s], swept up and down as ``sweep`` does.
 
     Dataset with impact_energy [m v²] and impact_impulse [m v], dimensions (direction, frequency); 0 without impacts.
     """
     import xarray as xr
 
     omegas = np.sort(np.asarray(frequencies, dtype=float))
-    up, down = sweep(oscillator, omegas, **options), sweep(oscillator, omegas[::-1], **options)
+    up, down = (
+        sweep(oscillator, order, start=start, least=least, most=most, same=same) for order in (omegas, omegas[::-1])
+    )
     both = {
         name: (("direction", "frequency"), np.stack([getattr(up, name), getattr(down, name)[::-1]]))
         for name in ("impact_energy", "impact_impulse", "impacts")
