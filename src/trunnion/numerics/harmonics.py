@@ -27,6 +27,18 @@ def samples(rows: Array, count: int) -> Array:
     return np.asarray(np.fft.irfft(spectrum, count))
 
 
+def at(rows: Array, phases: Array) -> Array:
+    """Values (…, phases) at any phases ωt [rad]."""
+    h = order(rows)
+    turns = np.arange(1, h + 1)[:, None] * phases
+    return np.asarray(rows[..., :1] + rows[..., 1 : h + 1] @ np.cos(turns) + rows[..., h + 1 :] @ np.sin(turns))
+
+
+def cuts(h: int) -> Array:
+    """Phases of a period [rad] between which a series of h harmonics makes no more than half a swing."""
+    return 2 * np.pi * np.arange(max(2 * h, 16) + 1) / max(2 * h, 16)
+
+
 def rows_of(values: Array, h: int) -> Array:
     """The first ``h`` harmonics of equidistant samples (…, count)."""
     count = values.shape[-1]

@@ -7,6 +7,7 @@ rounding, and the changes of stage are located to rounding (``numerics/staged_fl
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, move, stages_of
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
 from trunnion.results.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -89,6 +90,23 @@ class ExactMotion:
         """Torque of every spring (points, spring) [N m]."""
         return self.line.flow().torque(self.state, self.stage)[:, : len(self.springs)]
 
+    @property
+    def torque_low(self) -> Array:
+        """Lowest torque of every spring (spring,) [N m] over the whole run, between the reported times too."""
+        return self._seen[:, kernel().TORQUE_LOW]
+
+    @property
+    def torque_high(self) -> Array:
+        """Highest torque of every spring (spring,) [N m] over the whole run, between the reported times too."""
+        return self._seen[:, kernel().TORQUE_HIGH]
+
+    @cached_property
+    def _seen(self) -> Array:
+        """What the run shows of every spring; see ``numerics/piecewise_linear/staged_flow_kernel``."""
+        flow, most = self.line.flow(), len(self.events) + 1
+        run = move(flow, self.start, self.start_time, self.end, watch=True, most_events=most)
+        return run.seen[: len(self.springs)]
+
     def at(self, time: ArrayLike) -> Array:
         """States (times, 2m) at rising times of the run, as exact as the run itself; NaN outside it."""
         times = np.atleast_1d(np.asarray(time, dtype=float))
@@ -127,8 +145,8 @@ class ExactMotion:
     def __str__(self) -> str:
         rows = []
         for e, name in enumerate(self.springs):
-            torque, count = self.torque[:, e], int(np.sum(self.events.spring == e))
-            extent = f"{torque.min():.6g} … {torque.max():.6g} N m" if len(torque) else "not sampled"
+            count = int(np.sum(self.events.spring == e))
+            extent = f"{self.torque_low[e]:.6g} … {self.torque_high[e]:.6g} N m"
             changes = f", {count} changes of stage" if self.line.counts[e] > 1 else ""
             rows.append(f"  {name}: torque {extent}{changes}")
         span = f"from {self.start_time:.6g} to {self.end:.6g} s"

@@ -25,6 +25,7 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.loads import static_torque
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
+from trunnion.numerics.curves import extremes_in
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-PER_TURN = 256
-BLOCK = 500
 STEADY_SPEEDS = 81
 MOST_TURNS = 20_000
 """Turns of one run, about a minute of computing."""
@@ -56,8 +55,8 @@ class RunUp:
     """A passage at constant acceleration.
 
     speed (turns,) [rad/s] in the middle of each turn, or of the little more that leaves none over; upper and lower
-    (turns, shaft): the largest and smallest torque [N m] within it; steady: the steady response in the same range
-    (None if not asked for).
+    (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; steady: the steady
+    response in the same range (None if not asked for).
     """
 
     simulation: LineSimulation
@@ -201,19 +200,14 @@ def run_up(
     # Windows of equal angle, a turn or a little more, so that none is left over.
     angle = float(profile.angle(run.end))
     windows = max(int(angle / (2 * np.pi)), 1)
-    times = times_at_angles(run, angle * np.arange(windows * PER_TURN) / (windows * PER_TURN))
-    times = times.reshape(windows, PER_TURN)
-    low, high = [], []
-    for block in np.array_split(times, max(windows // BLOCK, 1)):  # a long run has millions of samples
-        torque = run.motion_at(block.ravel()).torque.reshape(len(block), PER_TURN, -1)
-        low.append(torque.min(axis=1))
-        high.append(torque.max(axis=1))
+    edges = np.append(times_at_angles(run, angle * np.arange(windows) / windows), run.end)
+    seen = extremes_in(lambda times: run.motion_at(times).torque, run.cuts, edges)
     return RunUp(
         simulation=run,
         acceleration=float(acceleration),
-        speed=profile.at(times[:, PER_TURN // 2]),
-        upper=np.concatenate(high),
-        lower=np.concatenate(low),
+        speed=profile.at(times_at_angles(run, angle * (np.arange(windows) + 0.5) / windows)),
+        upper=seen.high,
+        lower=seen.low,
         steady=_steady(prepared.assembly, first, last, steady) if steady else None,
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.errors import InputError
+from trunnion.numerics.curves import extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
@@ -77,6 +79,16 @@ class Simulation(Result):
         start = self.trajectory.start
         return (float(start[0]) if len(start) else self.trajectory.time), self.trajectory.time
 
+    @cached_property
+    def range(self) -> tuple[Array, Array]:
+        """Smallest and largest value (n,) of every state from the first to the last of ``time``: found on the dense
+        output, or without it among the steps."""
+        run = self.trajectory
+        if not len(run.coefficients) or len(self.time) < 2:
+            return self.state.min(axis=0), self.state.max(axis=0)
+        found = extremes_in(run.at, run.time_of_state, self.time[[0, -1]]).of(0)
+        return found.low, found.high
+
     def declared(self) -> Iterator[Held]:
         """Every state and the regime over time, and the located events."""
         yield axis("time", self.time, "s")
@@ -105,9 +117,9 @@ class Simulation(Result):
 
     def __str__(self) -> str:
         low, high = self.time_range
+        least, most = self.range
         rows = [
-            with_unit(f"  {name}: {self.state[:, i].min():.6g} … {self.state[:, i].max():.6g}", unit) + ", "
-            f"at the end {self.final[i]:.10g}"
+            with_unit(f"  {name}: {least[i]:.6g} … {most[i]:.6g}", unit) + f", at the end {self.final[i]:.10g}"
             for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
         ]
         events = f", {len(self.event_time)} events" if self.event_name else ""

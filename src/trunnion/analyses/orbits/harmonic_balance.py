@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, collect, follow_both_ways
-from trunnion.analyses.orbits.periodic_orbit import extremes, periodic_orbit
+from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
@@ -27,6 +27,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.curves import extremes
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.results.outcome import Outcome
@@ -323,11 +324,14 @@ class _Balance:
         system, rows = self.over.at(point.parameter), self.rows(point)
         assert system.forcing_period is not None
         period = self.periods * system.forcing_period
-        count = 1 << int(np.ceil(np.log2(max(1024, 8 * self.h))))
-        states = np.ascontiguousarray(fourier.samples(rows, count).T)
-        low, high = extremes(self.over.observe(system, period * np.arange(count) / count, states))
-        amplitude = np.hypot(rows[:, 1], rows[:, self.h + 1])
-        return high - low, np.maximum(np.abs(low), np.abs(high)), amplitude, period
+
+        def curves(phases: Array) -> Array:
+            states = np.ascontiguousarray(fourier.at(rows, phases).T)
+            return self.over.observe(system, period / (2 * np.pi) * phases, states)
+
+        seen = extremes(curves, fourier.cuts(self.h))
+        amplitude = np.hypot(rows[:, self.periods], rows[:, self.h + self.periods])
+        return seen.span, seen.largest, amplitude, period
 
 
 def _motion(system: System, start: Array, period: float, *, tangents: bool = False) -> Trajectory:

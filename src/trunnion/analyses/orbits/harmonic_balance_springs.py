@@ -26,6 +26,7 @@ from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow
 from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.numerics.curves import extremes
 from trunnion.results.outcome import Outcome
 from trunnion.systems.second_order import SecondOrder, Spring
 
@@ -284,7 +285,7 @@ class _Balance:
         # Linear between the kinks, f = s u + d: both coefficients are known in closed form from the crossings.
         at = self.kink_phases(spring, row[None, :])
         ends = np.append(at, at[0] + 2 * np.pi) if len(at) else np.array([0.0, 2 * np.pi])
-        u = self.at(row[None, :], 0.5 * (ends[:-1] + ends[1:]))[0]
+        u = fourier.at(row[None, :], 0.5 * (ends[:-1] + ends[1:]))[0]
         s = np.asarray(spring.slope(u))
         spectra = fourier.spectrum_of_steps(ends, np.stack([s, spring.force(u) - s * u]), 2 * self.h)
         slope = fourier.product_matrix_of(spectra[0], self.h)
@@ -295,11 +296,6 @@ class _Balance:
         rows, omega = self.rows(point), point.parameter / self.periods
         v = fourier.rate(rows, omega)
         return np.concatenate([r[:, : self.h + 1].sum(axis=1) for r in (rows, v)])
-
-    def at(self, rows: Array, phases: Array) -> Array:
-        """Values (n, phases) at phases of the motion's period [rad]."""
-        turns = np.arange(1, self.h + 1)[:, None] * phases
-        return np.asarray(rows[:, :1] + rows[:, 1 : self.h + 1] @ np.cos(turns) + rows[:, self.h + 1 :] @ np.sin(turns))
 
     def crossings(self, rows: Array) -> Array:
         """Phases at which a spring passes a kink."""
@@ -319,7 +315,7 @@ class _Balance:
         phase = step * (i + here / (here - there))
         both = np.concatenate([u, fourier.rate(u, 1.0)])
         for _ in range(NEWTON):
-            value, slope = self.at(both, phase)
+            value, slope = fourier.at(both, phase)
             change = (value - np.array(spring.kinks)[which]) / np.where(slope == 0, 1.0, slope)
             phase = np.clip(phase - change, step * i, step * (i + 1))
             if np.abs(change).max() < SETTLED:
@@ -366,7 +362,7 @@ class _Balance:
         stiffness = np.broadcast_to(s.stiffness, (len(phases), n, n)).copy()
         for spring in s.springs:
             d = np.array(spring.direction)
-            slope = spring.slope(self.at((d @ rows)[None, :], phases)[0])
+            slope = spring.slope(fourier.at((d @ rows)[None, :], phases)[0])
             stiffness += slope[:, None, None] * np.outer(d, d)
         out = np.zeros((len(phases), 2 * n, 2 * n))
         out[:, :n, n:] = np.eye(n)
@@ -383,20 +379,8 @@ class _Balance:
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
         rows, omega = self.rows(point), point.parameter
-        low, high = _extremes(fourier.samples(rows, self.count))
+        seen = extremes(lambda phases: fourier.at(rows, phases).T, fourier.cuts(self.h))
         k = self.periods
         size = np.hypot(rows[:, k], rows[:, self.h + k])
         amplitude = np.concatenate([size, omega * size])
-        return high - low, np.maximum(np.abs(low), np.abs(high)), amplitude, self.periods * 2 * np.pi / omega
-
-
-def _extremes(values: Array) -> tuple[Array, Array]:
-    """Smallest and largest of periodic samples (n, count), by the parabola through the neighbours of each."""
-    out = []
-    for sign in (-1.0, 1.0):
-        best = np.argmax(sign * values, axis=1)
-        row = np.arange(len(values))
-        left, here, right = (values[row, (best + k) % values.shape[1]] for k in (-1, 0, 1))
-        bend = left - 2 * here + right
-        out.append(here - (right - left) ** 2 / (8 * np.where(bend == 0, -sign, bend)))
-    return out[0], out[1]
+        return seen.span, seen.largest, amplitude, self.periods * 2 * np.pi / omega

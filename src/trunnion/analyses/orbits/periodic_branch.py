@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
-from trunnion.analyses.orbits.periodic_orbit import extremes, periodic_orbit
+from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
@@ -156,18 +157,16 @@ class _Shooting:
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
         """See ``branch.Problem``; NaN where the motion cannot be computed."""
-        system, count = self.over.at(point.parameter), 1024
+        system = self.over.at(point.parameter)
         assert system.forcing_period is not None
         period = self.periods * system.forcing_period
         run = self._seen(system, point.z[:-1], period)
         if run is None:
             curves = np.full(len(self.over.curves), np.nan)
             return curves, curves, np.full(self.size, np.nan), period
-        times = period * np.arange(count) / count
-        states = run.at(times)
-        amplitude = 2 * np.abs(np.fft.rfft(states, axis=0)[1]) / count
-        low, high = extremes(self.over.observe(system, times, states))
-        return high - low, np.maximum(np.abs(low), np.abs(high)), amplitude, period
+        amplitude = np.abs(fourier(run.at, run.time_of_state, self.periods)[self.periods])
+        seen = extremes(lambda times: self.over.observe(system, times, run.at(times)), run.time_of_state)
+        return seen.span, seen.largest, amplitude, period
 
     def _seen(self, system: System, start: Array, period: float) -> Trajectory | None:
         """One period with dense output. A motion that touches a switching surface may chatter there at one tolerance

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.drawing import drawing
@@ -93,21 +95,20 @@ class PeriodicOrbit:
 
     @property
     def mean(self) -> Array:
-        """Mean of every state (n,) over a period."""
+        """Mean of every state (n,) over a period, integrated on the dense output."""
         return self.harmonics(0)[0].real
 
     def harmonics(self, highest: int) -> Complex:
-        """Fourier coefficients (highest + 1, n): x = Re Σ c_k e^{2πikt/T}; |c_k| is the amplitude."""
-        count = max(2048, 16 * highest)
-        samples = self.trajectory.at(self.time[0] + self.period * np.arange(count) / count)
-        found = np.fft.rfft(samples, axis=0)[: highest + 1] / count
-        found[1:] *= 2
-        return np.asarray(found, dtype=complex)
+        """Fourier coefficients (highest + 1, n): x = Re Σ c_k e^{2πikt/T}; |c_k| is the amplitude.
 
-    @property
+        Integrals over the dense output: nothing above the highest order folds back on them.
+        """
+        return fourier(self.trajectory.at, self.trajectory.time_of_state, highest)
+
+    @cached_property
     def peak_to_peak(self) -> Array:
-        """Largest minus smallest value of every state (n,), between the samples too."""
-        return span(self.trajectory, self.time[0], self.period)
+        """Largest minus smallest value of every state (n,), found on the dense output."""
+        return extremes(self.trajectory.at, self.trajectory.time_of_state).span
 
     @property
     def data(self) -> xr.Dataset:
@@ -459,22 +460,3 @@ def _divergence(system: System, run: Trajectory) -> float:
         traces = [np.trace(system.jacobian(t, x, int(regime))) for t, x in zip(times, run.at(times), strict=True)]
         total += length / 2 * float(_WEIGHTS @ np.array(traces))
     return total
-
-
-def span(run: Trajectory, start: float, period: float) -> Array:
-    """Largest minus smallest value of every state, parabolas through the extreme samples included."""
-    values = run.at(start + period * np.arange(2048) / 2048)
-    return extremes(values)[1] - extremes(values)[0]
-
-
-def extremes(values: Array) -> tuple[Array, Array]:
-    """Smallest and largest value (…,) of periodic samples (m, …), by a parabola through three neighbours."""
-    low, high = values.min(0), values.max(0)
-    for sign, out in ((-1.0, low), (1.0, high)):
-        place = np.argmax(sign * values, axis=0)
-        a, b, c = (np.take_along_axis(values, ((place + m) % len(values))[None], 0)[0] for m in (-1, 0, 1))
-        bend = a - 2 * b + c
-        with np.errstate(divide="ignore", invalid="ignore"):
-            gain = np.where(np.abs(bend) > 1e-14 * np.abs(b), (a - c) ** 2 / (8 * np.abs(bend)), 0.0)
-        out[...] = b + sign * np.minimum(np.nan_to_num(gain), np.abs(bend) / 8)
-    return low, high

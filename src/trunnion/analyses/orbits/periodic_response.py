@@ -19,7 +19,6 @@ from trunnion.analyses.motion.simulation import simulate_system
 from trunnion.analyses.orbits.periodic_orbit import (
     TOLERANCE,
     PeriodicOrbit,
-    extremes,
     periodic_orbit,
     torque_driven_orbit,
 )
@@ -30,6 +29,7 @@ from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.errors import ComputationError, InputError
+from trunnion.numerics.curves import extremes, extremes_of_samples, fourier
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-SAMPLES = 2048
+FEWEST_SAMPLES = 2048
+"""Of the torque over a period, as it is shown; with more than half as many steps it has more."""
 ORDERS = 12
 
 
@@ -142,8 +143,9 @@ class PeriodicResponse:
 
     @cached_property
     def time(self) -> Array:
-        """Times (points,) over one period, its end left out [s]."""
-        return self.orbit.time[0] + self.period * np.arange(SAMPLES) / SAMPLES
+        """Times (points,) over one period, its end left out [s]: enough to show every swing."""
+        count = max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(2 * max(self.orbit.trajectory.steps, 1)))))
+        return self.orbit.time[0] + self.period * np.arange(count) / count
 
     @cached_property
     def motion(self) -> LineMotion:
@@ -162,21 +164,24 @@ class PeriodicResponse:
 
     @cached_property
     def torque_peak_to_peak(self) -> Array:
-        """Largest minus smallest torque of every shaft [N m]; NaN where no motion was found."""
+        """Largest minus smallest torque of every shaft [N m], found on the dense output to its own error (about ten
+        times the tolerance); NaN where no motion was found."""
         if not self.outcome.ok:
             return np.full(len(self.shafts), np.nan)
-        low, high = extremes(self.torque)
-        return np.asarray(high - low)
+        return extremes(self._torque_at, self.orbit.trajectory.time_of_state).span
+
+    def _torque_at(self, times: Array) -> Array:
+        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times)).torque
 
     @property
     def torque_amplitude(self) -> Array:
         """Half of the peak-to-peak torque [N m]."""
         return self.torque_peak_to_peak / 2
 
-    @property
+    @cached_property
     def torque_mean(self) -> Array:
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
-        return np.asarray(self.torque.mean(axis=0))
+        return self.order_spectrum(0)[1][0] * np.sign(self.torque.mean(axis=0))
 
     @cached_property
     def contacts(self) -> tuple[SpringContact, ...]:
@@ -184,11 +189,16 @@ class PeriodicResponse:
         return spring_contacts(self)
 
     def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
-        """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]; order 0 is the mean."""
+        """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]; order 0 is the mean.
+
+        Fourier integrals over the dense output, so that what is above ``highest`` does not appear below it; their
+        error is that of the motion. NaN where no motion was found.
+        """
         count = int(np.floor(highest * self.turns + 1e-9)) + 1
-        amplitude = np.abs(np.fft.rfft(self.torque, axis=0)[:count]) / SAMPLES
-        amplitude[1:] *= 2
-        return np.arange(count) / self.turns, amplitude
+        orders = np.arange(count) / self.turns
+        if not self.outcome.ok:
+            return orders, np.full((count, len(self.shafts)), np.nan)
+        return orders, np.abs(fourier(self._torque_at, self.orbit.trajectory.time_of_state, count - 1))
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -373,13 +383,12 @@ def require_forced(line: LineSystem) -> None:
 def _compare(response: PeriodicResponse, line: Driveline) -> LinearComparison:
     static = stability(line, response.speed)
     assert static.response is not None
-    low, high = extremes(static.response.torque[:-1])
     return LinearComparison(
         response.growth_rate,
         stability(line, response.speed, statically_twisted=False),
         static,
         response.torque_peak_to_peak,
-        high - low,
+        extremes_of_samples(static.response.torque[:-1]).span,
         response.shafts,
         any(isinstance(e, Disk) and e.excitation for e in line.elements),
     )

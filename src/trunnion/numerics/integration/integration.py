@@ -111,7 +111,7 @@ class Trajectory:
 
     @property
     def time_of_state(self) -> Array:
-        """Times (steps + 1,) of ``state``."""
+        """Times (steps + 1,) of ``state``; a motion is smooth between neighbours."""
         return np.append(self.start, self.time)
 
     def at(self, time: ArrayLike) -> Array:
