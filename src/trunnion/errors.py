@@ -6,6 +6,14 @@ prints it as it stands and turns the class into an exit code (2 for bad input, 1
 
 from __future__ import annotations
 
+import reprlib
+from collections.abc import Callable, Iterable
+
+MOST_LINES = 20
+"""Most complaints that the text of one error lists."""
+LONGEST = 80
+"""Most characters of what a user wrote that a message quotes in one piece."""
+
 
 class TrunnionError(Exception):
     """Base of every error this package raises on purpose."""
@@ -22,6 +30,9 @@ class InputError(TrunnionError, ValueError):
     element, key : where it stands, e.g. "Shaft 1" and "stiffness"; either may be empty.
     value : the offending value, shown with ``repr``-like brevity.
     remedy : what to do about it ("write 1.2e4 or \"12 kN*m/rad\"").
+
+    ``problems`` are the single complaints: itself, or all of them where several were found at once
+    (``together``), whose text then has a line each.
     """
 
     exit_code = 2
@@ -40,11 +51,30 @@ class InputError(TrunnionError, ValueError):
         self.key = key
         self.value = value
         self.remedy = remedy
+        self.problems: tuple[InputError, ...] = (self,)
         super().__init__(self.sentence())
+
+    @staticmethod
+    def together(problems: Iterable[InputError]) -> InputError:
+        """All of ``problems`` as one error, the first speaking for all where one complaint is asked for."""
+        single = tuple(one for problem in problems for one in problem.problems)
+        first = single[0]
+        if len(single) == 1:
+            return first
+        whole = InputError(first.problem, element=first.element, key=first.key, value=first.value, remedy=first.remedy)
+        whole.problems = single
+        lines = list(dict.fromkeys(map(str, single)))
+        more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
+        whole.args = ("\n".join([*lines[:MOST_LINES], *more]),)
+        return whole
+
+    def each(self, change: Callable[[InputError], InputError]) -> InputError:
+        """The same error with every single complaint changed."""
+        return InputError.together([change(one) for one in self.problems])
 
     def sentence(self) -> str:
         """The whole message on one line."""
-        place = ".".join(part for part in (self.element, self.key) if part)
+        place = ".".join(short(part) for part in (self.element, self.key) if part)
         shown = "" if self.value is None else f" = {_brief(self.value)}"
         head = f"{place}{shown}: " if place or shown else ""
         tail = f"; {self.remedy}" if self.remedy else ""
@@ -61,6 +91,38 @@ class InputRemark(UserWarning):
     """The input is accepted, but a colleague would ask whether it is meant."""
 
 
-def _brief(value: object, limit: int = 60) -> str:
-    text = f"{value:g}" if isinstance(value, float) else repr(value)
+def short(text: str, limit: int = LONGEST) -> str:
+    """``text``, cut where it is longer than a line wants."""
     return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def problems_of(checks: Iterable[Callable[[], object]]) -> list[InputError]:
+    """Every complaint of ``checks``, each of which may raise."""
+    found: list[InputError] = []
+    for check in checks:
+        try:
+            check()
+        except InputError as error:
+            found += error.problems
+    return found
+
+
+class _Brief(reprlib.Repr):
+    """``repr`` of bounded length, depth and time: a value may be a list of a million or a number of as many digits."""
+
+    def repr_int(self, value: int, level: int) -> str:
+        if value.bit_length() < 200:
+            return repr(value)
+        return f"a number of {int(value.bit_length() * 0.30103) + 1} digits"
+
+    def repr_str(self, value: str, level: int) -> str:
+        return repr(short(value, 60))
+
+
+def _brief(value: object, limit: int = 60) -> str:
+    return short(f"{value:g}" if isinstance(value, float) else _BRIEF.repr(value), limit)
+
+
+_BRIEF = _Brief()
+_BRIEF.maxlevel = 3
+_BRIEF.maxother = 60

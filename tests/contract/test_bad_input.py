@@ -65,7 +65,18 @@ PYTHON = [
     (lambda: Disk(inertia="nan kg*m^2"), "Disk.inertia = 'nan kg*m^2': must be finite", "0.4 kg*m^2"),
     (lambda: Shaft(stiffness=float("inf")), "Shaft.stiffness = inf: must be finite", "12 kN*m/rad"),
     (lambda: Shaft(stiffness="1e999 N*m/rad"), "Shaft.stiffness = '1e999 N*m/rad': must be finite", "kN"),
-    (lambda: Shaft(stiffness=10**400), "Shaft.stiffness = 1000", "must be finite"),
+    (lambda: Shaft(stiffness=10**400), "Shaft.stiffness = a number of 401 digits: must be finite", "kN"),
+    (lambda: Shaft(stiffness="1e31 N*m/rad"), "Shaft.stiffness = '1e31 N*m/rad': is larger than 1e+30", "exponent"),
+    (lambda: Disk(inertia=1e-31), "Disk.inertia = 1e-31: is smaller than 1e-30 kg*m^2", "check the exponent"),
+    (lambda: Shaft(stiffness="1e99999999999999999999 kN*m/rad"), "Shaft.stiffness = '1e9999", "must be finite"),
+    (lambda: Shaft(stiffness="9" * 5_000_000), "Shaft.stiffness = '999", "has 5000000 characters"),
+    (lambda: Shaft(stiffness="1 " + "N" * 150), "Shaft.stiffness = '1 NNN", "unknown unit 'NNN"),
+    (
+        lambda: Ratio(teeth_in=10**5000, teeth_out=3),
+        "Ratio.teeth_in = a number of 5001 digits: must be at most",
+        "100000",
+    ),
+    (lambda: Disk(name="n" * 81, inertia=1), "Disk.name = 'nnn", "at most 80 characters"),
     # keys
     (lambda: Shaft(stifness=1e4), "Shaft.stifness = 10000: unknown key", 'did you mean "stiffness"?'),
     (lambda: HookeJoint(angel="12 deg"), "HookeJoint.angel = '12 deg': unknown key", 'did you mean "angle"?'),
@@ -495,7 +506,7 @@ def test_missing_permissions(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("pathlib.Path.read_bytes", deny)  # real modes would not bind an administrator
+    monkeypatch.setattr("pathlib.Path.open", deny)  # real modes would not bind an administrator
     monkeypatch.setattr("pathlib.Path.write_text", deny)
     check(lambda: load("secret.toml"), "secret.toml: cannot be read (Permission denied)", "check")
     check(lambda: dump(line(), "new.toml"), "new.toml: cannot be written (Permission denied)", "may write")

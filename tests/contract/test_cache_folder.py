@@ -11,6 +11,7 @@ import pytest
 
 import trunnion
 
+HOMES = ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "TRUNNION_CACHE")
 STEP = """
 import warnings
 from trunnion.errors import InputRemark
@@ -29,7 +30,7 @@ print(*(s.message for s in said if issubclass(s.category, InputRemark)), sep="\\
 
 def said_where(folder: Path, *before: str, cache: Path | str | None) -> list[str]:
     """What a fresh process says that compiles two functions, working in ``folder`` without a home."""
-    kept = {key: value for key, value in os.environ.items() if key not in ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR")}
+    kept = {key: value for key, value in os.environ.items() if key not in HOMES}
     env = {**kept, "PYTHONPATH": str(Path(trunnion.__file__).parents[1])}
     env |= {} if cache is None else {"TRUNNION_CACHE": str(cache)}
     script = folder / "step.py"

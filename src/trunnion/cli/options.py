@@ -190,4 +190,7 @@ def _quantity(text: str, kind_name: str, unit: str, *, key: str) -> float:
             raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
     if not math.isfinite(number):
         raise InputError("must be finite", key=key, value=text, remedy=f'write "{kind.example}", say')
-    return number / speed_factor(unit) if kind_name == "speed" else number
+    try:
+        return parse(number / speed_factor(unit) if kind_name == "speed" else number, kind)
+    except InputError as error:
+        raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None

@@ -5,21 +5,26 @@ Exit codes are 0, 1 (computation failed), 2 (bad input, mistyped commands includ
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 import warnings
+from contextlib import suppress
 from typing import Any, cast
 
 import typer
+from rich.markup import escape
 from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, study
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
+from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
-from trunnion.errors import InputRemark, TrunnionError
+from trunnion.errors import InputRemark, TrunnionError, short
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
 _UsageError = cast("type[Exception]", typer.BadParameter.__mro__[1])
@@ -30,7 +35,12 @@ class _Interrupted(Exception):
 
 
 class OneLineGroup(TyperGroup):
-    """Answers every failure with one line on stderr and the exit code of its kind."""
+    """Answers every failure with a line on stderr and the exit code of its kind."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        for command in (self, *self.commands.values()):
+            _keep_brackets(command)
 
     def invoke(self, ctx: Any) -> Any:
         try:
@@ -39,30 +49,71 @@ class OneLineGroup(TyperGroup):
             raise _Interrupted from None
 
     def main(self, args: Any = None, prog_name: str | None = None, **extra: Any) -> Any:  # type: ignore[override]
-        for stream in (sys.stdout, sys.stderr):  # an old Windows console has no ω
-            if hasattr(stream, "reconfigure"):
-                stream.reconfigure(errors="replace")
+        _open_streams()
+        arguments = sys.argv[1:] if args is None else list(args)
         extra["standalone_mode"] = False
         with warnings.catch_warnings():
             _print_remarks()
             try:
-                code = super().main(args, prog_name or "trunnion", **extra)
-            except _Interrupted:
-                code = _fail("interrupted; nothing was written", 130)
-            except TrunnionError as error:
-                code = _fail(str(error), error.exit_code)
-            except _UsageError as error:
-                code = _fail(_message(error), 2)
-            except MemoryError:
-                code = _fail("not enough memory; ask for fewer points", 1)
-            except OSError as error:
-                where = f"{error.filename}: " if error.filename else ""
-                code = _fail(f"{where}{error.strerror or error}", 1)
+                code = super().main(arguments, prog_name or "trunnion", **extra)
+                sys.stdout.flush()
+            except Exception as error:
+                code = _answer(error, arguments)
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _keep_brackets(command: Any) -> None:
+    """Help texts may hold units in brackets, which rich would take for its own marks."""
+    for part in (command, *command.params):
+        for text in ("help", "epilog"):
+            if written := getattr(part, text, None):
+                setattr(part, text, escape(written))
+
+
+def _open_streams() -> None:
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by the caller
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
+        elif hasattr(stream, "reconfigure"):  # an old Windows console has no ω
+            stream.reconfigure(errors="replace")
+
+
+def _answer(error: Exception, arguments: list[str]) -> int:
+    """Exit code of a failure, said on stderr in one line, or in one line per complaint."""
+    match error:
+        case _Interrupted():
+            return _fail("interrupted; nothing was written", 130)
+        case BrokenPipeError():  # who reads us has gone, as "head" does
+            _discard_stdout()
+            return 1
+        case TrunnionError():
+            for line in str(error).splitlines():
+                _fail(line, error.exit_code)
+            return error.exit_code
+        case _UsageError():
+            return _fail(_message(error), 2)
+        case MemoryError():
+            return _fail("not enough memory; ask for fewer points", 1)
+        case OSError(errno=errno.ENAMETOOLONG):
+            return _fail(f"{short(str(error.filename))}: is too long for the name of a file; choose a shorter one", 2)
+        case OSError():
+            if error.filename is None:
+                _discard_stdout()
+            where = f"{error.filename}: " if error.filename else ""
+            return _fail(f"{where}{error.strerror or error}", 1)
+    return _fail(crash_line(error, arguments), 1)
+
+
+def _discard_stdout() -> None:
+    """What is still buffered cannot be written and must not fail again when Python leaves."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _message(error: Any) -> str:
     text: str = error.format_message()
+    text = short(text, 300)
     return text if "--help" in text else f"{text.rstrip('.')}; try --help"
 
 

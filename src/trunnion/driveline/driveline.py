@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import Any, Self
 
@@ -80,11 +80,12 @@ class Driveline(BaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        _check_names(self.names)
-        _check_ends(self, self.parents)
-        _check_damping(self)
-        _check_loads(self)
-        _check_drives(self)
+        wrong = [*_wrong_names(self.names), *_wrong_parents(self)]
+        if not wrong:
+            wrong += _wrong_ends(self, self.parents)
+        wrong += [*_wrong_damping(self), *_wrong_loads(self), *_wrong_drives(self)]
+        if wrong:
+            raise InputError.together(wrong)
         return self
 
     @cached_property
@@ -150,17 +151,30 @@ def _checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     checked = tuple(elements)
     if not checked:
         raise InputError("has no elements", element="driveline", remedy=remedy)
-    for i, element in enumerate(checked, start=1):
-        if not isinstance(element, Element):
-            raise InputError("is not an element", element=f"element {i}", value=element, remedy=remedy)
+    wrong = [
+        InputError("is not an element", element=f"element {i}", value=element, remedy=remedy)
+        for i, element in enumerate(checked, start=1)
+        if not isinstance(element, Element)
+    ]
+    if wrong:
+        raise InputError.together(wrong)
     return checked
 
 
-def _check_names(names: tuple[str, ...]) -> None:
+def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
     for name, count in Counter(names).items():
         if count > 1:
-            places = " and ".join(str(i) for i, n in enumerate(names, start=1) if n == name)
-            raise InputError(f"names elements {places}", element=name, key="name", remedy="rename one of them")
+            places = [str(i) for i, n in enumerate(names, start=1) if n == name]
+            some = f"{', '.join(places[:3])} and {count - 3} more" if count > 4 else " and ".join(places)
+            yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
+
+
+def _wrong_parents(line: Driveline) -> Iterator[InputError]:
+    for place in range(len(line.elements)):
+        try:
+            _parent(line, place)
+        except InputError as error:
+            yield error
 
 
 def _parent(line: Driveline, place: int) -> int | None:
@@ -179,26 +193,26 @@ def _parent(line: Driveline, place: int) -> int | None:
     return parent
 
 
-def _check_ends(line: Driveline, parents: tuple[int | None, ...]) -> None:
+def _wrong_ends(line: Driveline, parents: tuple[int | None, ...]) -> Iterator[InputError]:
     """A prescribed rotation in mid-line would cut it into two independent ones."""
     for i, element in enumerate(line.elements):
         if isinstance(element, ConstantSpeed) and i > 0 and i in parents:
             follower = line.names[parents.index(i)]
             remedy = f"make it the first or the last of its branch, or hang {follower} elsewhere with after"
-            raise InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)
+            yield InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)
 
 
 _SPRINGS = (Shaft, PiecewiseShaft, GearPair)
 
 
-def _check_damping(line: Driveline) -> None:
+def _wrong_damping(line: Driveline) -> Iterator[InputError]:
     if line.damping_ratio is None:
         if line.damping_ratio_frequency is not None:
             remedy = "write damping_ratio = 0.02, say, or leave it out"
-            raise InputError("stands without damping_ratio", key="damping_ratio_frequency", remedy=remedy)
+            yield InputError("stands without damping_ratio", key="damping_ratio_frequency", remedy=remedy)
         return
     if line.damping_ratio_frequency is not None and not line.damping_ratio_frequency > 0:
-        raise InputError("must be positive", key="damping_ratio_frequency", remedy='write "50 Hz", say')
+        yield InputError("must be positive", key="damping_ratio_frequency", remedy='write "50 Hz", say')
     for element, name in zip(line.elements, line.names, strict=True):
         keys = ("damping", "loss_factor", "mesh_damping") if isinstance(element, _SPRINGS) else ()
         key = next((k for k in keys if getattr(element, k, None)), None)
@@ -206,7 +220,7 @@ def _check_damping(line: Driveline) -> None:
             key = "loss_factor"
         if key is not None:
             remedy = "leave out one of the two"
-            raise InputError(
+            yield InputError(
                 "stands beside the line's damping_ratio",
                 element=name,
                 key=key,
@@ -215,7 +229,7 @@ def _check_damping(line: Driveline) -> None:
             )
 
 
-def _check_loads(line: Driveline) -> None:
+def _wrong_loads(line: Driveline) -> Iterator[InputError]:
     disks = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Disk)]
     for case in line.operation.load_cases if line.operation else ():
         for name, torque in case.loads.items():
@@ -224,16 +238,16 @@ def _check_loads(line: Driveline) -> None:
                 if name in line.names:
                     problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
                 where = f"load case {case.name}"
-                raise InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
+                yield InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
 
 
-def _check_drives(line: Driveline) -> None:
+def _wrong_drives(line: Driveline) -> Iterator[InputError]:
     """A ConstantSpeed carries whatever torque is left, so nothing is left to share beside it."""
     if not any(isinstance(element, ConstantSpeed) for element in line.elements):
         return
     for element, name in zip(line.elements, line.names, strict=True):
         if isinstance(element, Disk) and element.drive_share:
-            raise InputError(
+            yield InputError(
                 "shares the drive of a line that a ConstantSpeed drives",
                 element=name,
                 key="drive_share",

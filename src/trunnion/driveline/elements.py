@@ -45,6 +45,7 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.refusals import refuse
 from trunnion.errors import InputError, InputRemark
 
+LONGEST_NAME = 80
 LARGE_ANGLE = 45 * DEGREE
 """Bend angle [rad] above which a file gets a remark; most joints are not built for more."""
 
@@ -54,12 +55,15 @@ Doubt = tuple[str, str, str]
 
 def is_name(value: object) -> bool:
     """Whether `value` can be a name: one line of text; no *, which stands for "all" in parameter paths."""
-    return isinstance(value, str) and value == value.strip() != "" and value.isprintable() and "*" not in value
+    if not isinstance(value, str) or len(value) > LONGEST_NAME:
+        return False
+    return value == value.strip() != "" and value.isprintable() and "*" not in value
 
 
 def _name(value: object) -> object:
     if not is_name(value):
-        raise InputError("is not a name", value=value, remedy="write one line of text without * or outer blanks")
+        remedy = f"write one line of text without * or outer blanks, of at most {LONGEST_NAME} characters"
+        raise InputError("is not a name", value=value, remedy=remedy)
     return value
 
 
@@ -380,9 +384,14 @@ class DoubleCardanJoint(_Joint):
         return self
 
 
+MOST_TEETH = 100_000
+
+
 def _tooth_number(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         raise InputError("must be a whole number of teeth", value=value, remedy="write a positive integer")
+    if value > MOST_TEETH:
+        raise InputError(f"must be at most {MOST_TEETH} teeth", value=value, remedy="check the number")
     return value
 
 

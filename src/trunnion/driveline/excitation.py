@@ -8,7 +8,7 @@ from typing import Annotated, Any, Self
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from trunnion.driveline.quantities import ANGLE, FREQUENCY, TORQUE, Angle, Dimensionless, Frequency, Torque
-from trunnion.driveline.refusals import refuse
+from trunnion.driveline.refusals import numbered, refuse
 from trunnion.errors import InputError
 
 
@@ -65,15 +65,16 @@ def _tables(value: object) -> tuple[Excitation, ...]:
     remedy = 'write excitation = [{ order = 2, amplitude = "40 N*m" }]'
     if isinstance(value, str | dict | Excitation) or not isinstance(value, Iterable):
         raise InputError("is not a list of harmonic torques", value=value, remedy=remedy)
-    made = []
+    made, wrong = [], []
     for place, item in enumerate(value, start=1):
         try:
             if not isinstance(item, Excitation | dict):
                 raise InputError("is not a harmonic torque", value=item, remedy=remedy)
             made.append(item if isinstance(item, Excitation) else Excitation(**item))
         except InputError as error:
-            key = f"excitation {place} {error.key}".strip()
-            raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+            wrong.append(numbered(error, "excitation", place))
+    if wrong:
+        raise InputError.together(wrong)
     return tuple(made)
 
 

@@ -17,24 +17,35 @@ Reading, writing and reading again gives an equal driveline: units are written w
 
 from __future__ import annotations
 
+import errno
 import os
+import re
 import tomllib
 import warnings
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Element, is_name
+from trunnion.driveline.elements import Disk, Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
 from trunnion.driveline.gears import MESH_KINDS
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
-from trunnion.errors import InputError, InputRemark
+from trunnion.errors import InputError, InputRemark, problems_of, short
 
 FORMAT = 1
+LARGEST_FILE = 4_000_000
+"""Bytes of a driveline file; examples have a few thousand."""
+DEEPEST_KEY = 60
+_QUOTED = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*+"""' r"|'''(?:[^']|'(?!''))*+'''" r'|"[^"\n]*+"' r"|'[^'\n]*+'", re.DOTALL
+)
+_DEEP_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{DEEPEST_KEY}}}")
+_DAMPING = ("damping_ratio", "damping_ratio_frequency")
 HARMONICS = {"excitation": EXCITATION_KINDS, **MESH_KINDS}
 """Keys that hold tables of harmonics, and the physical kinds of their quantities."""
 TOP_KEYS = (
@@ -102,17 +113,26 @@ def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
 
 def _read(path: Path) -> str:
     try:
-        raw = path.read_bytes()
+        if path.is_file() and path.stat().st_size > LARGEST_FILE:
+            raise _too_large(str(path), path.stat().st_size)
+        with path.open("rb") as stream:  # a device has no size to ask for
+            raw = stream.read(LARGEST_FILE + 1)
     except FileNotFoundError:
         there = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
         remedy = nearest(path.name, there) if there else 'check the path, or start one with "trunnion new two-shaft"'
         raise InputError("file not found", key=str(path), remedy=remedy) from None
     except IsADirectoryError:
         raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
+    except ValueError:  # a null character
+        raise InputError("cannot be the name of a file", key=str(path), remedy="check the name") from None
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise InputError("is too long for the name of a file", key=str(path), remedy="check the name") from None
         if path.is_dir():  # Windows reports a folder as a denied permission
             raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
         raise InputError(f"cannot be read ({error.strerror})", key=str(path), remedy="check the file") from None
+    if len(raw) > LARGEST_FILE:
+        raise _too_large(str(path), len(raw))
     if not raw.strip():
         raise InputError("is empty", key=str(path), remedy='start from "trunnion new two-shaft"')
     try:
@@ -125,27 +145,59 @@ def _read(path: Path) -> str:
     return text
 
 
+def _too_large(key: str, size: int) -> InputError:
+    problem = f"has {size} bytes, and the description of a driveline at most {LARGEST_FILE}"
+    return InputError(problem, key=key, remedy="name the driveline's TOML file")
+
+
 def _toml(text: str) -> dict[str, Any]:
+    if len(text) > LARGEST_FILE:
+        raise _too_large("", len(text))
+    remedy = 'write lines as key = value, with text and units in quotes: angle = "12 deg"'
+    if _DEEP_KEY.search(_QUOTED.sub("q", text)):
+        raise InputError(f"is not valid here: a key of more than {DEEPEST_KEY} parts", remedy="remove the extra dots")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        remedy = 'write lines as key = value, with text and units in quotes: angle = "12 deg"'
-        raise InputError(f"is not valid TOML: {error}", remedy=remedy) from None
+        raise InputError(f"is not valid TOML: {_cut(str(error))}", remedy=remedy) from None
+    except ValueError:  # Python refuses to read numbers of more than 4300 digits
+        raise InputError("is not valid TOML: a number of thousands of digits", remedy="write 1.2e4, say") from None
     except RecursionError:
         raise InputError("is not valid TOML: nested too deeply", remedy="remove the extra brackets") from None
 
 
+def _cut(message: str) -> str:
+    """A parser's message, which may quote the file, with its place kept."""
+    what, at, place = message.rpartition(" (at ")
+    return f"{short(what, 120)}{at}{place}" if at else short(message, 120)
+
+
 def _driveline(table: dict[str, Any], source: str) -> Driveline:
-    # an unknown key comes before a missing one: "formt = 1" is a slip of the pen, not a missing format
-    for key, value in table.items():
-        if key not in TOP_KEYS:
-            unused = [k for k in TOP_KEYS if k not in table]
-            raise InputError("unknown key", key=key, value=value, remedy=nearest(key, unused))
-    _check_format(table)
-    elements = _elements(table.get("element"), source)
-    operation = _operation(table["operation"]) if "operation" in table else None
-    rest = {k: v for k, v in table.items() if k not in ("format", "element", "operation")}
-    return Driveline(elements, operation=operation, **rest)
+    """The driveline of a file's content, or everything that is wrong with it."""
+    wrong = [
+        InputError("unknown key", key=key, value=value, remedy=nearest(key, [k for k in TOP_KEYS if k not in table]))
+        for key, value in table.items()
+        if key not in TOP_KEYS
+    ]
+    if "format" in table or not wrong:  # "formt = 1" is a slip of the pen, not a missing format
+        wrong += problems_of([lambda: _check_format(table)])
+    rest: dict[str, Any] = {k: v for k, v in table.items() if k in ("name", "description", *_DAMPING)}
+    found: dict[str, Any] = {}
+
+    def read(key: str, value: Any, reader: Callable[[Any], Any]) -> None:
+        try:
+            found[key] = reader(value)
+        except InputError as error:
+            wrong.extend(error.problems)
+
+    if "element" in table or not wrong:
+        read("elements", table.get("element"), lambda value: _elements(value, source))
+    if "operation" in table:
+        read("operation", table["operation"], _operation)
+    if wrong:
+        wrong += problems_of([lambda: Driveline([Disk(inertia=1.0)], **rest)])  # its own keys
+        raise InputError.together(wrong)
+    return Driveline(**found, **rest)
 
 
 def _check_format(table: dict[str, Any]) -> None:
@@ -166,7 +218,16 @@ def _elements(tables: Any, source: str) -> list[Element]:
         remedy = 'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
         raise InputError("has no elements", key="element", remedy=remedy)
     seen: Counter[str] = Counter()
-    return [_element(table, place, seen, source) for place, table in enumerate(tables, start=1)]
+    made: list[Element] = []
+    wrong: list[InputError] = []
+    for place, table in enumerate(tables, start=1):
+        try:
+            made.append(_element(table, place, seen, source))
+        except InputError as error:
+            wrong += error.problems
+    if wrong:
+        raise InputError.together(wrong)
+    return made
 
 
 def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element:
@@ -210,7 +271,17 @@ def _operation(table: Any) -> Operation:
     if not isinstance(cases, list):
         remedy = "write [[operation.load_case]] with double brackets"
         raise InputError("is a single table", element="operation", key="load_case", remedy=remedy)
-    return Operation(**data, load_cases=[_load_case(case, place) for place, case in enumerate(cases, start=1)])
+    made: list[LoadCase] = []
+    wrong: list[InputError] = []
+    for place, case in enumerate(cases, start=1):
+        try:
+            made.append(_load_case(case, place))
+        except InputError as error:
+            wrong += error.problems
+    wrong += problems_of([lambda: Operation(**data, load_cases=[] if wrong else made)])
+    if wrong:
+        raise InputError.together(wrong)
+    return Operation(**data, load_cases=made)
 
 
 def _load_case(case: Any, place: int) -> LoadCase:
@@ -226,9 +297,11 @@ def _load_case(case: Any, place: int) -> LoadCase:
 
 
 def _located(error: InputError, source: str) -> InputError:
-    """The same complaint with the file's name in front."""
-    if not source:
-        return error
+    """The same complaints with the file's name in front."""
+    return error.each(lambda one: _located_one(one, source)) if source else error
+
+
+def _located_one(error: InputError, source: str) -> InputError:
     element = f"{source}: {error.element}" if error.element else ""
     key = error.key if error.element else f"{source}: {error.key}" if error.key else source
     return InputError(error.problem, element=element, key=key, value=error.value, remedy=error.remedy)

@@ -22,7 +22,7 @@ from trunnion.driveline.quantities import (
     MeshDamping,
     MeshStiffness,
 )
-from trunnion.driveline.refusals import refuse
+from trunnion.driveline.refusals import numbered, refuse
 from trunnion.errors import InputError
 
 DampingLaw = Literal["always", "in contact", "never pulling"]
@@ -103,15 +103,16 @@ def _listed(made: type[_MeshHarmonic]) -> Callable[[object], tuple[_MeshHarmonic
         remedy = f"write {made.what} = [{{ {made.example} }}]"
         if isinstance(value, str | dict | _MeshHarmonic) or not isinstance(value, Iterable):
             raise InputError("is not a list of harmonics", value=value, remedy=remedy)
-        found = []
+        found, wrong = [], []
         for place, item in enumerate(value, start=1):
-            if not isinstance(item, made | dict):
-                raise InputError("is not a harmonic", key=f"{made.what} {place}", value=item, remedy=remedy)
             try:
+                if not isinstance(item, made | dict):
+                    raise InputError("is not a harmonic", value=item, remedy=remedy)
                 found.append(made(**item) if isinstance(item, dict) else item)
             except InputError as error:
-                key = f"{made.what} {place} {error.key}".strip()
-                raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+                wrong.append(numbered(error, made.what, place))
+        if wrong:
+            raise InputError.together(wrong)
         return tuple(found)
 
     return check

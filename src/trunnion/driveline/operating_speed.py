@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.quantities import SPEED, parse
 from trunnion.errors import InputError
 
 
@@ -26,6 +29,16 @@ def operating_speed(line: Driveline, speed: float | None) -> float:
         )
     if isinstance(speed, bool) or not isinstance(speed, int | float | np.number):
         raise InputError("must be a number in rad/s", key="speed", value=speed, remedy="write tn.rpm(1500)")
-    if not (np.isfinite(speed) and speed > 0):
-        raise InputError("must be positive and finite", key="speed", value=float(speed), remedy="tn.rpm(1500), say")
-    return float(speed)
+    if not speed > 0 or math.isinf(read := _float(speed)):
+        raise InputError("must be positive and finite", key="speed", value=speed, remedy="tn.rpm(1500), say")
+    try:
+        return parse(read, SPEED)
+    except InputError as error:
+        raise InputError(error.problem, key="speed", value=read, remedy=error.remedy) from None
+
+
+def _float(number: float) -> float:
+    try:
+        return float(number)
+    except OverflowError:  # an integer of more than 308 digits
+        return math.inf

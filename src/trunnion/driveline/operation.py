@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -68,12 +69,14 @@ def _torques(value: object) -> dict[str, float]:
     if not isinstance(value, dict):
         remedy = 'write loads = { "Disk 2" = "250 N*m" }'
         raise InputError("is not a table of torques", value=value, remedy=remedy)
-    torques = {}
+    torques, wrong = {}, []
     for name, torque in value.items():
         try:
             torques[str(name)] = parse(torque, TORQUE)
         except InputError as error:
-            raise InputError(error.problem, key=str(name), value=torque, remedy=error.remedy) from None
+            wrong.append(InputError(error.problem, key=str(name), value=torque, remedy=error.remedy))
+    if wrong:
+        raise InputError.together(wrong)
     return torques
 
 
@@ -143,14 +146,18 @@ class Operation(BaseModel):
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
+        wrong = []
         if self.speed_range and self.speed_range[0] < 0:
-            raise InputError("must not go below zero", key="speed_range", remedy='start at "0 rpm" or above')
+            wrong.append(InputError("must not go below zero", key="speed_range", remedy='start at "0 rpm" or above'))
         if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
-            raise InputError("must stay below 90 deg", key="angle_range", remedy='write ["0 deg", "15 deg"], say')
-        names = [case.name for case in self.load_cases]
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError("names two load cases", key="load_case", value=name, remedy="rename one of them")
+            remedy = 'write ["0 deg", "15 deg"], say'
+            wrong.append(InputError("must stay below 90 deg", key="angle_range", remedy=remedy))
+        for name, count in Counter(case.name for case in self.load_cases).items():
+            if count > 1:
+                problem = "names two load cases" if count == 2 else f"names {count} load cases"
+                wrong.append(InputError(problem, key="load_case", value=name, remedy="rename one of them"))
+        if wrong:
+            raise InputError.together(wrong)
         return self
 
     def load_case(self, name: str) -> LoadCase:

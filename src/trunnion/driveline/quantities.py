@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, partial
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic_core import core_schema
 
-from trunnion.errors import InputError
+from trunnion.errors import InputError, short
 
 if TYPE_CHECKING:
     import numpy as np
@@ -51,6 +52,10 @@ class Kind:
     shown: tuple[tuple[str, float, float], ...] = ()
 
 
+LONGEST_TEXT = 200
+"""Characters of a number with its unit."""
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Magnitudes in SI between which a number can be meant; products of a few of them stay within floating point."""
 DEGREE = math.pi / 180
 RPM = 2 * math.pi / 60
 HERTZ = 2 * math.pi
@@ -91,6 +96,9 @@ KINDS = (
     RATIO,
 )
 
+OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, TORQUE)
+"""Kinds that computations leave as good as zero, and that nothing is divided by."""
+
 
 def parse(value: object, kind: Kind) -> float:
     """Return `value` as a finite float in the SI unit of `kind`.
@@ -119,6 +127,8 @@ def parse(value: object, kind: Kind) -> float:
 
 
 def _parse_text(text: str, kind: Kind) -> float:
+    if len(text) > LONGEST_TEXT:
+        raise InputError(f"has {len(text)} characters", value=text, remedy=_advice(kind))
     written = text.strip()
     match = _NUMBER.match(written)
     if match is None:
@@ -131,7 +141,7 @@ def _parse_text(text: str, kind: Kind) -> float:
     if not unit:
         if kind is RATIO:
             return float(number)
-        raise InputError("has no unit", value=text, remedy=f"{_advice(kind)}, or {number} without quotes for SI")
+        raise InputError("has no unit", value=text, remedy=f"{_advice(kind)}, or {short(number)} without quotes for SI")
     for spelling, plain in _SPELLINGS.items():
         unit = unit.replace(spelling, plain)
     unit = re.sub(r"(?<=[a-z])(?=-?[0-9])", "^", unit)  # kg m2, min-1
@@ -160,7 +170,7 @@ def _factor(unit: str, kind: Kind) -> float:
         dimensions = dict(given.dimensionality)
     except Exception as error:  # pint raises many classes, some of them not its own
         known = "known are rad deg rev rpm Hz N Nm Pa bar g kg t m in ft lb lbf psi s min h, with prefixes"
-        raise InputError(f"unknown unit {unit!r}", remedy=f"{_advice(kind)}; {known}") from error
+        raise InputError(f"unknown unit {short(unit)!r}", remedy=f"{_advice(kind)}; {known}") from error
     wanted = dict(needed.dimensionality)
     if dimensions == wanted:
         return float(registry.convert(1.0, given, needed))
@@ -181,13 +191,19 @@ def _scaled(number: str, factor: float) -> float:
     """
     decimal = Decimal(f"{factor:.15g}").normalize()
     if len(decimal.as_tuple().digits) <= 12:
-        return float(Decimal(number) * decimal)
+        with suppress(ArithmeticError):  # exponents past a decimal's range: as the float, 0 or infinite
+            return float(Decimal(number) * decimal)
     return float(number) * factor
 
 
 def _finite(number: float, value: object, kind: Kind) -> float:
     if not math.isfinite(number):
         raise InputError("must be finite", value=value, remedy=_advice(kind))
+    tiny = 0 < abs(number) < SMALLEST and kind not in OFTEN_NOTHING
+    if tiny or abs(number) > LARGEST:
+        size = f"smaller than {SMALLEST:g}" if tiny else f"larger than {LARGEST:g}"
+        problem = f"is {size} {'' if kind is RATIO else kind.unit}".rstrip()
+        raise InputError(problem, value=value, remedy=f"check the exponent, {_advice(kind)}")
     return number
 
 

@@ -1,4 +1,4 @@
-"""Turns pydantic's report of several lines into one sentence of ours."""
+"""Turns pydantic's report into sentences of ours, one a line."""
 
 from __future__ import annotations
 
@@ -8,31 +8,44 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from trunnion.errors import InputError
+from trunnion.errors import InputError, short
+
+MOST_WORDS = 20
+"""Most known words that a remedy lists."""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Remedy for a word that is not known: the one it probably means, or all there are."""
     words = list(known)
     by_lower = {candidate.lower(): candidate for candidate in words}
-    near = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(short(word).lower(), by_lower, n=1, cutoff=0.5)
     if near:
-        return f'did you mean "{by_lower[near[0]]}"?'
-    return f"known: {', '.join(words)}" if words else "there are none"
+        return f'did you mean "{short(by_lower[near[0]])}"?'
+    more = f" and {len(words) - MOST_WORDS} more" if len(words) > MOST_WORDS else ""
+    return f"known: {', '.join(short(w) for w in words[:MOST_WORDS])}{more}" if words else "there are none"
 
 
 def about(error: InputError, element: str) -> InputError:
-    """The same complaint about an element by a better name."""
-    return InputError(error.problem, element=element, key=error.key, value=error.value, remedy=error.remedy)
+    """The same complaints about an element by a better name."""
+    return error.each(
+        lambda one: InputError(one.problem, element=element, key=one.key, value=one.value, remedy=one.remedy)
+    )
+
+
+def numbered(error: InputError, what: str, place: int) -> InputError:
+    """The same complaints about the entry at ``place`` of a list of ``what``."""
+    return error.each(
+        lambda one: InputError(one.problem, key=f"{what} {place} {one.key}".strip(), value=one.value, remedy=one.remedy)
+    )
 
 
 def refuse(
     error: ValidationError, model: type[BaseModel], given: dict[str, Any], *, element: str, example: str = ""
 ) -> InputError:
-    """Pick the one complaint worth reading from pydantic's list.
+    """pydantic's list as complaints of ours, at most one about a key.
 
-    A misspelt key usually shows twice, as an unknown key and as a missing one, so unknown keys come first;
-    missing keys come last because another complaint often explains them.
+    A misspelt key shows twice, as an unknown key and as a missing one: where there are unknown keys, missing
+    ones wait.
 
     Parameters
     ----------
@@ -43,26 +56,39 @@ def refuse(
     example : a correct call or table, offered when a key is missing.
     """
     complaints = sorted(error.errors(include_url=False), key=lambda c: _RANK.get(c["type"], 1))
-    first = complaints[0]
-    key = str(first["loc"][0]) if first["loc"] else ""
-    if first["type"] == "extra_forbidden":
+    if complaints[0]["type"] == "extra_forbidden":
+        complaints = [c for c in complaints if c["type"] != "missing"]
+    by_key: dict[str, Any] = {}
+    for complaint in complaints:
+        by_key.setdefault(str(complaint["loc"][0]) if complaint["loc"] else "", complaint)
+    return InputError.together([_complaint(one, key, model, given, element, example) for key, one in by_key.items()])
+
+
+def _complaint(
+    found: Any, key: str, model: type[BaseModel], given: dict[str, Any], element: str, example: str
+) -> InputError:
+    if found["type"] == "extra_forbidden":
         return InputError(
             "unknown key", element=element, key=key, value=given[key], remedy=nearest(key, model.model_fields)
         )
-    if first["type"] == "missing":
+    if found["type"] == "missing":
         return InputError("is missing", element=element, key=key, remedy=f"write {example}" if example else "")
-    cause = first.get("ctx", {}).get("error")
+    cause = found.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
-        key = cause.key or key
-        value = given.get(key)  # as it was written, "95 deg" rather than 1.658
-        return InputError(
-            cause.problem,
-            element=cause.element or element,
-            key=key,
-            value=cause.value if value is None else value,
-            remedy=cause.remedy,
-        )
-    return InputError(first["msg"][:1].lower() + first["msg"][1:], element=element, key=key, value=given.get(key))
+        return cause.each(lambda one: _placed(one, key, given, element))
+    return InputError(found["msg"][:1].lower() + found["msg"][1:], element=element, key=key, value=given.get(key))
+
+
+def _placed(cause: InputError, key: str, given: dict[str, Any], element: str) -> InputError:
+    key = cause.key or key
+    value = None if cause.element else given.get(key)  # as it was written, "95 deg" rather than 1.658
+    return InputError(
+        cause.problem,
+        element=cause.element or element,
+        key=key,
+        value=cause.value if value is None else value,
+        remedy=cause.remedy,
+    )
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}
