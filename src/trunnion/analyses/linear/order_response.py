@@ -18,13 +18,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.order_result import WORTH_SHOWING, OrderResponse
-from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum, varies
+from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Shaft
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
-from trunnion.equations.linear import require_steady_base
+from trunnion.equations.steady_base import bent, refuse_own_motion, require_steady_base
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
@@ -68,8 +68,11 @@ def order_response(
     [2.] 106.781
     """
     assembly = _assembled(line, load_case)
-    require_steady_base(assembly)
     speed = _checked_speeds(speeds)
+    table = assembly.table(len(speed))
+    table[:, 0] = speed
+    require_steady_base(assembly, table)
+    refuse_own_motion(assembly, "use tn.periodic_response, or put a ConstantSpeed in front")
     wanted = None if orders is None else _checked_orders(orders)
     spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
     return _result(assembly, spectrum, wanted)
@@ -165,10 +168,8 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
         )
     at_work = [e for e in shaken if not e.held and row[e.amplitude] != 0]
     if not at_work:
-        bent = varies(assembly, assembly.coefficients(assembly.table(1, 1.0), any_frequency=True))
-        yield Finding(
-            Gravity.NOTE, "Nothing excites this line but its joints." if bent else "Nothing excites this line."
-        )
+        joints = " but its joints" if bent(assembly) else ""
+        yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
     yield from _nominal_angle(assembly, spectrum, at_work)

@@ -28,6 +28,7 @@ from trunnion.equations.exciters import (
     twist_on_unknowns,
 )
 from trunnion.equations.linear import LineMatrices, line_matrices
+from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import Topology, require_period
 
 Array = NDArray[np.float64]
@@ -144,11 +145,6 @@ def order_spectrum(
     )
 
 
-def varies(assembly: Assembly, coefficients: LineCoefficients) -> bool:
-    """Whether the linear equations vary over a turn: a joint is bent."""
-    return bool(np.any(coefficients.angle != 0))
-
-
 class _Case:
     """What solving takes, apart from the speeds."""
 
@@ -157,7 +153,7 @@ class _Case:
         self.twisted = statically_twisted
         one = self.coefficients(np.array([1.0]))
         self.row = assembly.table(1)[0]
-        self.varies = varies(assembly, one)
+        self.varies = bent(assembly)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.reach = _reach(one.angle)
         if self.varies:
@@ -326,7 +322,9 @@ def _loss_matrix(assembly: Assembly, co: LineCoefficients) -> Array:
     if not co.loss.any():
         n = assembly.topology.size
         return np.zeros((len(co.speed), n, n))
-    none = {key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load")}
+    none = {
+        key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load", "viscous", "quadratic")
+    }
     return line_matrices(assembly.topology, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
 
 
