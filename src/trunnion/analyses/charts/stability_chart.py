@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily, OwnFamily, PatchesAlone
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, multipliers_of
+from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly, assemble
@@ -153,7 +154,8 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
     require_steady_base(assembly, corners)
     family = LineFamily(assembly, across, up, base, twisted)
 
-    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line")) if s)
+    said = [finding.sentence for finding in left_out("stability_chart", assembly.line)]
+    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line"), *said) if s)
     return _Task(family, across, up, None if swept else base, assembly.line, remarks)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.charts.stability_chart import stability_chart
+from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
@@ -23,6 +24,7 @@ from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -59,7 +61,7 @@ class StableLimit(Result):
 
     speed (speed,) [rad/s]; limit (speed,) in SI units: the value below which no instability was found; kind
     (speed,): codes of ``LimitKind``; intervals (speed,): how many separate unstable intervals the scan met;
-    low, high, step: the scan.
+    low, high, step: the scan; ``findings`` say what of the line is left out.
     """
 
     parameter: str
@@ -72,6 +74,7 @@ class StableLimit(Result):
     high: float
     step: float
     accuracy: float
+    findings: tuple[Finding, ...] = ()
 
     @property
     def smallest(self) -> float:
@@ -113,7 +116,7 @@ class StableLimit(Result):
         ]
         if several:
             lines.append(f"  at {several} speeds the line is stable again above the limit, and unstable once more")
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 
 def stable_limit(
@@ -183,9 +186,10 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     limit[kind == LimitKind.UNKNOWN] = np.nan
     starts = unstable & ~np.vstack([np.zeros((1, len(speed)), dtype=bool), unstable[:-1]])
     step = float(np.diff(values).max())
-    return StableLimit(
-        chart.y_label, chart.y_unit, speed, limit, kind, starts.sum(axis=0), low, high, step, step / 2**BISECTIONS
-    )
+    said = left_out("stable_limit", chart.line) if chart.line is not None else ()
+    accuracy = step / 2**BISECTIONS
+    several = starts.sum(axis=0)
+    return StableLimit(chart.y_label, chart.y_unit, speed, limit, kind, several, low, high, step, accuracy, said)
 
 
 def _bisect(chart: StabilityChart, speed: float, stable: float, unstable: float) -> float:

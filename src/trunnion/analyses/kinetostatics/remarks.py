@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
 from trunnion.analyses.kinetostatics.elastic import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
@@ -29,7 +29,7 @@ def remarks(
     if drive.inertia:
         found += _resonance(chain, drive, rigid)
     found += _repeats(chain, turns)
-    found += _left_out(chain)
+    found += left_out("kinetostatics", chain.line)
     found += _meshes(chain)
     found += _stages(chain, twist)
     if supports is not None:
@@ -75,19 +75,6 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
             f"elastic natural frequency is {lowest:.4g} rad/s (trusted up to a third of it), so {effect}; "
             "ask stability() for the linear response",
         )
-    ]
-
-
-def _left_out(chain: Chain) -> list[Finding]:
-    """Torques that shake Disks, which a turn without vibration has no place for."""
-    return [
-        Finding(
-            Gravity.CAUTION,
-            f"{name}.excitation is left out: torques here are those of steady running; ask "
-            "periodic_response() or simulate() for what it does",
-        )
-        for name, element in zip(chain.line.names, chain.line.elements, strict=True)
-        if isinstance(element, Disk) and element.excitation
     ]
 
 

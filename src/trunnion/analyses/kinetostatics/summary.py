@@ -33,9 +33,9 @@ def summary(result: Kinetostatics, unit: str) -> str:
 def _title(r: Kinetostatics, unit: str) -> str:
     name = f" of {r.line.name!r}" if r.line.name else ""
     turns = "one turn" if r.turns == 1 else f"{r.turns} turns"
-    kind = "rigid" if r.rigid else "elastic"
+    kind = "rigid shafts" if r.rigid else "elastic shafts, their damping left out"
     return (
-        f"kinetostatics{name} over {turns} at {show_speed(r.input_speed, unit)}: {kind} shafts, "
+        f"kinetostatics{name} over {turns} at {show_speed(r.input_speed, unit)}: {kind}, "
         f"inertia torques {'included' if r.inertia else 'left out'}, {len(r.input_angle)} points"
     )
 

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -28,7 +30,8 @@ class NaturalFrequencies(Result):
 
     frequency (mode,) undamped [rad/s]; damping_ratio (mode,) [1], from the damped eigenvalues where the mode
     oscillates; shape (rotation, mode): rotation of each inertia, largest entry 1; names (rotation,).
-    ``rigid_body`` tells that mode 1 is the free rotation of the whole line.
+    ``rigid_body`` tells that mode 1 is the free rotation of the whole line. ``findings`` say what of the line is
+    left out.
     """
 
     frequency: Array
@@ -36,6 +39,7 @@ class NaturalFrequencies(Result):
     shape: Array
     names: tuple[str, ...]
     rigid_body: bool
+    findings: tuple[Finding, ...] = ()
 
     @property
     def hertz(self) -> Array:
@@ -79,7 +83,7 @@ class NaturalFrequencies(Result):
                 lines.append(f"  mode {i}: 0, rigid body (the line turns as a whole)")
             else:
                 lines.append(f"  mode {i}: {w:.6g} rad/s = {w / (2 * np.pi):.6g} Hz, damping ratio {z:.3g}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 
 def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
@@ -99,7 +103,8 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     shape = vectors / root[:, None]
     shape = shape / shape[np.abs(shape).argmax(0), np.arange(len(mass))]
     ratio = _damping_ratios(damping / np.outer(root, root), stiffness / np.outer(root, root), vectors, found)
-    return NaturalFrequencies(found, ratio, shape, topo.names, topo.free)
+    said = left_out("natural_frequencies", assembly.line)
+    return NaturalFrequencies(found, ratio, shape, topo.names, topo.free, said)
 
 
 def _damping_ratios(damping: Array, stiffness: Array, vectors: Array, frequency: Array) -> Array:

@@ -22,10 +22,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
@@ -73,10 +75,11 @@ class Resonance:
 
 @dataclass(frozen=True)
 class ResonanceSpeeds:
-    """Resonances by ascending speed."""
+    """Resonances by ascending speed; ``findings`` say what of the line is left out."""
 
     resonances: tuple[Resonance, ...]
     orders: int
+    findings: tuple[Finding, ...] = ()
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         return iter(self.resonances)
@@ -120,13 +123,15 @@ class ResonanceSpeeds:
 
     def within(self, low: float, high: float) -> ResonanceSpeeds:
         """Those between two input speeds [rad/s]."""
-        return ResonanceSpeeds(tuple(r for r in self.resonances if low <= r.speed <= high), self.orders)
+        return ResonanceSpeeds(tuple(r for r in self.resonances if low <= r.speed <= high), self.orders, self.findings)
 
     def __str__(self) -> str:
+        said = [f"  {finding}" for finding in self.findings]
         if not self.resonances:
-            return "no parametric resonance speeds: the line has no bent joint or no elastic mode"
+            none = "no parametric resonance speeds: the line has no bent joint or no elastic mode"
+            return "\n".join([none, *said])
         rows = [f"  {show_speed(r.speed)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
-        return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows])
+        return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows, *said])
 
 
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:
@@ -142,7 +147,8 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     modes = natural_frequencies(assembly).frequency
     rates = sorted({abs(assembly.topology.speed_ratio[j]) for j in assembly.topology.joints})
     found = [r for rate in rates for r in _at_rate(modes, orders, rate)]
-    return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders)
+    said = left_out("resonance_speeds", assembly.line)
+    return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said)
 
 
 def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
@@ -27,6 +28,7 @@ from trunnion.equations.steady_base import refuse_own_motion, require_steady_bas
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,7 +54,7 @@ class SpeedSweep:
     shaft) [N m], half peak to peak; torque_mean (speed, shaft) [N m], negative where power flows from input
     to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
     stays within the range in which the linear response can be trusted; cut_off (speed,): relative change of
-    the amplitudes when a third of the harmonics is left out.
+    the amplitudes when a third of the harmonics is left out; ``findings`` say what of the line is left out.
     """
 
     speed: Array
@@ -62,6 +64,7 @@ class SpeedSweep:
     joint_rotation: Array
     cut_off: Array
     shafts: tuple[str, ...]
+    findings: tuple[Finding, ...] = ()
 
     @property
     def linear(self) -> NDArray[np.bool_]:
@@ -107,7 +110,7 @@ class SpeedSweep:
             rows.append(
                 f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only"
             )
-        return "\n".join(rows)
+        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 
 
 def speed_sweep(
@@ -152,7 +155,8 @@ def speed_sweep(
         if progress:
             progress(min(1.0, (start + BATCH) / len(speed)))
     twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
-    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly))
+    said = left_out("speed_sweep", assembly.line)
+    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly), said)
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:

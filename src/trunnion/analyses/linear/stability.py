@@ -9,13 +9,14 @@ ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
 from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
 from trunnion.driveline.driveline import Driveline
@@ -52,7 +53,8 @@ class Stability:
     (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
     floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
     resonance: the one the critical multiplier names; response: the linear forced response (None for a system
-    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,).
+    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,); left_out: findings
+    about what the line has and this does not count.
     """
 
     multipliers: NDArray[np.complex128]
@@ -68,6 +70,7 @@ class Stability:
     liouville_defect: float
     names: tuple[str, ...]
     set_aside: int
+    left_out: tuple[Finding, ...] = ()
 
     @property
     def exponents(self) -> NDArray[np.complex128]:
@@ -92,7 +95,7 @@ class Stability:
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
-        return by_gravity(_findings(self, unit))
+        return by_gravity([*_findings(self, unit), *self.left_out])
 
     @property
     def data(self) -> xr.Dataset:
@@ -137,7 +140,7 @@ class Stability:
             lines.append(f"  {SET_ASIDE[self.set_aside]}")
         if self.response is not None:
             lines.append("  " + str(self.response).replace("\n", "\n  "))
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
 
     def __str__(self) -> str:
         return self.describe()
@@ -181,7 +184,8 @@ def stability(
     response = linear_response(assembly, coefficients, run)
     frequency = np.array(system.frequencies)
     half_turns = 2 * require_period(assembly.line, topo)
-    return _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
+    found = _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
+    return replace(found, left_out=left_out("stability", assembly.line))
 
 
 def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:

@@ -1,0 +1,268 @@
+"""What every analysis does with every feature of a line: counts, refuses, or says that it leaves it out.
+
+One row an analysis; what a row does not name is *counted*. ``tests/contract/test_features.py`` builds a line for each
+cell, changes the feature and sees the answer change, the refusal, the sentence, or that nothing changes; an analysis
+without a row fails there, and so does a field of the description without a feature. ``docs/features.md`` prints the
+table. ``left_out`` makes the sentences that results show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.features import FEATURES, feature
+from trunnion.results.finding import Finding, Gravity
+
+
+class Treatment(Enum):
+    """What an analysis does with a feature."""
+
+    COUNTED = "counted"
+    REFUSED = "refused"
+    SAID = "said"
+    INERT = "cannot matter"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A treatment and its reason; ``quote`` is what the result prints where ``left_out`` does not say the reason."""
+
+    treatment: Treatment
+    reason: str = ""
+    quote: str = ""
+
+
+Row = dict[str, Cell]
+Words = str | tuple[str, str]
+"""A reason, or a reason and the quote."""
+
+
+def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
+    """One finding for every feature of ``line`` that ``analysis`` leaves out, naming the places."""
+    places: dict[str, dict[str, None]] = {}
+    for key, cell in TABLE[analysis].items():
+        if cell.treatment is Treatment.SAID and not cell.quote:
+            places.setdefault(cell.reason, {}).update(dict.fromkeys(feature(key).places(line)))
+    return tuple(
+        Finding(Gravity.CAUTION, f"{', '.join(where)} {'is' if len(where) == 1 else 'are'} left out: {reason}")
+        for reason, where in places.items()
+        if where
+    )
+
+
+def _row(
+    *,
+    refused: dict[str, str] | None = None,
+    said: Mapping[str, Words] | None = None,
+    inert: dict[str, str] | None = None,
+) -> Row:
+    """Cells of all features: those named, the others counted."""
+    row = {f.key: Cell(Treatment.COUNTED) for f in FEATURES}
+    for key, reason in (refused or {}).items():
+        row[key] = Cell(Treatment.REFUSED, reason)
+    for key, words in (said or {}).items():
+        row[key] = Cell(Treatment.SAID, *((words,) if isinstance(words, str) else words))
+    for key, reason in (inert or {}).items():
+        row[key] = Cell(Treatment.INERT, reason)
+    return {f.key: row[f.key] for f in FEATURES}
+
+
+_TORSION = {"bending stiffness": "torsion does not bend the tubes"}
+_EVEN = {"ideal joint": "passes rotation unchanged", "double Cardan joint": "centred, it passes rotation unchanged"}
+_NO_LAW = {
+    "tripod joint": "the linear equations have no tripod",
+    "double Cardan joint off centre": "the equations have no joint off centre",
+}
+_PASSIVE = {**_TORSION, **_EVEN}
+_FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
+_FORCING = {"excitation by order": _FORCES, "excitation in time": _FORCES, "transmission error": _FORCES}
+_BASE = {
+    "free start": "bent, it is judged about its own periodic motion",
+    "drive share": "belongs to lines that start free",
+    "prescribed far end": "two prescribed speeds leave a bent line nowhere to go",
+}
+_ALIGNED = "frequencies are those of the aligned line, all joints straight"
+_MODES_SAID: dict[str, Words] = {
+    "Hooke's joint": (_ALIGNED, "joint angles zero"),
+    "mesh-stiffness variation": "frequencies are those of the mean stiffness",
+    "viscous load": "damping ratios are those of the shafts alone",
+    "quadratic load": "damping ratios are those of the shafts alone",
+}
+_MODES_INERT = {
+    **_TORSION,
+    **_EVEN,
+    **_FORCING,
+    "fork offset": _ALIGNED,
+    "joint plane": _ALIGNED,
+    "load torque": "moves no linear spring; a spring with stages takes the stage that the load holds it in",
+    "drive share": "a constant torque",
+    "backlash": "the load presses the mesh together; without a load it is refused",
+}
+_UNDAMPED = "the names stand at the frequencies of the undamped line"
+_ONE_DRIVE = {
+    "double Cardan joint off centre": "the equations have no joint off centre",
+    "prescribed far end": "the nonlinear equations have one prescribed speed",
+}
+_DRIVEN = {
+    **_ONE_DRIVE,
+    "free start": "the speed follows from the torques",
+    "drive share": "belongs to lines that start free",
+}
+_NOT_EXACT = {
+    **_ONE_DRIVE,
+    **dict.fromkeys(
+        ("Hooke's joint", "joint plane", "tripod joint", "mesh-stiffness variation", "quadratic load"),
+        "the stages are then not linear with constant coefficients",
+    ),
+}
+_UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"}
+_RIGID = dict.fromkeys(
+    (
+        "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
+        "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
+        "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
+        "excitation in time", "free start", "drive share",
+    ),
+    "rotations of rigid shafts follow from joints, forks and ratios alone",
+) | {"branch": "not on the way to the output asked for"}  # fmt: skip
+_TUBES = ("tube inertia", "bending stiffness", "ratio", "gear mesh")
+_TUBE = "a tube whirls between its own joints, by its own dimensions"
+_RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a rigid pair in contact")
+_STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"
+_UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
+
+TABLE: dict[str, Row] = {
+    "natural_frequencies": _row(refused=_NO_LAW, said=_MODES_SAID, inert=_MODES_INERT),
+    "resonance_speeds": _row(
+        refused=_NO_LAW,
+        said={
+            "mesh-stiffness variation": "orders of the mesh are not named; ask stability() over speed",
+            "viscous load": "resonance speeds are those of the line without it",
+            "quadratic load": "resonance speeds are those of the line without it",
+        },
+        inert={
+            **_MODES_INERT,
+            "Hooke's joint": "the speeds are those at which a bent joint of any angle can resonate",
+            **dict.fromkeys(
+                ("damping", "loss factor", "damping ratio", "mesh damping", "damping in contact only"), _UNDAMPED
+            ),
+        },
+    ),
+    "stability": _row(
+        refused={**_NO_LAW, **_BASE},
+        said={
+            "excitation by order": "the forced response is that of the joints alone; ask periodic_response()",
+            "excitation in time": "the forced response is that of the joints alone; ask periodic_response()",
+            "transmission error": "the forced response is that of the joints alone; ask periodic_response()",
+            "mesh-stiffness variation": "the verdict is that of the mean stiffness; ask periodic_response()",
+        },
+        inert=_PASSIVE,
+    ),
+    "stability_chart": _row(
+        refused={**_NO_LAW, **_BASE},
+        said={"mesh-stiffness variation": "verdicts are those of the mean stiffness; ask periodic_response()"},
+        inert={**_TORSION, **_EVEN, **_FORCING},
+    ),
+    "stable_limit": _row(
+        refused={**_NO_LAW, **_BASE},
+        said={"mesh-stiffness variation": "the limit is that of the mean stiffness; ask periodic_response()"},
+        inert={**_TORSION, **_EVEN, **_FORCING},
+    ),
+    "speed_sweep": _row(
+        refused={**_NO_LAW, **_BASE},
+        said={
+            "excitation by order": "amplitudes are those the joints force; ask periodic_response()",
+            "excitation in time": "amplitudes are those the joints force; ask periodic_response()",
+            "transmission error": "amplitudes are those the joints force; ask periodic_response()",
+            "mesh-stiffness variation": "amplitudes are those of the mean stiffness; ask periodic_response()",
+        },
+        inert=_PASSIVE,
+    ),
+    "bending_speeds": _row(
+        refused=_NO_LAW,
+        inert={f.key: _TUBE for f in FEATURES if f.key not in (*_NO_LAW, *_TUBES)},
+    ),
+    "kinetostatics": _row(
+        refused={"prescribed far end": "the output follows from the input"},
+        said={
+            "damping": _UNDAMPED_TURN,
+            "loss factor": _UNDAMPED_TURN,
+            "damping ratio": _UNDAMPED_TURN,
+            "damping in contact only": _UNDAMPED_TURN,
+            "mesh damping": _RIGID_MESH,
+            "backlash": _RIGID_MESH,
+            "transmission error": _RIGID_MESH,
+            "mesh-stiffness variation": _RIGID_MESH,
+            "excitation by order": _STEADY,
+            "excitation in time": _STEADY,
+            "drive share": "the first element drives alone",
+        },
+        inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
+    ),
+    "phase_forks": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
+    "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
+    "simulate": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
+    "periodic_response": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
+    "run_up": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "safe_accelerations": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "lyapunov_spectrum": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "lyapunov_sweep": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "lyapunov_map": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "poincare_map": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "bifurcation_diagram": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "certify_chaos": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "periodic_branch": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "harmonic_balance": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "frequency_response": _row(refused=_DRIVEN, inert=_PASSIVE),
+    "exact_motion": _row(refused=_NOT_EXACT, inert=_UNBENT),
+    "piecewise_orbit": _row(refused=_NOT_EXACT, inert=_UNBENT),
+    "piecewise_branch": _row(refused=_NOT_EXACT, inert=_UNBENT),
+    "sweep": _row(refused=_NOT_EXACT, inert=_UNBENT),
+}
+
+NOT_ANALYSES = {
+    "report": "shows the analyses above, with what each of them says",
+    "sketch": "draws the description",
+    "sweep_speeds": "a grid of speeds for speed_sweep",
+    "exact_oscillator": "one spring with stages between two inertias as one equation; refuses every other line",
+}
+"""Public functions that take a line and need no row, and why."""
+
+MARKS = {Treatment.COUNTED: "●", Treatment.REFUSED: "✕", Treatment.SAID: "said", Treatment.INERT: "–"}
+
+
+def groups() -> list[tuple[str, ...]]:
+    """Analyses that treat every feature alike, in the order of the table."""
+    alike: dict[tuple[Treatment, ...], list[str]] = {}
+    for name, row in TABLE.items():
+        alike.setdefault(tuple(cell.treatment for cell in row.values()), []).append(name)
+    return [tuple(names) for names in alike.values()]
+
+
+def markdown() -> str:
+    """The table and its reasons, as ``docs/features.md`` prints them."""
+    found = groups()
+    numbered = [f"{i}. {', '.join(f'`{name}`' for name in names)}" for i, names in enumerate(found, start=1)]
+    head = "| feature | " + " | ".join(str(i + 1) for i in range(len(found))) + " |"
+    rows = [
+        f"| {f.key} | " + " | ".join(MARKS[TABLE[names[0]][f.key].treatment] for names in found) + " |"
+        for f in FEATURES
+    ]
+    reasons = []
+    for names in found:
+        reasons += ["", f"**{', '.join(f'`{name}`' for name in names)}**", ""]
+        by_reason: dict[tuple[str, str], list[str]] = {}
+        for key, cell in TABLE[names[0]].items():
+            if cell.treatment is not Treatment.COUNTED:
+                by_reason.setdefault((cell.treatment.value, cell.reason), []).append(key)
+        reasons += [
+            f"- {what}: {', '.join(keys)}. {why[0].upper()}{why[1:]}." for (what, why), keys in by_reason.items()
+        ]
+    return "\n".join([*numbered, "", head, "|---|" + ":-:|" * len(found), *rows, *reasons])
+
+
+if __name__ == "__main__":
+    print(markdown())

@@ -1,0 +1,156 @@
+"""What a driveline can have that an analysis may count, refuse or leave out: one list, by field of the description.
+
+``trunnion.analyses.features`` crosses it with the analyses. Every field of every element belongs to a feature (or to
+``NOT_FEATURES``, with the reason), which the tests hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed, Disk, DoubleCardanJoint
+
+Finder = Callable[[Driveline], list[str]]
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One thing that a line may have.
+
+    ``key`` names it in tables; ``fields`` are those of the description that state it, as "Disk.load_torque";
+    ``find`` gives where a line has it ("flywheel.load_torque"), by default where a field is neither empty nor zero.
+    """
+
+    key: str
+    fields: tuple[str, ...] = ()
+    find: Finder | None = None
+
+    def places(self, line: Driveline) -> tuple[str, ...]:
+        """Where ``line`` has it: "element.key", or the element alone."""
+        if self.find is not None:
+            return tuple(self.find(line))
+        return tuple(
+            f"{name}.{key}"
+            for name, element in zip(line.names, line.elements, strict=True)
+            for kind, key in (field.split(".") for field in self.fields)
+            if element.kind == kind and getattr(element, key, None)
+        )
+
+
+def _excited(by: str) -> Finder:
+    def find(line: Driveline) -> list[str]:
+        return [
+            f"{name}.excitation"
+            for name, e in zip(line.names, line.elements, strict=True)
+            if isinstance(e, Disk) and any(getattr(one, by) for one in e.excitation)
+        ]
+
+    return find
+
+
+def _off_centre(line: Driveline) -> list[str]:
+    return [
+        f"{name}.distance_ratio"
+        for name, e in zip(line.names, line.elements, strict=True)
+        if isinstance(e, DoubleCardanJoint) and e.distance_ratio
+    ]
+
+
+def _branches(line: Driveline) -> list[str]:
+    return [n for n, p, i in zip(line.names, line.parents, range(len(line.names)), strict=True) if i and p != i - 1]
+
+
+def _free(line: Driveline) -> list[str]:
+    return [] if isinstance(line.elements[0], ConstantSpeed) else [line.names[0]]
+
+
+def _prescribed_end(line: Driveline) -> list[str]:
+    return [n for n, e in zip(line.names[1:], line.elements[1:], strict=True) if isinstance(e, ConstantSpeed)]
+
+
+FEATURES = (
+    Feature(
+        "inertia", ("Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density"),
+    ),
+    Feature(
+        "stiffness",
+        ("Shaft.stiffness", "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length", "Shaft.shear_modulus"),
+    ),
+    Feature("tube inertia", ("Shaft.density",)),
+    Feature("bending stiffness", ("Shaft.young_modulus",)),
+    Feature("damping", ("Shaft.damping", "PiecewiseShaft.damping")),
+    Feature("loss factor", ("Shaft.loss_factor", "Shaft.loss_factor_frequency")),
+    Feature(
+        "damping ratio",
+        ("Driveline.damping_ratio", "Driveline.damping_ratio_frequency"),
+        lambda line: ["driveline.damping_ratio"] if line.damping_ratio else [],
+    ),
+    Feature("Hooke's joint", ("HookeJoint.angle",)),
+    Feature("fork offset", ("Shaft.fork_offset", "PiecewiseShaft.fork_offset")),
+    Feature(
+        "joint plane", ("HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "DoubleCardanJoint.plane")
+    ),
+    Feature("ideal joint", ("IdealJoint.angle",)),
+    Feature(
+        "tripod joint", ("TripodJoint.angle", "TripodJoint.radius", "TripodJoint.length", "TripodJoint.spider")
+    ),
+    Feature("double Cardan joint", ("DoubleCardanJoint.angle", "DoubleCardanJoint.yoke_length")),
+    Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",), _off_centre),
+    Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
+    Feature(
+        "gear mesh",
+        (
+            "GearPair.mesh_stiffness", "GearPair.teeth_in", "GearPair.teeth_out", "GearPair.module",
+            "GearPair.pressure_angle", "GearPair.base_radius_in", "GearPair.base_radius_out",
+        ),
+    ),
+    Feature("mesh damping", ("GearPair.mesh_damping",)),
+    Feature("backlash", ("GearPair.backlash", "GearPair.angular_backlash", "GearPair.stiffness_ratio")),
+    Feature(
+        "transmission error",
+        (
+            "GearPair.transmission_error", "TransmissionError.amplitude", "TransmissionError.order",
+            "TransmissionError.phase",
+        ),
+    ),
+    Feature(
+        "mesh-stiffness variation",
+        (
+            "GearPair.stiffness_variation", "StiffnessVariation.share", "StiffnessVariation.order",
+            "StiffnessVariation.phase",
+        ),
+    ),
+    Feature("stages", ("PiecewiseShaft.breakpoints", "PiecewiseShaft.stiffnesses")),
+    Feature("damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law")),
+    Feature("load torque", ("Disk.load_torque",)),
+    Feature("drive share", ("Disk.drive_share",)),
+    Feature("viscous load", ("Disk.viscous_load",)),
+    Feature("quadratic load", ("Disk.quadratic_load",)),
+    Feature("excitation by order", ("Disk.excitation", "Excitation.order", "Excitation.amplitude"), _excited("order")),
+    Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited("frequency")),
+    Feature("branch", ("Element.after",), _branches),
+    Feature("free start", (), _free),
+    Feature("prescribed far end", (), _prescribed_end),
+)  # fmt: skip
+
+NOT_FEATURES = {
+    "Element.name": "a label",
+    "Driveline.elements": "the elements themselves",
+    "Driveline.name": "a label",
+    "Driveline.description": "a label",
+    "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Operation.speed": "the default of every speed asked for",
+    "Operation.speed_range": "the default range of reports",
+    "Operation.angle_range": "the default range of charts in reports",
+    "Operation.speed_unit": "how speeds are read and printed",
+    "Operation.load_cases": "line.with_load(case) puts a case's torques into the line",
+    "LoadCase.name": "a label",
+    "LoadCase.loads": "line.with_load(case) puts them into load_torque",
+}
+
+
+def feature(key: str) -> Feature:
+    """The feature called ``key``."""
+    return next(f for f in FEATURES if f.key == key)

@@ -1,0 +1,164 @@
+"""A line with and without each feature of ``trunnion.driveline.features``.
+
+The lines that features are put into have a Shaft "front", a Disk "hub", a shaft "rear" and a Disk "load".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import trunnion as tn
+
+Change = Callable[[tn.Driveline], tn.Driveline]
+
+
+def bent() -> tn.Driveline:
+    """Two Hooke's joints."""
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(name="drive"),
+            tn.HookeJoint(angle=0.2, name="joint"),
+            tn.Shaft(stiffness=1e4, damping=5, name="front"),
+            tn.Disk(inertia=0.1, name="hub"),
+            tn.HookeJoint(angle=0.15, plane=0.3, name="joint 2"),
+            tn.Shaft(stiffness=1e4, damping=5, name="rear"),
+            tn.Disk(inertia=0.2, load_torque=20, name="load"),
+        ]
+    )
+
+
+def straight() -> tn.Driveline:
+    """A shaft with stages and an excitation, for what is exact stage by stage."""
+    stages = [(5e3, 0.001), (1e4, None)]
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(name="drive"),
+            tn.Shaft(stiffness=1e4, damping=5, name="front"),
+            tn.Disk(inertia=0.1, name="hub"),
+            tn.PiecewiseShaft.symmetric(stages, damping=5, name="rear"),
+            tn.Disk(inertia=0.2, load_torque=20, excitation=[{"order": 1, "amplitude": 3.0}], name="load"),
+        ]
+    )
+
+
+def with_tube() -> tn.Driveline:
+    """A steel tube behind the hub."""
+    steel = {"shear_modulus": 8e10, "density": 7850.0}
+    return swap(bent(), "rear", tn.Shaft(outer_diameter=0.05, length=0.5, damping=5, name="rear", **steel))
+
+
+def same(line: tn.Driveline) -> tn.Driveline:
+    return line
+
+
+def put(name: str, **changes: object) -> Change:
+    return lambda line: line.replace(name, **changes)
+
+
+def swap(line: tn.Driveline, name: str, *new: tn.Driveline) -> tn.Driveline:
+    place = line.index(name)
+    return tn.Driveline([*line.elements[:place], *new, *line.elements[place + 1 :]])
+
+
+def front(shaft: tn.Shaft | tn.PiecewiseShaft) -> Change:
+    return lambda line: swap(line, "front", shaft)
+
+
+def behind(name: str, *new: object) -> Change:
+    def change(line: tn.Driveline) -> tn.Driveline:
+        place = line.index(name) + 1
+        return tn.Driveline([*line.elements[:place], *new, *line.elements[place:]])
+
+    return change
+
+
+def meshed(**more: object) -> Change:
+    gears = {"mesh_damping": 500.0, "name": "mesh"} | more
+    pair = tn.GearPair(teeth_in=25, teeth_out=40, module="3 mm", mesh_stiffness=1e8, **gears)
+    return behind("hub", pair, tn.Disk(inertia=0.05, name="pinion"))
+
+
+def tube(**more: float) -> Change:
+    return front(tn.Shaft(outer_diameter=0.05, length=0.5, shear_modulus=8e10, density=800.0, name="front", **more))
+
+
+def staged(**more: object) -> Change:
+    return front(tn.PiecewiseShaft.symmetric([(5e3, 0.01), (1e4, None)], damping=5, name="front", **more))
+
+
+def jointed(joint: object) -> Change:
+    """Behind the hub, an element of its own for the joint to hang on."""
+    return behind("front", tn.Disk(inertia=0.05, name="carrier"), joint, tn.Shaft(stiffness=2e4, name="middle"))
+
+
+def undamped(ratio: float | None) -> Change:
+    def change(line: tn.Driveline) -> tn.Driveline:
+        elements = [type(e)(**{k: v for k, v in e.stated.items() if k != "damping"}) for e in line.elements]
+        return tn.Driveline(elements, damping_ratio=ratio)
+
+    return change
+
+
+def free(line: tn.Driveline) -> tn.Driveline:
+    return swap(line, "drive", tn.Disk(inertia=0.3, drive_share=1.0, name="engine"))
+
+
+def branched(line: tn.Driveline) -> tn.Driveline:
+    """A pump beside the hub; the last element stays the last."""
+    place = line.index("hub") + 1
+    side = (tn.Shaft(stiffness=1e4, damping=5, name="side"), tn.Disk(inertia=0.05, name="pump"))
+    onward = line.elements[place]
+    return tn.Driveline(
+        [
+            *line.elements[:place],
+            *side,
+            type(onward)(**{**onward.stated, "after": "hub"}),
+            *line.elements[place + 1 :],
+        ]
+    )
+
+
+END = (tn.Shaft(stiffness=1e4, damping=5, name="end"), tn.ConstantSpeed(name="far"))
+STRAIGHT_JOINT = jointed(tn.IdealJoint(name="extra"))
+CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
+
+CHANGES: dict[str, tuple[Change, Change]] = {
+    "inertia": (same, put("hub", inertia=0.15)),
+    "stiffness": (same, put("front", stiffness=2e4)),
+    "tube inertia": (tube(), lambda line: tube()(line).replace("front", density=7850.0)),
+    "bending stiffness": (tube(), tube(young_modulus=1e11)),
+    "damping": (same, put("front", damping=9.0)),
+    "loss factor": (
+        put("front", damping=None),
+        put("front", damping=None, loss_factor=0.1, loss_factor_frequency=200.0),
+    ),
+    "damping ratio": (undamped(0.02), undamped(0.05)),
+    "Hooke's joint": (STRAIGHT_JOINT, jointed(tn.HookeJoint(angle=0.3, name="extra"))),
+    "fork offset": (same, put("front", fork_offset=0.5)),
+    "joint plane": (
+        jointed(tn.HookeJoint(angle=0.3, name="extra")), jointed(tn.HookeJoint(angle=0.3, plane=1.0, name="extra"))
+    ),
+    "ideal joint": (STRAIGHT_JOINT, jointed(tn.IdealJoint(angle=0.3, name="extra"))),
+    "tripod joint": (STRAIGHT_JOINT, jointed(tn.TripodJoint(angle=0.3, radius=0.05, length=0.5, name="extra"))),
+    "double Cardan joint": (STRAIGHT_JOINT, CENTRED),
+    "double Cardan joint off centre": (
+        CENTRED, jointed(tn.DoubleCardanJoint(angle=0.3, distance_ratio=1.3, name="extra"))
+    ),
+    "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
+    "gear mesh": (same, meshed()),
+    "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
+    "backlash": (meshed(), meshed(backlash=1e-4)),
+    "transmission error": (meshed(), meshed(transmission_error=[{"amplitude": 1e-5}])),
+    "mesh-stiffness variation": (meshed(), meshed(stiffness_variation=[{"share": 0.2}])),
+    "stages": (same, staged()),
+    "damping in contact only": (staged(), staged(damping_law="in contact")),
+    "load torque": (same, put("load", load_torque=80.0)),
+    "viscous load": (same, put("load", viscous_load=0.5)),
+    "quadratic load": (same, put("load", quadratic_load=0.005)),
+    "excitation by order": (same, put("load", excitation=[{"order": 2, "amplitude": 5.0}])),
+    "excitation in time": (same, put("load", excitation=[{"frequency": 100.0, "amplitude": 9.0}])),
+    "branch": (same, branched),
+    "free start": (same, free),
+    "drive share": (free, lambda line: free(line).replace("hub", drive_share=0.5)),
+    "prescribed far end": (same, lambda line: tn.Driveline([*line.elements, *END])),
+}  # fmt: skip

@@ -1,0 +1,227 @@
+"""Nothing is silently left out: every cell of ``trunnion.analyses.features`` is seen to be true."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import warnings
+from functools import cache
+from pathlib import Path
+
+import feature_lines
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.features import NOT_ANALYSES, TABLE, Treatment, left_out, markdown
+from trunnion.driveline.elements import Element
+from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.features import FEATURES, NOT_FEATURES
+from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.operation import LoadCase, Operation
+
+SPEED = 100.0
+RANGE = (100.0, 101.0)
+
+RUN = {
+    "natural_frequencies": tn.natural_frequencies,
+    "resonance_speeds": tn.resonance_speeds,
+    "stability": lambda line: tn.stability(line, SPEED),
+    "stability_chart": lambda line: tn.stability_chart(line, ("speed", 300, 330, 3), ("load.inertia", 0.15, 0.25, 3)),
+    "stable_limit": lambda line: tn.stable_limit(line, "joint 2.angle", [145.0, 150.0, 460.0], scan=20, high=1.4),
+    "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
+    "bending_speeds": tn.bending_speeds,
+    "kinetostatics": lambda line: tn.kinetostatics(line, SPEED, rigid=False, inertia=True, points=16),
+    "phase_forks": tn.phase_forks,
+    "assembly_sensitivity": tn.assembly_sensitivity,
+    "simulate": lambda line: tn.simulate(line, 0.05, speed=SPEED),
+    "periodic_response": lambda line: tn.periodic_response(line, SPEED),
+    "periodic_branch": lambda line: tn.periodic_branch(line, "speed", *RANGE, longest_step=0.5),
+    "harmonic_balance": lambda line: tn.harmonic_balance(line, "speed", *RANGE, longest_step=0.5),
+    "frequency_response": lambda line: tn.frequency_response(line, *RANGE, longest_step=0.5),
+    "run_up": lambda line: tn.run_up(line, 100, 110, acceleration=200, steady=2),
+    "safe_accelerations": lambda line: tn.safe_accelerations(
+        line, 100, 110, limit=1000.0, accelerations=(100, 200), points=2
+    ),
+    "lyapunov_spectrum": lambda line: tn.lyapunov_spectrum(line, 20, speed=SPEED, starts=1, transient=5),
+    "lyapunov_sweep": lambda line: tn.lyapunov_sweep(line, "load.inertia", [0.2], periods=20, transient=5, speed=SPEED),
+    "lyapunov_map": lambda line: tn.lyapunov_map(
+        line, ("load.inertia", 0.2, 0.21, 2), ("load.load_torque", 20, 21, 2), periods=10, transient=2, speed=SPEED
+    ),
+    "poincare_map": lambda line: tn.poincare_map(line, 10, speed=SPEED, transient=5),
+    "bifurcation_diagram": lambda line: tn.bifurcation_diagram(
+        line, "load.inertia", [0.2], points=8, transient=5, speed=SPEED
+    ),
+    "certify_chaos": lambda line: tn.certify_chaos(
+        line, 20, speed=SPEED, starts=1, points=10, transient=5, sweep=False
+    ),
+    "exact_motion": lambda line: tn.exact_motion(line, 0.05, speed=SPEED),
+    "piecewise_orbit": lambda line: tn.piecewise_orbit(line, speed=SPEED),
+    "piecewise_branch": lambda line: tn.piecewise_branch(line, *RANGE, longest_step=0.5),
+    "sweep": lambda line: tn.sweep(line, [99.0, 100.0]),
+}
+BASE = {
+    **dict.fromkeys(("exact_motion", "piecewise_orbit", "piecewise_branch", "sweep"), feature_lines.straight),
+    "bending_speeds": feature_lines.with_tube,
+}
+QUICK = {
+    "phase_forks": ("Hooke's joint", "fork offset", "load torque", "branch"),
+    "stability_chart": ("damping", "load torque", "excitation by order", "viscous load"),
+    "stable_limit": ("load torque", "free start"),
+    "periodic_response": ("load torque", "prescribed far end"),
+    "periodic_branch": ("viscous load", "free start"),
+    "harmonic_balance": ("excitation by order", "free start"),
+    "frequency_response": ("load torque", "free start"),
+    "run_up": ("load torque",),
+    "safe_accelerations": ("load torque",),
+    "lyapunov_spectrum": ("load torque", "prescribed far end"),
+    "lyapunov_sweep": ("damping", "prescribed far end"),
+    "lyapunov_map": ("damping", "prescribed far end"),
+    "poincare_map": ("excitation by order", "prescribed far end"),
+    "bifurcation_diagram": ("quadratic load", "prescribed far end"),
+    "certify_chaos": ("load torque", "prescribed far end"),
+    "piecewise_orbit": ("transmission error", "ideal joint", "quadratic load"),
+    "piecewise_branch": ("transmission error", "ideal joint", "quadratic load"),
+    "sweep": ("transmission error", "ideal joint", "quadratic load"),
+}
+"""Features seen in the quick run, where an analysis takes long; the others are seen in the slow one."""
+
+
+def cells():
+    for analysis, row in TABLE.items():
+        for key in row:
+            slow = key not in QUICK.get(analysis, (key,))
+            yield pytest.param(analysis, key, marks=[pytest.mark.slow] if slow else [], id=f"{analysis}-{key}")
+
+
+@dataclasses.dataclass
+class Answer:
+    refusal: str
+    text: str
+    numbers: dict[str, np.ndarray]
+
+
+@cache
+def answer(analysis: str, written: str) -> Answer:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        line = tn.loads(written)
+        try:
+            result = RUN[analysis](line)
+        except tn.InputError as error:
+            return Answer(str(error), "", {})
+    said = [str(result), *map(str, getattr(result, "findings", ())), *(str(w.message) for w in caught)]
+    return Answer("", "\n".join(said), numbers(result))
+
+
+SETTINGS = ("error", "defect", "residual", "seconds", "steps", "evaluations", "offsets", "line")
+
+
+def numbers(result: object, depth: int = 0) -> dict[str, np.ndarray]:
+    """The numbers of a result by name: of its dataset, or of its fields."""
+    data = getattr(result, "data", None)
+    if hasattr(data, "data_vars"):
+        named = {k: np.asarray(v.values) for k, v in {**data.data_vars, **data.coords}.items()}
+        return {k: v for k, v in named.items() if v.dtype.kind in "fcib" and not any(s in k for s in SETTINGS)}
+    if isinstance(result, int | float | complex | np.ndarray):
+        return {"": np.asarray(result)}
+    parts: dict[str, object] = {}
+    if isinstance(result, tuple | list):
+        parts = {str(i): part for i, part in enumerate(result)}
+    elif dataclasses.is_dataclass(result) and depth < 3:
+        parts = {f.name: getattr(result, f.name) for f in dataclasses.fields(result)}
+    return {
+        f"{k}.{name}": value
+        for k, part in parts.items()
+        if not any(s in k for s in SETTINGS)
+        for name, value in numbers(part, depth + 1).items()
+        if value.dtype.kind in "fcib"
+    }
+
+
+def differ(one: dict[str, np.ndarray], other: dict[str, np.ndarray], tolerance: float) -> list[str]:
+    """Names of the numbers that differ by more than ``tolerance`` of their size."""
+    if one.keys() != other.keys():
+        return sorted(one.keys() ^ other.keys())
+    found = []
+    for name, a in one.items():
+        b = other[name]
+        if a.shape != b.shape:
+            found.append(name)
+            continue
+        finite = np.isfinite(a) & np.isfinite(b)
+        size = max(np.abs(a[finite]).max(initial=0.0), np.abs(b[finite]).max(initial=0.0))
+        near = np.isclose(a, b, rtol=0, atol=tolerance * size, equal_nan=True)
+        if not near.all():
+            found.append(name)
+    return found
+
+
+@pytest.mark.parametrize(("analysis", "key"), list(cells()))
+def test_cell(analysis: str, key: str) -> None:
+    cell = TABLE[analysis][key]
+    line = BASE.get(analysis, feature_lines.bent)()
+    without, with_it = (tn.dumps(change(line)) for change in feature_lines.CHANGES[key])
+    after = answer(analysis, with_it)
+    if cell.treatment is Treatment.REFUSED:
+        assert "; " in after.refusal and "\n" not in after.refusal, f"not refused with a remedy: {after.refusal!r}"
+        return
+    assert not after.refusal, after.refusal
+    before = answer(analysis, without)
+    assert before.numbers, "nothing to compare"
+    if cell.treatment is Treatment.COUNTED:
+        assert differ(before.numbers, after.numbers, 1e-7), "nothing changes: count it, or write why it cannot matter"
+        return
+    changed = differ(before.numbers, after.numbers, 1e-6)
+    assert not changed, f"changes {changed}: it is counted"
+    if cell.treatment is Treatment.SAID:
+        said = [str(f) for f in left_out(analysis, tn.loads(with_it))]
+        words = [cell.quote] if cell.quote else [s for s in said if cell.reason in s]
+        assert words and words[0] in after.text, f"not said: {words}"
+
+
+def test_every_analysis_has_a_row() -> None:
+    """Every public function that takes a driveline is in the table, or has a reason not to be."""
+    public = {name: getattr(tn, name) for name in tn.__all__ if name != "__version__"}
+    taking = {
+        name
+        for name, one in public.items()
+        if inspect.isfunction(one)
+        and one.__module__.startswith(
+            ("trunnion.analyses", "trunnion.equations", "trunnion.reporting", "trunnion.plots")
+        )
+        and any("Driveline" in str(p.annotation) for p in inspect.signature(one).parameters.values())
+    }
+    assert taking == set(TABLE) | set(NOT_ANALYSES)
+    assert set(TABLE) == set(RUN)
+
+
+def test_every_field_belongs_to_a_feature() -> None:
+    models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation]
+    models += [tn.Driveline, Operation, LoadCase]
+    common = set(Element.model_fields)
+    fields = {
+        f"{model.__name__}.{key}"
+        for model in models
+        for key in model.model_fields
+        if model is Element or not (issubclass(model, Element) and key in common)
+    }
+    known = [field for one in FEATURES for field in one.fields]
+    assert len(known) == len(set(known))
+    assert fields == set(known) | set(NOT_FEATURES)
+    assert {one.key for one in FEATURES} == set(feature_lines.CHANGES)
+
+
+@pytest.mark.parametrize("one", FEATURES, ids=lambda one: one.key)
+def test_places(one) -> None:
+    """A feature is found where it is, and named."""
+    with_it = feature_lines.CHANGES[one.key][1](feature_lines.bent())
+    places = one.places(with_it)
+    assert places
+    assert all(place.rpartition(".")[0] in (*with_it.names, "driveline", "") for place in places)
+
+
+def test_the_page_prints_the_table() -> None:
+    """``python -m trunnion.analyses.features`` prints what belongs below the page's first lines."""
+    page = (Path(__file__).parents[2] / "docs" / "features.md").read_text(encoding="utf-8")
+    assert page.endswith(f"\n{markdown()}\n")
