@@ -15,6 +15,7 @@ ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
 LAYERS = (
     {"errors", "_version"},
+    {"writing"},
     {"numerics"},
     {"laws"},
     {"driveline", "systems"},

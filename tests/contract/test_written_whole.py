@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import pytest
 
-from trunnion.errors import InputError
-from trunnion.results.files import folder_written_whole, written_whole
+from trunnion.errors import ComputationError, InputError
+from trunnion.writing import folder_written_whole, written_whole
 
 
 def everything(folder):
@@ -46,3 +50,46 @@ def test_folder_that_is_a_file(tmp_path):
     with pytest.raises(InputError, match="cannot be made"), folder_written_whole(tmp_path / "there"):
         pass
     assert everything(tmp_path) == ["there"]
+
+
+def test_what_a_killed_run_left_is_swept_and_what_others_write_is_not(tmp_path):
+    with written_whole(tmp_path / "one.txt") as temporary:
+        own = temporary.name
+        with folder_written_whole(tmp_path / "b") as folder:
+            assert temporary.exists() and folder.exists()
+    assert everything(tmp_path) == ["b", "one.txt"]
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    host = own.removeprefix(".trunnion-").partition("-")[0]
+    (tmp_path / f".trunnion-{host}-{gone.pid}-aaaaaaaa.nc").write_text("half")
+    (tmp_path / f".trunnion-{host}-{gone.pid}-bbbbbbbb").mkdir()
+    (tmp_path / f".trunnion-{host}-{gone.pid}-bbbbbbbb" / "part").write_text("half")
+    (tmp_path / f".trunnion-{host}-{os.getppid()}-cccccccc.nc").write_text("somebody is at it")
+    (tmp_path / f".trunnion-00000000-{gone.pid}-dddddddd.nc").write_text("elsewhere")
+    (tmp_path / f".trunnion-00000000-{gone.pid}-eeeeeeee.nc").write_text("long ago")
+    os.utime(tmp_path / f".trunnion-00000000-{gone.pid}-eeeeeeee.nc", (0, 0))
+    (tmp_path / ".trunnion-notes").write_text("the user's own")
+    with written_whole(tmp_path / "two.txt") as temporary:
+        temporary.write_text("2")
+    kept = [name.rpartition("-")[2] for name in everything(tmp_path) if name.startswith(".")]
+    assert sorted(kept) == ["cccccccc.nc", "dddddddd.nc", "notes"]
+
+
+def test_a_link_keeps_pointing(tmp_path):
+    (tmp_path / "real.txt").write_text("old")
+    (tmp_path / "link.txt").symlink_to("real.txt")
+    with written_whole(tmp_path / "link.txt") as temporary:
+        temporary.write_text("new")
+    assert (tmp_path / "link.txt").is_symlink() and (tmp_path / "real.txt").read_text() == "new"
+
+
+@pytest.mark.parametrize("whole", [written_whole, folder_written_whole])
+def test_a_full_disk_is_said_about_the_file_asked_for(tmp_path, whole):
+    (tmp_path / "old").mkdir()
+    target = tmp_path / "old" / "one.nc"
+    if whole is written_whole:
+        target.write_text("old")
+    with pytest.raises(ComputationError, match=r"one\.nc: cannot be written \(No space left on device\)"):
+        with whole(target) as temporary:
+            raise OSError(28, "No space left on device", str(temporary))
+    assert everything(tmp_path) == ["old", "old/one.nc"] if whole is written_whole else ["old"]

@@ -276,7 +276,7 @@ def _check_endings(to: list[Path] | None) -> None:
 
 def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
     """The files asked for, or a picture and the data in the default folder."""
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     if to:
         return [_write(path, data, draw) for path in to]

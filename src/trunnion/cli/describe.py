@@ -67,7 +67,7 @@ def new(
 
 
 def _write_new(target: Path, text: str, force: bool) -> None:
-    from trunnion.results.files import written_whole
+    from trunnion.writing import written_whole
 
     if target.exists() and not target.is_dir() and not force:
         remedy = "choose another name, or replace it with --force"

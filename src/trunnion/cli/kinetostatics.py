@@ -191,7 +191,7 @@ def _files(result: Kinetostatics, stem: str, unit: str) -> list[Path]:
     from trunnion.plots.kinetostatics import draw_polar
     from trunnion.plots.layout import sketch
     from trunnion.plots.style import save
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     with folder_written_whole(DEFAULT_FOLDER) as temporary:
         base = temporary / f"{stem}-kinetostatics"
@@ -210,10 +210,9 @@ def _write(result: Kinetostatics, path: Path, unit: str) -> Path:
     if ending == "csv":
         result.to_csv(path)
     elif ending == "nc":
-        from trunnion.results.files import written_whole
+        from trunnion.results.files import save_dataset
 
-        with written_whole(path) as temporary:
-            result.data.to_netcdf(temporary, engine="h5netcdf")
+        save_dataset(result.data, path)
     else:
         from trunnion.plots.style import save
 

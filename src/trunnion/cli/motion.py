@@ -262,7 +262,7 @@ def _check(to: list[Path] | None) -> None:
 
 def _written(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
     """The files asked for, or a picture and the data in the default folder."""
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     if to:
         return [_write(path, data, draw) for path in to]
@@ -275,12 +275,12 @@ def _written(to: list[Path] | None, stem: str, what: str, data: Any, draw: Calla
 
 def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
     from trunnion.plots.style import save
-    from trunnion.results.files import written_whole
+    from trunnion.results.files import save_dataset
+    from trunnion.writing import written_whole
 
     ending = path.suffix.removeprefix(".").lower()
     if ending == "nc":
-        with written_whole(path) as temporary:
-            data.to_netcdf(temporary, engine="h5netcdf")
+        save_dataset(data, path)
     elif ending == "csv":
         with written_whole(path) as temporary:
             _write_table(temporary, data)

@@ -329,7 +329,7 @@ def _check(to: list[Path] | None) -> None:
 
 
 def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     if to:
         return [_write(path, data, draw) for path in to]
@@ -342,11 +342,10 @@ def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callabl
 
 def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
     from trunnion.plots.style import save
-    from trunnion.results.files import written_whole
+    from trunnion.results.files import save_dataset
 
     if path.suffix.lower() == ".nc":
-        with written_whole(path) as temporary:
-            data.to_netcdf(temporary, engine="h5netcdf")
+        save_dataset(data, path)
     else:
         save(draw().figure.figure, path)
     return path

@@ -45,7 +45,7 @@ def analyze(
     from trunnion.cli.report import overview_json, print_overview, print_written
     from trunnion.reporting import report
     from trunnion.reporting.overview import overview
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     check_folder(folder)
     with output.progress("stability chart") as advance:
@@ -124,7 +124,7 @@ def stability_chart(
     from trunnion.cli.files import chart_files, check_folder, check_outputs, write_chart
     from trunnion.cli.report import chart_json, chart_text, print_written
     from trunnion.equations.coefficients import assemble
-    from trunnion.results.files import folder_written_whole
+    from trunnion.writing import folder_written_whole
 
     assembly = assemble(line)
     across = read_axis(x, assembly, unit, nx, "--x")

@@ -36,6 +36,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
 from trunnion.errors import InputError, InputRemark, problems_of, short
+from trunnion.writing import written_whole
 
 FORMAT = 1
 LARGEST_FILE = 4_000_000
@@ -95,20 +96,14 @@ def dumps(line: Driveline) -> str:
 
 def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
     """Write `line` to a TOML file; the file appears whole or stays as it was."""
-    target = Path(path)
-    if target.is_dir():
-        raise InputError("is a folder", key=str(target), remedy="name a file in it")
-    target = Path(os.path.realpath(target))  # a link keeps pointing at what it points at
-    draft = target.with_name(f".{target.name}.{os.getpid()}.part")
+    if Path(path).is_dir():
+        raise InputError("is a folder", key=str(path), remedy="name a file in it")
     try:
-        try:
-            draft.write_text(dumps(line), encoding="utf-8", newline="\n")
-            os.replace(draft, target)
-        finally:
-            draft.unlink(missing_ok=True)
-    except OSError as error:
+        with written_whole(path) as temporary:
+            temporary.write_text(dumps(line), encoding="utf-8", newline="\n")
+    except InputError as error:
         remedy = "check that the folder exists and that you may write there"
-        raise InputError(f"cannot be written ({error.strerror})", key=str(path), remedy=remedy) from None
+        raise InputError(error.problem, key=str(path), remedy=remedy) from None
 
 
 def _read(path: Path) -> str:

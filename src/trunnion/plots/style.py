@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.errors import InputError
-from trunnion.results.files import written_whole
+from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,8 +17,8 @@ from trunnion.reporting.overview import CHART_POINTS, Overview, overview
 from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
-from trunnion.results.files import written_whole
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.writing import written_whole
 
 
 @dataclass(frozen=True)

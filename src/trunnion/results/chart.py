@@ -19,9 +19,10 @@ from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.drawing import drawing
-from trunnion.results.files import written_whole
+from trunnion.results.files import read_dataset, save_dataset
 from trunnion.results.units import with_unit
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
+from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Resample = Callable[[Array, Array], tuple[Array, Array, Complex, NDArray[np.int8]]]
-FORMAT = "trunnion stability chart 2"
+FORMAT = "trunnion stability chart 3"
 
 
 @dataclass(frozen=True)
@@ -205,8 +206,7 @@ class StabilityChart:
             extra["patch_coefficients"] = (("patch", "quantity", "degree_v", "degree_u"), _stacked(patches))
             errors = np.stack([p.error for p in patches])
             extra["patch_error"] = (("patch", "quantity", "block_v", "block_u"), errors)
-        with written_whole(path) as temporary:
-            self.data.assign(extra).to_netcdf(temporary, engine="h5netcdf")
+        save_dataset(self.data.assign(extra), path)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per point: x, y, spectral radius, error estimate, verdict."""
@@ -266,18 +266,15 @@ class StabilityChart:
 
 def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
     """Read what ``StabilityChart.save`` wrote, without the means to integrate new points."""
-    import xarray as xr
-
+    data = read_dataset(path, FORMAT)
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            data = opened.load()
-    except FileNotFoundError:
-        raise InputError("does not exist", key="chart", value=str(path), remedy="check the path") from None
-    except (OSError, ValueError):
-        raise InputError("is not a netCDF file", key="chart", value=str(path), remedy="give a saved chart") from None
-    if data.attrs.get("format") != FORMAT:
-        remedy = f'it must say format = "{FORMAT}"; compute it again'
-        raise InputError("is not a stability chart of this version", key="chart", value=str(path), remedy=remedy)
+        return _chart_of(data)
+    except (KeyError, ValueError, TypeError, AttributeError):  # of another hand: parts are missing or misshapen
+        problem = "is no whole stability chart"
+        raise InputError(problem, key=str(path), remedy="give a saved chart, or compute it again") from None
+
+
+def _chart_of(data: xr.Dataset) -> StabilityChart:
     check = json.loads(data.attrs["spot_check"])
     speed = float(data.attrs["speed"])
     text = data.attrs["driveline"]

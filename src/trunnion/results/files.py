@@ -1,82 +1,95 @@
-"""Writing results so that nothing is ever half-written."""
+"""Datasets as netCDF-4 files that know whether they are whole.
+
+A file is made in memory, because HDF5 does not survive a disk that fills, and ends in a line with the SHA-256 of
+all bytes before it. Readers of netCDF and HDF5 pass over that line. It is checked before HDF5 sees the file:
+damaged structures can crash it.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import io
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING
 
+from trunnion._version import __version__
 from trunnion.errors import InputError
+from trunnion.writing import written_whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMAT_VERSION = 1
+"""Of what all files have in common; the attribute ``format`` tells kinds of results apart."""
+_LABEL = b"\ntrunnion sha256 "
+_TAIL = len(_LABEL) + 64 + 1
 
 
-@contextmanager
-def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside ``path`` to write to; renamed to it on success, removed on failure.
-
-    Raises
-    ------
-    InputError : the folder does not exist or cannot be written, or ``path`` is a folder.
-    """
-    target = Path(path)
-    if target.is_dir():
-        raise InputError("is a folder", key="output", value=str(target), remedy="give a file name")
-    if not target.parent.is_dir():
-        remedy = f"create the folder {target.parent}"
-        raise InputError("cannot be written, its folder does not exist", key="output", value=str(target), remedy=remedy)
-    try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-    except OSError as error:
-        raise InputError(
-            f"cannot be written: {error.strerror}",
-            key="output",
-            value=str(target),
-            remedy="choose another folder",
-        ) from None
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        yield temporary
-        mask = os.umask(0)
-        os.umask(mask)
-        temporary.chmod(0o666 & ~mask)
-        os.replace(temporary, target)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-@contextmanager
-def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary folder to write several files to; they move into ``folder`` together on success.
-
-    On failure, also on Ctrl-C, nothing is left: neither ``folder`` if it was not there nor any of the files.
+def save_dataset(data: xr.Dataset, path: str | os.PathLike[str]) -> None:
+    """Write ``data`` as netCDF-4; an existing file is replaced only when all is written.
 
     Raises
     ------
-    InputError : ``folder`` cannot be made.
+    InputError : the place cannot be written.
+    ComputationError : the disk is full or fails.
     """
-    target = Path(folder)
-    nearest = next(parent for parent in target.absolute().parents if parent.is_dir())
-    try:
-        temporary = Path(tempfile.mkdtemp(dir=nearest, prefix=f".{target.name}-"))
-    except OSError as error:
-        _cannot_be_made(target, error)
-    try:
-        yield temporary
-        try:
-            target.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            _cannot_be_made(target, error)
-        for written in sorted(temporary.iterdir()):
-            os.replace(written, target / written.name)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    content = dataset_bytes(data)
+    with written_whole(path) as temporary:
+        temporary.write_bytes(content)
 
 
-def _cannot_be_made(folder: Path, error: OSError) -> NoReturn:
-    raise InputError(
-        f"cannot be made: {error.strerror}", key="output", value=str(folder), remedy="choose another folder"
-    ) from None
+def dataset_bytes(data: xr.Dataset) -> bytes:
+    """What ``save_dataset`` writes."""
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    whole = data.assign_attrs(format_version=FORMAT_VERSION, trunnion=__version__)
+    stream = io.BytesIO()
+    with h5netcdf.File(stream, "w") as file:
+        whole.dump_to_store(H5NetCDFStore(file))
+    content = stream.getvalue()
+    return content + _LABEL + hashlib.sha256(content).hexdigest().encode() + b"\n"
+
+
+def read_dataset(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
+    """Read a dataset whose attribute ``format`` is ``kind``.
+
+    Raises
+    ------
+    InputError : there is no such file, it is damaged, from elsewhere, of another kind or of a later version.
+    """
+    content = _whole(path)
+    import xarray as xr
+
+    try:
+        data = xr.load_dataset(io.BytesIO(content), engine="h5netcdf")
+    except Exception:  # the bytes are those that were written, so they are no dataset: xarray has many errors for it
+        raise _refusal(path, "is not a netCDF file") from None
+    if data.attrs.get("format_version") != FORMAT_VERSION:
+        raise _refusal(path, "is of another version of the format", data.attrs.get("format_version"))
+    if data.attrs.get("format") != kind:
+        raise _refusal(path, f'is no "{kind}"', data.attrs.get("format"))
+    return data
+
+
+def _whole(path: str | os.PathLike[str]) -> bytes:
+    """The bytes before the checksum, once it holds."""
+    try:
+        content = Path(path).read_bytes()
+    except FileNotFoundError:
+        raise InputError("does not exist", key=str(path), remedy="check the path") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "no name of a file"
+        raise InputError(f"cannot be read ({reason})", key=str(path), remedy="check the path") from None
+    body, tail = content[:-_TAIL], content[-_TAIL:]
+    if not tail.startswith(_LABEL):
+        raise _refusal(path, "is not a whole file of this program: it does not end in a checksum")
+    if tail[len(_LABEL) : -1] != hashlib.sha256(body).hexdigest().encode():
+        raise _refusal(path, "is damaged: its content does not fit its checksum")
+    return body
+
+
+def _refusal(path: str | os.PathLike[str], problem: str, found: object = None) -> InputError:
+    said = "" if found is None else f" (it says {str(found)[:60]!r})"
+    return InputError(f"{problem}{said}", key=str(path), remedy="give a file this program saved, or compute it again")

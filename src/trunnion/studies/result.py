@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.results.chart import StabilityChart
-from trunnion.results.files import folder_written_whole
+from trunnion.writing import folder_written_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,8 +15,8 @@ from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, ex
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.driveline import Driveline
 from trunnion.results.drawing import drawing
-from trunnion.results.files import written_whole
 from trunnion.results.finding import Finding
+from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
