@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     )
     from trunnion.analyses.linear.bending import bending_speeds
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+    from trunnion.analyses.linear.order_response import order_response
     from trunnion.analyses.linear.resonance_speeds import resonance_speeds
     from trunnion.analyses.linear.speed_sweep import speed_sweep, sweep_speeds
     from trunnion.analyses.linear.stability import stability
@@ -139,6 +140,7 @@ _HOME = {
     "stable_limit": "trunnion.analyses.charts.stable_limit",
     "speed_sweep": "trunnion.analyses.linear.speed_sweep",
     "sweep_speeds": "trunnion.analyses.linear.speed_sweep",
+    "order_response": "trunnion.analyses.linear.order_response",
     "bending_speeds": "trunnion.analyses.linear.bending",
     "harmonic_balance": "trunnion.analyses.orbits.harmonic_balance",
     "kinetostatics": "trunnion.analyses.kinetostatics",

@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+import trunnion as tn
 from trunnion.driveline import (
     ConstantSpeed,
     Disk,
@@ -114,9 +115,33 @@ PYTHON = [
     (lambda: Shaft(**TUBE, density=-1), "Shaft.density = -1: must not be negative", "7850 kg/m^3"),
     (lambda: Shaft(**TUBE, young_modulus=0), "Shaft.young_modulus = 0: must be positive", "GPa"),
     (
-        lambda: Shaft(stiffness=1, loss_factor=0.02),
-        "Shaft.loss_factor_frequency: is missing beside loss_factor",
-        '"50 Hz"',
+        lambda: tn.stability(line(ConstantSpeed(), Shaft(stiffness=1, loss_factor=0.02), Disk(inertia=1)), 10.0),
+        "Shaft 1.loss_factor = 0.02: holds at all frequencies, which equations in time do not have",
+        'write loss_factor_frequency = "50 Hz"',
+    ),
+    (
+        lambda: tn.periodic_response(
+            line(ConstantSpeed(), Shaft(stiffness=1, loss_factor=0.02), Disk(inertia=1)), 10.0
+        ),
+        "Shaft 1.loss_factor = 0.02: holds at all frequencies, which equations in time do not have",
+        "tn.order_response",
+    ),
+    (
+        lambda: tn.order_response(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), [-3.0]),
+        "speeds: must be positive and finite",
+        "tn.rpm",
+    ),
+    (
+        lambda: tn.order_response(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), [3.0], orders=[0.0]),
+        "orders: must be positive and finite",
+        "orders=[0.5, 1, 2]",
+    ),
+    (
+        lambda: tn.order_response(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), [3.0]).plot(
+            spring="Shaft 2"
+        ),
+        "spring = 'Shaft 2': is not a shaft or mesh of this result",
+        "Shaft 1",
     ),
     (
         lambda: Shaft(stiffness=1, loss_factor_frequency=3),

@@ -214,7 +214,7 @@ NOT_IN_SCHEMA = [
     {"type": "Shaft"},
     {"type": "Shaft", "stiffness": 1, "length": 1},
     {"type": "Shaft", "stifness": 1},
-    {"type": "Shaft", "stiffness": 1, "loss_factor": 0.02},
+    {"type": "Shaft", "stiffness": 1, "loss_factor_frequency": 0.02},
     {"type": "Disk", "inertia": [1]},
     {"type": "HookeJoint", "angle": "steep"},
     {"type": "Ratio", "teeth_in": 10},

@@ -65,6 +65,9 @@ REFUSED = [
     (lambda: tn.simulate(LINE, times=[0.3, 0.1, 0.2], speed=10.0), "times: must be a rising list of times"),
     (lambda: tn.simulate(LINE, times=[-0.1, 0.1], speed=10.0), "times = -0.1: begins before start_time"),
     (lambda: tn.simulate(LINE, 1.0, turns=3, speed=10.0), "turns = 3: is given beside a duration"),
+    (lambda: tn.simulate(_forced(), 1.0, speed=10.0), "speed = 10: belongs to a driveline"),
+    (lambda: tn.simulate(LINE, periods=3, speed=10.0), "periods = 3: belongs to a System; give a duration, or turns"),
+    (lambda: tn.simulate(LINE, 1.0, speed=10.0, longest_step=0.1), "longest_step = 0.1: belongs to a System"),
 ]
 
 

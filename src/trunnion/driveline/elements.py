@@ -142,7 +142,9 @@ class Shaft(Element):
     shear_modulus : G [Pa].
     density : ρ [kg/m³]; 0 leaves the tube without inertia.
     young_modulus : E [Pa], for bending.
-    loss_factor, loss_factor_frequency : instead of `damping`, η at a frequency ω [rad/s]: c = ηk/ω.
+    loss_factor, loss_factor_frequency : instead of `damping`, η at a frequency ω [rad/s]: c = ηk/ω. Without the
+        frequency, η holds at all of them, as k(1 + iη): for ``order_response`` and natural frequencies; equations in
+        time refuse it. A relative damping ψ (loss per cycle over elastic energy) is η = ψ/2π.
     fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
         the angle of the fork from the joint plane.
     """
@@ -158,7 +160,9 @@ class Shaft(Element):
     density: Density | None = Field(default=None, description="of the tube's material; 0: no inertia, as by default")
     young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
     loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
-    loss_factor_frequency: Frequency | None = Field(default=None, description="at which the loss factor holds")
+    loss_factor_frequency: Frequency | None = Field(
+        default=None, description="at which the loss factor holds; by default at all"
+    )
     fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
 
     @model_validator(mode="before")
@@ -174,9 +178,6 @@ class Shaft(Element):
         _not_negative(self, "inner_diameter", "density", "loss_factor")
         _positive(self, "loss_factor_frequency")
         _bore(self)
-        if self.loss_factor is not None and self.loss_factor_frequency is None:
-            remedy = 'write the frequency at which it holds, for example "50 Hz"'
-            raise InputError("is missing beside loss_factor", key="loss_factor_frequency", remedy=remedy)
         if self.loss_factor is None and self.loss_factor_frequency is not None:
             raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
         if self.loss_factor is not None and self.damping != 0.0:
@@ -194,7 +195,7 @@ class Shaft(Element):
 
     @property
     def damping_coefficient(self) -> float:
-        """c [N m s/rad], as stated or from the loss factor."""
+        """c [N m s/rad], as stated or from the loss factor at its frequency; 0 where that holds at any frequency."""
         if self.loss_factor is None or self.loss_factor_frequency is None:
             return self.damping
         return self.loss_factor * self.torsional_stiffness / self.loss_factor_frequency

@@ -21,7 +21,6 @@ _RULES: dict[str, dict[str, Any]] = {
     "Shaft": {
         "oneOf": [{"required": ["stiffness"]}, {"required": _TUBE}],
         "dependentRequired": {
-            "loss_factor": ["loss_factor_frequency"],
             "loss_factor_frequency": ["loss_factor"],
             **dict.fromkeys((*_TUBE, "inner_diameter", "density", "young_modulus"), _TUBE),
         },

@@ -20,6 +20,7 @@ from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Topology, topology
+from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -33,7 +34,8 @@ class LineCoefficients:
     station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
     drive_share carries included in ``load``; angle [rad] per joint; ``shift`` [rad] per station: what a shaft adds
     to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
-    measure it from its own plane.
+    measure it from its own plane. ``loss`` [N m/rad] per compliance is ηk where a loss factor holds at all
+    frequencies: the stiffness is then k + i·loss·sgn(frequency).
     """
 
     speed: Array
@@ -47,6 +49,7 @@ class LineCoefficients:
     quadratic: Array
     angle: Array
     shift: Array
+    loss: Array
 
 
 @dataclass(frozen=True)
@@ -65,14 +68,27 @@ class Assembly:
         return table
 
     def coefficients(
-        self, table: Array, *, statically_twisted: bool = True, damped: bool = True, free_play: bool = False
+        self,
+        table: Array,
+        *,
+        statically_twisted: bool = True,
+        damped: bool = True,
+        free_play: bool = False,
+        any_frequency: bool = False,
     ) -> LineCoefficients:
         """Evaluate the line's coefficients for each row of ``table`` (cases, columns).
 
         ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the
         line is taken at zero twist and zero torque. ``damped=False`` leaves all damping out. ``free_play=True``
-        leaves a spring in its free play without stiffness, which is otherwise refused.
+        leaves a spring in its free play without stiffness, which is otherwise refused. ``any_frequency=True`` is for
+        equations by frequency, which have ``loss``; for all others a shaft that has it is refused.
+
+        Raises
+        ------
+        InputError : a loss factor without a frequency, for equations in time; a spring in its free play.
         """
+        if damped and not any_frequency:
+            _refuse_any_frequency(self.line)
         return _coefficients(self, np.atleast_2d(table), statically_twisted, damped, free_play)
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:
@@ -114,10 +130,31 @@ def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Ar
     column = assembly.packed.column
     if assembly.line.damping_ratio is not None:
         return assembly.common_damping(table, stiffness)
+    if column(element, "loss_factor") >= 0 and column(element, "loss_factor_frequency") < 0:
+        return np.zeros(len(table))
     if column(element, "loss_factor") >= 0:
         loss = table[:, column(element, "loss_factor")]
         return loss * stiffness / table[:, column(element, "loss_factor_frequency")]
     return spring_damping(assembly.line.elements[element], element, column, table)
+
+
+def _shaft_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
+    """ηk [N m/rad] of a loss factor that holds at all frequencies."""
+    column = assembly.packed.column
+    loss, frequency = column(element, "loss_factor"), column(element, "loss_factor_frequency")
+    return table[:, loss] * stiffness if loss >= 0 and frequency < 0 else np.zeros(len(table))
+
+
+def _refuse_any_frequency(line: Driveline) -> None:
+    for element, name in zip(line.elements, line.names, strict=True):
+        if isinstance(element, Shaft) and element.loss_factor and element.loss_factor_frequency is None:
+            raise InputError(
+                "holds at all frequencies, which equations in time do not have",
+                element=name,
+                key="loss_factor",
+                value=element.loss_factor,
+                remedy='write loss_factor_frequency = "50 Hz", where it is to hold, or use tn.order_response',
+            )
 
 
 def _series(stiffness: list[Array], damping: list[Array]) -> tuple[Array, Array]:
@@ -170,7 +207,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     loads = station_loads(topo, column, table)
     static = static_torque(topo, mean_load(topo, loads, table[:, 0]))
     torque = static if twisted else np.zeros_like(static)
-    stiffness, damping, twist = np.empty_like(static), np.empty_like(static), np.empty_like(static)
+    stiffness, damping, twist, loss = (np.empty_like(static) for _ in range(4))
     each: dict[int, Array] = {}
     for e, compliance in enumerate(topo.compliances):
         for i in compliance.shafts:
@@ -178,6 +215,8 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         k = [each[i] for i in compliance.shafts]
         c = [_shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
         stiffness[:, e], damping[:, e] = _series(k, c)
+        losses = [_shaft_loss(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
+        loss[:, e] = _series(k, losses)[1]
         twist[:, e] = torque[:, e] / stiffness[:, e]
         first = compliance.shafts[0]
         if has_stages(assembly.line.elements[first]):
@@ -211,4 +250,5 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         quadratic=loads.quadratic,
         angle=angle,
         shift=shift,
+        loss=loss,
     )

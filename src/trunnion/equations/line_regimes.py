@@ -92,7 +92,7 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
     table = np.concatenate([oscillator.regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
     error, wave = np.zeros((0, 3)), np.zeros((0, 3))
     if isinstance(element, GearPair):
-        cycles = float(_mesh_cycles(assembly, place))
+        cycles = float(mesh_cycles(assembly, place))
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
@@ -136,7 +136,7 @@ def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, 
     return np.array(rows, dtype=float).reshape(-1, 3)
 
 
-def _mesh_cycles(assembly: Assembly, place: int) -> Fraction:
+def mesh_cycles(assembly: Assembly, place: int) -> Fraction:
     """Teeth in mesh per turn of the line's input."""
     topo, element = assembly.topology, assembly.line.elements[place]
     assert isinstance(element, GearPair)
@@ -150,7 +150,7 @@ def mesh_rates(assembly: Assembly) -> list[Fraction]:
     for place, element in enumerate(assembly.line.elements):
         if isinstance(element, GearPair):
             orders = [h.order for h in element.transmission_error] + [h.order for h in element.stiffness_variation]
-            rates += [int(order) * _mesh_cycles(assembly, place) for order in orders]
+            rates += [int(order) * mesh_cycles(assembly, place) for order in orders]
     return rates
 
 

@@ -3,6 +3,7 @@
 DRAWINGS = {
     # linear
     "NaturalFrequencies.plot": "trunnion.plots.mode_shapes:draw",
+    "OrderResponse.plot": "trunnion.plots.order_response:draw",
     "SpeedSweep.plot": "trunnion.plots.torque_over_speed:draw",
     "StabilityChart.plot": "trunnion.plots.stability_chart:draw",
     "StableLimit.plot": "trunnion.plots.stable_limit:draw",

@@ -70,7 +70,7 @@ def _numbers(element: Element) -> list[str]:
         if element.moment_of_inertia:
             tube.append(shown(element.moment_of_inertia, INERTIA, digits=4))
         parts.append("hence " + ", ".join(_signs(t) for t in tube))
-    if isinstance(element, Shaft) and element.loss_factor is not None:
+    if isinstance(element, Shaft) and element.loss_factor_frequency is not None:
         parts.append("hence " + _signs(shown(element.damping_coefficient, DAMPING, digits=4)))
     if isinstance(element, Disk) and element.inertia is None:
         parts.append("hence " + _signs(shown(element.moment_of_inertia, INERTIA, digits=4)))

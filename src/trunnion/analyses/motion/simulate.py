@@ -198,40 +198,100 @@ class LineSimulation:
 
 
 @overload
-def simulate(system: System, duration: float | None = None, **options: Any) -> Simulation: ...
+def simulate(
+    system: System,
+    duration: float | None = None,
+    *,
+    periods: float | None = None,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    longest_step: float = np.inf,
+    dense: bool = True,
+) -> Simulation: ...
 @overload
-def simulate(system: Driveline | Assembly, duration: float | None = None, **options: Any) -> LineSimulation: ...
+def simulate(
+    system: Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    turns: float | None = None,
+    speed: float | SpeedProfile | None = None,
+    start: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    dense: bool = True,
+) -> LineSimulation: ...
 
 
 def simulate(
-    system: System | Driveline | Assembly, duration: float | None = None, **options: Any
+    system: System | Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    turns: float | None = None,
+    speed: float | SpeedProfile | None = None,
+    periods: float | None = None,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    longest_step: float = np.inf,
+    dense: bool = True,
 ) -> Simulation | LineSimulation:
     """Integrate a line, or any system, in time.
 
-    For a driveline
-    ---------------
-    duration : [s]; or ``turns`` of the input.
-    speed : input speed [rad/s] (default: the file's operating speed), or a ``SpeedProfile``.
-    start : state (2n,), deviations from uniform rotation and their rates; by default the line without twist.
-    times, events, tolerance, most_steps, dense : as for a system.
-
-    For a ``System``
-    ----------------
-    See ``trunnion.analyses.motion.simulation.simulate_system``: duration or periods, start, times, events, tolerance …
+    Parameters
+    ----------
+    duration : [s]; or ``turns`` of a driveline's input; or ``periods`` of a system's forcing; or up to the last of
+        ``times``.
+    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``.
+    start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
+        default the line without twist; of a system (n,), by default its own.
+    start_time : of a system [s]; the phase of its forcing.
+    times : at which states are wanted (rising) [s]; by default every step of a system, and of a driveline evenly.
+    events : zeros to locate; some may stop the run.
+    tolerance : error allowed per step, relative to the scale of a state + |x|.
+    most_steps, longest_step : of the integration; ``longest_step`` [s] of a system.
+    dense : keep what ``at`` and ``times`` need, 8n numbers a step.
 
     Returns
     -------
     A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+
+    Raises
+    ------
+    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject.
     """
     if isinstance(system, System):
-        return simulate_system(system, duration, **options)
+        _refuse("belongs to a driveline", "leave it out", turns=turns, speed=speed)
+        return simulate_system(
+            system, duration, periods=periods, start=start, start_time=start_time, times=times, events=events,
+            tolerance=tolerance, most_steps=most_steps, longest_step=longest_step, dense=dense,
+        )  # fmt: skip
     if not isinstance(system, Driveline | Assembly):
         raise InputError(
             f"is a {type(system).__name__}, which cannot be simulated",
             key="system",
             remedy="give a Driveline or a System, tn.reference_system('duffing'), say",
         )
-    return _simulate_line(system, duration, **options)
+    other = {"start_time": start_time or None, "longest_step": longest_step if np.isfinite(longest_step) else None}
+    _refuse("belongs to a System", "give a duration, or turns of the input", periods=periods, **other)
+    return _simulate_line(
+        system, duration, speed=speed, turns=turns, start=start, times=times, events=events, tolerance=tolerance,
+        most_steps=most_steps, dense=dense,
+    )  # fmt: skip
+
+
+def _refuse(problem: str, remedy: str, **given: object) -> None:
+    for key, value in given.items():
+        if value is not None:
+            raise InputError(problem, key=key, value=value, remedy=remedy)
 
 
 def _simulate_line(

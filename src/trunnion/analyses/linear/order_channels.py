@@ -1,0 +1,78 @@
+"""What is read from a steady response: twist and torque of every spring, deviation of every inertia and joint input.
+
+One solution belongs to frequencies ω₀ + hbΩ about one carrier ω₀. All of it stands on one axis of *channels*:
+springs' elastic twist, springs' torque, inertias' deviation from the base motion, deviation at the joints' inputs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.topology import Topology
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Where each kind of quantity stands on the axis of channels."""
+
+    springs: int
+    inertias: int
+    joints: int
+
+    @property
+    def twist(self) -> slice:
+        """Elastic twist [rad] of every spring."""
+        return slice(0, self.springs)
+
+    @property
+    def torque(self) -> slice:
+        """Torque [N m] of every spring."""
+        return slice(self.springs, 2 * self.springs)
+
+    @property
+    def deviation(self) -> slice:
+        """Deviation [rad] of every inertia from its base motion."""
+        return slice(2 * self.springs, 2 * self.springs + self.inertias)
+
+    @property
+    def joint_input(self) -> slice:
+        """Deviation [rad] at every joint's input."""
+        return slice(2 * self.springs + self.inertias, self.count)
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return 2 * self.springs + self.inertias + self.joints
+
+
+def channels_of(topo: Topology) -> Channels:
+    """The channels of a line."""
+    return Channels(len(topo.compliances), topo.size, len(topo.joints))
+
+
+def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -> Complex:
+    """Channels (case, time, channel) without torque, of unknowns x (case, time, n).
+
+    ratio (case, time, compliance) as of ``LineMatrices``; relative (case, time, station) as of ``BaseMotion``.
+    """
+    places = channels_of(topo)
+    seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
+    for e, compliance in enumerate(topo.compliances):
+        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+        if far >= 0:
+            seen[..., e] += x[..., far]
+        if near >= 0:
+            seen[..., e] -= ratio[..., e] * x[..., near]
+    seen[..., places.deviation] = x
+    for k, joint in enumerate(topo.joints):
+        before = topo.stations[joint].before
+        i = topo.coordinate[topo.group_of(before)]
+        if i >= 0:
+            seen[..., places.joint_input.start + k] = relative[..., before] * x[..., i]
+    return seen

@@ -1,0 +1,70 @@
+"""Excitations sorted by the carrier they share in a line that repeats with b cycles per turn of the input.
+
+An order K = κ + mb, 0 ≤ κ < b, gives orders κ + hb only, so that orders of one κ share their matrix. Far-away orders of
+one κ are solved apart, each with the harmonics about itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.exciters import Exciter
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Excitations about one carrier.
+
+    carrier κ [cycles per turn of the input]; ``frequency`` [rad/s] of those fixed in time, whose carrier it is, else
+    0; ``members`` as (exciter, its m); ``own``: the forcing of the line's own joints, with carrier 0.
+    """
+
+    carrier: Fraction
+    frequency: float
+    members: tuple[tuple[Exciter, int], ...]
+    own: bool = False
+
+    @property
+    def lowest(self) -> int:
+        """Smallest m."""
+        return min((m for _, m in self.members), default=0)
+
+    @property
+    def highest(self) -> int:
+        """Largest m."""
+        return max((m for _, m in self.members), default=0)
+
+
+OWN = Group(Fraction(0), 0.0, (), own=True)
+
+
+def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, reach: int) -> list[Group]:
+    """Groups of the exciters that have an amplitude in the packed numbers ``row``; orders with more than 2·``reach``
+    harmonics between them are apart."""
+    by_carrier: dict[Fraction, list[tuple[Exciter, int]]] = {}
+    in_time: dict[float, list[tuple[Exciter, int]]] = {}
+    for exciter in exciters:
+        if exciter.held or row[exciter.amplitude] == 0:
+            continue
+        if exciter.in_time:
+            in_time.setdefault(float(row[exciter.frequency]), []).append((exciter, 0))
+        else:
+            by_carrier.setdefault(exciter.order % base, []).append((exciter, int(exciter.order // base)))
+    found = []
+    for carrier, members in by_carrier.items():
+        members.sort(key=lambda member: member[1])
+        near = [members[0]]
+        for member in members[1:]:
+            if member[1] - near[-1][1] > 2 * reach:
+                found.append(Group(carrier, 0.0, tuple(near)))
+                near = []
+            near.append(member)
+        found.append(Group(carrier, 0.0, tuple(near)))
+    found += [Group(Fraction(0), frequency, tuple(members)) for frequency, members in in_time.items()]
+    return found

@@ -1,0 +1,110 @@
+"""Steady response of a line with periodic equations by Hill's blocks.
+
+Re[e^{iω₀t} Σ_h X_h e^{ihbΩt}] under Re[e^{iω₀t} Σ_h G_h e^{ihbΩt}], with b = 2π/period of the equations in the input
+angle, ν_h = ω₀ + hbΩ, and M_k … the Fourier coefficients of the matrices:
+
+    Σ_l [−ν_l² M_{h−l} + iν_l C_{h−l} + K_{h−l}] X_l + Σ_e R_e* (i loss_e sgn ν) R_e X = G_h.
+
+Damping whatever the frequency acts on each spring's own harmonics (R_e turns X into the twist of spring e): negative
+sidebands turn its sign, which equations in time cannot do.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.order_straight import SINGULAR
+from trunnion.equations.linear import LineMatrices
+from trunnion.equations.topology import Topology
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+ROUNDING = 2e-16
+"""Fourier coefficients below this share of the largest are left out."""
+
+
+class HillBlocks:
+    """Fourier coefficients of a batch of lines over one period; solves any carrier and any span of harmonics."""
+
+    def __init__(self, topo: Topology, matrices: LineMatrices, loss: Array, step: Array) -> None:
+        """``step`` (case,) is bΩ [rad/s]; loss (case, compliance) [N m/rad]."""
+        self.topo, self.loss, self.step = topo, loss, step
+        self.times = matrices.mass.shape[1]
+        self.mass, self.damping, self.stiffness, self.ratio = (
+            np.fft.fft(part, axis=1) / self.times
+            for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
+        )
+        parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
+        kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
+        self.width = int(np.abs(_signed(np.flatnonzero(kept), self.times)).max())
+
+    def solve(self, carrier: Array, harmonics: Integers, right: Complex) -> Complex:
+        """X (case, h, n) at ``harmonics`` (h,), consecutive, of G (case, h, n); ``carrier`` (case,) is ω₀ [rad/s].
+
+        The first and the last harmonic are found from the others, by their own diagonal blocks: their size tells what
+        leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
+        """
+        cases, count, n = right.shape
+        frequency = carrier[:, None] + harmonics * self.step[:, None]
+        matrix = np.zeros((cases, count, n, count, n), dtype=complex)
+        for d in range(-min(self.width, count - 1), min(self.width, count - 1) + 1):
+            rows = np.arange(max(0, d), count + min(0, d))
+            v = frequency.T[rows - d][:, :, None, None]
+            block = -(v**2) * self.mass[:, d] + (1j * v) * self.damping[:, d] + self.stiffness[:, d]
+            matrix[:, rows, :, rows - d, :] = block
+        if self.loss.any():
+            self._add_loss(matrix, harmonics, np.sign(frequency))
+        inside = matrix[:, 1:-1, :, 1:-1].reshape(cases, (count - 2) * n, (count - 2) * n)
+        x = np.zeros((cases, count, n), dtype=complex)
+        x[:, 1:-1] = _solve(inside, right[:, 1:-1].reshape(cases, -1)).reshape(cases, count - 2, n)
+        for end in (0, -1):
+            known = (matrix[:, end].reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
+            x[:, end] = _solve(matrix[:, end, :, end], right[:, end] - known, bounded=False)
+        return x
+
+    def _add_loss(self, matrix: Complex, harmonics: Integers, sign: Array) -> None:
+        place = (harmonics[:, None] - harmonics[None, :]) % self.times
+        every = np.arange(len(harmonics))
+        for e, compliance in enumerate(self.topo.compliances):
+            if not self.loss[:, e].any():
+                continue
+            far = self.topo.coordinate[compliance.far_group]
+            near = self.topo.coordinate[self.topo.group_of(compliance.near)]
+            ratio = self.ratio[:, place, e]
+            loss = 1j * self.loss[:, e, None] * sign
+            if far >= 0:
+                matrix[:, every, far, every, far] += loss
+            if near >= 0:
+                matrix[:, :, near, :, near] += ratio @ (loss[:, :, None] * ratio)
+            if far >= 0 and near >= 0:
+                matrix[:, :, far, :, near] -= loss[:, :, None] * ratio
+                matrix[:, :, near, :, far] -= ratio * loss[:, None, :]
+
+
+def _signed(place: Integers, times: int) -> Integers:
+    """Harmonic numbers of places in a Fourier transform."""
+    return np.asarray((place + times // 2) % times - times // 2)
+
+
+def _solve(matrix: Complex, right: Complex, *, bounded: bool = True) -> Complex:
+    """Solutions (case, m); NaN where a matrix is singular, with ``bounded`` to rounding."""
+    try:
+        x = np.linalg.solve(matrix, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        x = np.stack([_one(a, b) for a, b in zip(matrix, right, strict=True)])
+    if bounded:
+        with np.errstate(invalid="ignore"):
+            weight = np.abs(matrix).max(axis=(1, 2)) * np.abs(x).max(axis=1)
+            x[np.abs(right).max(axis=1) < SINGULAR * weight] = np.nan
+    x[~right.any(axis=1)] = 0.0
+    return np.asarray(x)
+
+
+def _one(matrix: Complex, right: Complex) -> Complex:
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan)

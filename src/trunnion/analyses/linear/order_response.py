@@ -1,0 +1,195 @@
+"""Linear steady response of a line at every speed to every excitation order.
+
+Excited by the harmonic torques of its disks (by order of their rotation, or fixed in time), by the transmission errors
+of its meshes, and by its bent joints. A straight line is one complex system per order and speed; in a line with bent
+joints an order k couples to k ± 2mR, R the speed ratio of the joint, and is solved with its side orders.
+
+Orders are taken at the angle that their disk has in the base motion (joints' lead and static twist included). How far
+it swings about that is said: a torque T e^{ikφ} has the slope ikT e^{ikφ}, whose product with the motion is of second
+order, as all that linear theory leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.analyses.linear.order_result import WORTH_SHOWING, OrderResponse
+from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Shaft
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.exciters import Exciter, exciters
+from trunnion.equations.steady_base import bent, refuse_own_motion, require_steady_base
+from trunnion.errors import InputError
+from trunnion.results.finding import Finding, Gravity
+
+Array = NDArray[np.float64]
+NEAR_ENOUGH = 1e-9
+"""Orders asked for are found within this."""
+
+
+def order_response(
+    line: Driveline | Assembly,
+    speeds: ArrayLike,
+    orders: Iterable[float] | None = None,
+    load_case: str | None = None,
+    *,
+    statically_twisted: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> OrderResponse:
+    """Torque, twist and rotation by order at each of ``speeds`` [rad/s]; see ``sweep_speeds`` for a grid.
+
+    Parameters
+    ----------
+    line : the driveline.
+    speeds : input speed or speeds [rad/s].
+    orders : cycles per turn of the input to list; default all that reach a millionth of the largest torque. The sums
+        over the cycle hold every order whatever is listed.
+    load_case : name of one of the line's load cases.
+    statically_twisted : joint phases include the twist under the mean torque.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : speeds or orders that are not positive; a line without steady base motion or with too long a period.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> line = tn.Driveline([engine, tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
+    >>> r = tn.order_response(line, [100.0])
+    >>> print(r.order, round(float(r.vibratory_torque[0, 0]), 3))
+    [2.] 106.781
+    """
+    assembly = _assembled(line, load_case)
+    speed = _checked_speeds(speeds)
+    table = assembly.table(len(speed))
+    table[:, 0] = speed
+    require_steady_base(assembly, table)
+    refuse_own_motion(assembly, "use tn.periodic_response, or put a ConstantSpeed in front")
+    wanted = None if orders is None else _checked_orders(orders)
+    spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
+    return _result(assembly, spectrum, wanted)
+
+
+def _assembled(line: Driveline | Assembly, load_case: str | None) -> Assembly:
+    if load_case is not None:
+        description = line.line if isinstance(line, Assembly) else line
+        return assemble(description.with_load(load_case))
+    return line if isinstance(line, Assembly) else assemble(line)
+
+
+def _checked_speeds(speeds: ArrayLike) -> Array:
+    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
+        raise InputError(
+            "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+        )
+    return speed
+
+
+def _checked_orders(orders: Iterable[float]) -> Array:
+    wanted = np.atleast_1d(np.asarray(list(orders) if isinstance(orders, Iterable) else orders, dtype=float))
+    if not len(wanted) or not (np.all(np.isfinite(wanted)) and np.all(wanted > 0)):
+        raise InputError("must be positive and finite", key="orders", remedy="orders=[0.5, 1, 2], say")
+    return np.unique(wanted)
+
+
+def _result(assembly: Assembly, spectrum: OrderSpectrum, wanted: Array | None) -> OrderResponse:
+    places, topo = spectrum.channels, assembly.topology
+    size = np.abs(spectrum.amplitude[..., places.torque])
+    if wanted is None:
+        with np.errstate(invalid="ignore"):
+            listed = np.any(~(size < WORTH_SHOWING * np.nanmax(size, initial=0.0)) & (size != 0), axis=(0, 2))
+        picked = np.flatnonzero(listed)
+        order, frequency = spectrum.order_numbers[picked], spectrum.frequency[picked]
+    else:
+        order, frequency = wanted, np.zeros(len(wanted))
+        apart = np.abs(spectrum.order_numbers - wanted[:, None]) + np.where(spectrum.frequency != 0, np.inf, 0.0)
+        nearest = apart.argmin(axis=1) if apart.shape[1] else np.zeros(len(wanted), dtype=int)
+        missing = apart.min(axis=1, initial=np.inf) > NEAR_ENOUGH
+        picked = np.where(missing, -1, nearest)
+    amplitude, base = _picked(spectrum.amplitude, picked), _picked(spectrum.base, picked)
+    return OrderResponse(
+        speed=spectrum.speed,
+        order=order,
+        frequency=frequency,
+        torque=amplitude[..., places.torque],
+        twist=amplitude[..., places.twist],
+        rotation=amplitude[..., places.deviation] + base,
+        mean_torque=spectrum.mean[:, places.torque],
+        mean_twist=spectrum.mean[:, places.twist],
+        springs=shaft_names(assembly),
+        inertias=topo.names,
+        joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
+        stress_factor=_stress_factor(assembly),
+        spectrum=spectrum,
+        remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
+        unit=speed_unit(assembly.line),
+    )
+
+
+def _picked(values: NDArray[np.complex128], places: NDArray[np.intp]) -> NDArray[np.complex128]:
+    """The columns at ``places``, zeros where one is −1."""
+    found = np.zeros((len(values), len(places), values.shape[2]), dtype=complex)
+    there = places >= 0
+    found[:, there] = values[:, places[there]]
+    return found
+
+
+def _stress_factor(assembly: Assembly) -> Array:
+    """r_o/J_p (spring,) [1/m³] of the most stressed tube of each spring; NaN where none has a diameter."""
+    factors = []
+    for compliance in assembly.topology.compliances:
+        found = []
+        for i in compliance.shafts:
+            shaft = assembly.line.elements[i]
+            if isinstance(shaft, Shaft) and shaft.outer_diameter:
+                outer, inner = shaft.outer_diameter, shaft.inner_diameter or 0.0
+                found.append(16 * outer / (np.pi * (outer**4 - inner**4)))
+        factors.append(max(found, default=np.nan))
+    return np.array(factors)
+
+
+def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> Iterator[Finding]:
+    shaken = exciters(assembly)
+    row = assembly.table(1)[0]
+    for name in dict.fromkeys(e.element for e in shaken if e.held):
+        yield Finding(
+            Gravity.CAUTION,
+            f"The excitation of {name} does nothing: a ConstantSpeed holds its rotation. Start the line with the Disk "
+            "instead, or put a Shaft between the two.",
+        )
+    at_work = [e for e in shaken if not e.held and row[e.amplitude] != 0]
+    if not at_work:
+        joints = " but its joints" if bent(assembly) else ""
+        yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
+    for order in unexcited:
+        yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
+    yield from _nominal_angle(assembly, spectrum, at_work)
+
+
+def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
+    """How far the disks swing whose orders are taken at their nominal angle."""
+    topo, worst = assembly.topology, (0.0, "")
+    swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
+    for exciter in at_work:
+        if exciter.station >= 0 and not exciter.in_time:
+            i = topo.coordinate[topo.group_of(exciter.station)]
+            worst = max(worst, (exciter.own_order * float(np.nanmax(swing[:, i], initial=0.0)), exciter.element))
+    if worst[0] > 0:
+        yield Finding(
+            Gravity.CAUTION if worst[0] > LARGEST_SWING else Gravity.NOTE,
+            f"Orders act at the nominal angle of their disk; that {worst[1]} swings about it moves the torque of an "
+            f"order by up to {100 * worst[0]:.2g} % of its amplitude, into other orders for the most part.",
+        )
+
+
+LARGEST_SWING = 0.1
+"""Order times swing of its disk [rad] from which the nominal angle is no longer good enough."""

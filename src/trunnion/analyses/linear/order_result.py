@@ -1,0 +1,319 @@
+"""What ``order_response`` gives: amplitudes by order, their sums over the cycle, and what to read in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE
+from trunnion.analyses.linear.order_spectrum import OrderSpectrum
+from trunnion.analyses.linear.order_totals import adds_exactly, common_turns, extremes, wave
+from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed, speed_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+WAVE_POINTS = 64
+"""Points of a wave form per cycle of its highest order."""
+WORTH_SHOWING = 1e-6
+"""Share of the largest torque below which an order is counted in the sums, but not listed by itself."""
+
+
+@dataclass(frozen=True)
+class OrderWave:
+    """Wave form at one speed over one period (ten turns where there is none), its end included.
+
+    time (point,) [s] from zero rotation of the input; torque (point, spring) [N m]; twist (point, spring) [rad];
+    rotation (point, inertia) [rad] from uniform rotation.
+    """
+
+    speed: float
+    time: Array
+    torque: Array
+    twist: Array
+    rotation: Array
+    springs: tuple[str, ...]
+    inertias: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class OrderResponse:
+    """Linear steady response by order and speed.
+
+    speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input. An excitation fixed in time
+    has order 0 (its sidebands multiples of the joints' order) and its ``frequency`` (order,) [rad/s] beside it:
+    a column turns with order · speed + frequency. torque (speed, order, spring) [N m], twist (speed, order, spring)
+    [rad], rotation (speed, order, inertia) [rad] are one-sided complex amplitudes: Re[Y e^{i(order · Ωt +
+    frequency · t)}], the phase that of a cosine at zero rotation of the input. Torque is positive with the twist;
+    rotation is the deviation from uniform rotation, joints' own included. mean_torque (speed, spring) [N m].
+
+    The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
+    exists: an undamped resonance. remarks: what excites the line and what was left out, in sentences.
+    """
+
+    speed: Array
+    order: Array
+    frequency: Array
+    torque: Complex
+    twist: Complex
+    rotation: Complex
+    mean_torque: Array
+    mean_twist: Array
+    springs: tuple[str, ...]
+    inertias: tuple[str, ...]
+    joints: tuple[str, ...]
+    stress_factor: Array
+    spectrum: OrderSpectrum
+    remarks: tuple[Finding, ...]
+    unit: str
+
+    @property
+    def sum_is_bound(self) -> bool:
+        """True where excitations have no common period, so that sums over the cycle are sums of amplitudes."""
+        return not adds_exactly(self.spectrum)
+
+    @cached_property
+    def torque_range(self) -> tuple[Array, Array]:
+        """Lowest and highest torque (speed, spring) [N m] over the cycle, mean included."""
+        places = self.spectrum.channels
+        return extremes(self.spectrum, self.spectrum.amplitude[..., places.torque], self.mean_torque)
+
+    @property
+    def peak_torque(self) -> Array:
+        """Largest |mean + vibratory torque| (speed, spring) [N m] over the cycle."""
+        low, high = self.torque_range
+        return np.asarray(np.maximum(np.abs(low), np.abs(high)))
+
+    @property
+    def vibratory_torque(self) -> Array:
+        """Half of the peak-to-peak torque (speed, spring) [N m]."""
+        low, high = self.torque_range
+        return np.asarray((high - low) / 2)
+
+    @cached_property
+    def vibratory_twist(self) -> Array:
+        """Half of the peak-to-peak twist (speed, spring) [rad]."""
+        places = self.spectrum.channels
+        low, high = extremes(self.spectrum, self.spectrum.amplitude[..., places.twist], self.mean_twist)
+        return np.asarray((high - low) / 2)
+
+    @property
+    def vibratory_stress(self) -> Array:
+        """Amplitude of the shear stress at the outside, τ = T r_o / J_p (speed, spring) [Pa]; NaN without a diameter.
+
+        Of shafts in series the most stressed one; notches are not counted.
+        """
+        return np.asarray(self.vibratory_torque * self.stress_factor)
+
+    @property
+    def peak_stress(self) -> Array:
+        """Largest shear stress at the outside (speed, spring) [Pa]; NaN without a diameter."""
+        return np.asarray(self.peak_torque * self.stress_factor)
+
+    @cached_property
+    def heat(self) -> Array:
+        """Mean power (speed, spring) [W] that becomes heat: ½ c ν² |q|² and ½ ηk |ν| |q|² over all orders."""
+        spectrum = self.spectrum
+        v = np.abs(spectrum.angular_frequency)[..., None]
+        q = np.abs(spectrum.amplitude[..., spectrum.channels.twist]) ** 2
+        return np.asarray(((spectrum.damping * v**2 + spectrum.loss * v) * q).sum(axis=1) / 2)
+
+    @cached_property
+    def rotation_amplitude(self) -> Array:
+        """Half of the peak-to-peak rotation (speed, inertia) [rad]."""
+        return self._swing(0)
+
+    @cached_property
+    def speed_fluctuation(self) -> Array:
+        """Half of the peak-to-peak angular speed (speed, inertia) [rad/s]."""
+        return self._swing(1)
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Half of the peak-to-peak angular acceleration (speed, inertia) [rad/s²]."""
+        return self._swing(2)
+
+    def _swing(self, rates: int) -> Array:
+        spectrum = self.spectrum
+        whole = spectrum.amplitude[..., spectrum.channels.deviation] + spectrum.base
+        turned = whole * (1j * spectrum.angular_frequency[..., None]) ** rates
+        low, high = extremes(spectrum, turned, np.zeros((len(self.speed), len(self.inertias))))
+        return np.asarray((high - low) / 2)
+
+    @cached_property
+    def joint_rotation(self) -> Array:
+        """Largest deviation at any joint's input (speed,) [rad]: the measure of the linear range; 0 without joints."""
+        return np.asarray(self.joint_rotations.max(axis=1, initial=0.0))
+
+    @cached_property
+    def joint_rotations(self) -> Array:
+        """The same for every joint (speed, joint)."""
+        spectrum = self.spectrum
+        at = spectrum.channels.joint_input
+        low, high = extremes(spectrum, spectrum.amplitude[..., at], spectrum.mean[:, at])
+        return np.asarray(np.maximum(np.abs(low), np.abs(high)))
+
+    @property
+    def linear(self) -> NDArray[np.bool_]:
+        """Where the amplitudes can be trusted (speed,): joints' inputs stay within ``linear_range``."""
+        return np.asarray(self.joint_rotation <= LINEAR_RANGE)
+
+    @property
+    def cut_off(self) -> Array:
+        """Size of the outermost harmonics kept, relative to the largest torque (speed,); 0 on straight lines."""
+        return self.spectrum.cut_off
+
+    def peak(self, spring: str) -> tuple[float, float]:
+        """Largest |torque| of a spring [N m] over all speeds, and the speed it stands at [rad/s]."""
+        column = self.peak_torque[:, self.springs.index(spring)]
+        at = int(np.nanargmax(column))
+        return float(column[at]), float(self.speed[at])
+
+    def leading_order(self, spring: str) -> tuple[float, float, float]:
+        """Order, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order (NaN without orders).
+
+        An excitation fixed in time has order 0.
+        """
+        size = np.abs(self.torque[:, :, self.springs.index(spring)])
+        if not np.any(np.isfinite(size)):
+            return float("nan"), float("nan"), float("nan")
+        at, k = np.unravel_index(int(np.nanargmax(size)), size.shape)
+        return float(self.order[k]), float(self.speed[at]), float(size[at, k])
+
+    def wave(self, speed: float | None = None) -> OrderWave:
+        """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
+        spectrum = self.spectrum
+        at = 0 if speed is None else int(np.abs(self.speed - speed).argmin())
+        turns = common_turns(spectrum)
+        length = 2 * np.pi * float(turns or 10) / self.speed[at]
+        if len(spectrum.order) == 1 and spectrum.frequency[0]:
+            length = 2 * np.pi / spectrum.frequency[0]
+        cycles = np.abs(spectrum.angular_frequency[at]).max(initial=self.speed[at]) * length / (2 * np.pi)
+        time = np.linspace(0.0, length, int(np.ceil(WAVE_POINTS * cycles)) + 1)
+        places = spectrum.channels
+        parts = spectrum.amplitude[at], spectrum.mean[at]
+        seen = wave(spectrum, at, *parts, time)
+        whole = spectrum.amplitude[at][:, places.deviation] + spectrum.base[at]
+        rotation = wave(spectrum, at, whole, spectrum.mean[at, places.deviation], time)
+        return OrderWave(
+            float(self.speed[at]), time, seen[:, places.torque], seen[:, places.twist], rotation,
+            self.springs, self.inertias,
+        )  # fmt: skip
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first; speeds in rad/s."""
+        return self.findings_in("rad/s")
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        return by_gravity([*_findings(self, unit), *self.remarks])
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Labelled dataset with units; complex numbers as real and imaginary parts."""
+        import xarray as xr
+
+        def parts(values: Complex) -> Array:
+            return np.stack([values.real, values.imag], axis=-1)
+
+        by_order, of_spring, of_inertia = ("speed", "order_number"), ("speed", "spring"), ("speed", "inertia")
+        return xr.Dataset(
+            {
+                "torque": ((*by_order, "spring", "part"), parts(self.torque), {"units": "N*m"}),
+                "twist": ((*by_order, "spring", "part"), parts(self.twist), {"units": "rad"}),
+                "rotation": ((*by_order, "inertia", "part"), parts(self.rotation), {"units": "rad"}),
+                "mean_torque": (of_spring, self.mean_torque, {"units": "N*m"}),
+                "peak_torque": (of_spring, self.peak_torque, {"units": "N*m"}),
+                "vibratory_torque": (of_spring, self.vibratory_torque, {"units": "N*m"}),
+                "vibratory_twist": (of_spring, self.vibratory_twist, {"units": "rad"}),
+                "vibratory_stress": (of_spring, self.vibratory_stress, {"units": "Pa"}),
+                "peak_stress": (of_spring, self.peak_stress, {"units": "Pa"}),
+                "heat": (of_spring, self.heat, {"units": "W"}),
+                "rotation_amplitude": (of_inertia, self.rotation_amplitude, {"units": "rad"}),
+                "speed_fluctuation": (of_inertia, self.speed_fluctuation, {"units": "rad/s"}),
+                "acceleration": (of_inertia, self.acceleration, {"units": "rad/s^2"}),
+                "joint_rotation": ("speed", self.joint_rotation, {"units": "rad"}),
+                "linear": ("speed", self.linear.astype(np.int8)),
+                "cut_off": ("speed", self.cut_off, {"units": "1"}),
+            },
+            coords={
+                "speed": ("speed", self.speed, {"units": "rad/s"}),
+                "order": ("order_number", self.order, {"units": "1", "long_name": "cycles per turn of the input"}),
+                "frequency": ("order_number", self.frequency, {"units": "rad/s", "long_name": "beside the order"}),
+                "spring": list(self.springs),
+                "inertia": list(self.inertias),
+                "part": ["real", "imaginary"],
+            },
+            attrs={"linear_range": LINEAR_RANGE, "sum_is_bound": int(self.sum_is_bound)},
+        )
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Torque by order over speed of the most loaded spring; see ``plots.order_response.draw``."""
+        return drawing(self, "plot")(self, axes, **options)
+
+    def describe(self, unit: str = "rad/s") -> str:
+        """The result in a few lines, speeds in ``unit``."""
+        count = f"{len(self.order)} order{'' if len(self.order) == 1 else 's'}"
+        many = "1 speed" if len(self.speed) == 1 else f"{len(self.speed)} speeds"
+        rows = [f"linear steady response at {many} to {count}"]
+        for s, spring in enumerate(self.springs):
+            column = self.peak_torque[:, s]
+            if not np.any(np.isfinite(column)):
+                rows.append(f"  {spring}: no steady state")
+                continue
+            at = int(np.nanargmax(column))
+            rows.append(
+                f"  {spring}: torque up to {column[at]:.4g} N m at {show_speed(self.speed[at], unit)}, of which "
+                f"±{self.vibratory_torque[at, s]:.4g} N m vibratory{self._led_by(spring, unit)}"
+            )
+        rows += [f"  {finding}" for finding in self.findings_in(unit)]
+        return "\n".join(rows)
+
+    def _led_by(self, spring: str, unit: str) -> str:
+        order, at, size = self.leading_order(spring)
+        if not size > 0:
+            return ""
+        k = int(np.flatnonzero(self.order == order)[0])
+        name = f"order {order:.6g}" if not self.frequency[k] else f"{show_speed(self.frequency[k], 'Hz')} excitation"
+        return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
+
+    def __str__(self) -> str:
+        return self.describe(self.unit)
+
+    __repr__ = __str__
+
+
+def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
+    lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
+    for speed in result.speed[lost][:3]:
+        k = np.flatnonzero(~np.all(np.isfinite(result.torque[result.speed == speed][0]), axis=1))
+        which = f"order {result.order[k[0]]:.6g}" if len(k) else "an excitation"
+        yield Finding(
+            Gravity.DANGER,
+            f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
+        )
+    if result.sum_is_bound:
+        yield Finding(
+            Gravity.NOTE,
+            "The excitations have no common period, so peak and vibratory torque are bounds: amplitudes added up.",
+        )
+    if not np.all(result.linear[~lost]):
+        beyond = result.speed[~lost & ~result.linear]
+        factor = speed_factor(unit)
+        yield Finding(
+            Gravity.CAUTION,
+            f"A joint's input swings by up to {np.nanmax(result.joint_rotation):.3g} rad, beyond the linear range of "
+            f"{LINEAR_RANGE} rad, between {beyond.min() * factor:.6g} and {beyond.max() * factor:.6g} {unit}: read "
+            "it as resonance, not as an amplitude; tn.periodic_response gives the true motion.",
+        )

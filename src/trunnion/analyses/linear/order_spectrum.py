@@ -1,0 +1,334 @@
+"""The steady response of a line to everything that excites it, as amplitudes by order.
+
+Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}], K ``order`` and ω ``frequency``; orders
+−K of the sidebands are folded onto K by their conjugates, c_K + conj(c_−K).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.order_channels import Channels, channels_of, motion_channels
+from trunnion.analyses.linear.order_groups import OWN, Group, groups_of
+from trunnion.analyses.linear.order_hill import HillBlocks
+from trunnion.analyses.linear.order_straight import straight_response
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.exciters import (
+    BaseOfExcitation,
+    Exciter,
+    base_of_excitation,
+    exciters,
+    size,
+    torque_on_unknowns,
+    twist_on_unknowns,
+)
+from trunnion.equations.linear import LineMatrices, line_matrices
+from trunnion.equations.steady_base import bent
+from trunnion.equations.topology import Topology, require_period
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+FEWEST, MOST = 3, 48
+"""Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""
+SMALL_ENOUGH = 1e-11
+"""Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
+MOST_NUMBERS = 300_000
+"""Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
+
+
+@dataclass(frozen=True)
+class OrderSpectrum:
+    """Amplitudes by order at many speeds.
+
+    order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
+    (speed, order, channel) of the deviation from the base motion, base (speed, order, inertia) [rad] of the base
+    motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept.
+    """
+
+    speed: Array
+    order: tuple[Fraction, ...]
+    frequency: Array
+    amplitude: Complex
+    base: Complex
+    mean: Array
+    cut_off: Array
+    channels: Channels
+    damping: Array
+    loss: Array
+
+    @property
+    def order_numbers(self) -> Array:
+        """``order`` as plain numbers."""
+        return np.array([float(order) for order in self.order])
+
+    @property
+    def angular_frequency(self) -> Array:
+        """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
+        return self.speed[:, None] * self.order_numbers + self.frequency
+
+
+Key = tuple[Fraction, float]
+
+
+class _Sum:
+    """Amplitudes by (order, frequency), summed up as they come."""
+
+    def __init__(self, cases: int, channels: int, inertias: int) -> None:
+        self.amplitude: dict[Key, Complex] = {}
+        self.base: dict[Key, Complex] = {}
+        self.mean = np.zeros((cases, channels))
+        self.zero = np.zeros((cases, channels), dtype=complex)
+        self.flat = np.zeros((cases, inertias), dtype=complex)
+
+    def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
+        if frequency == 0 and order == 0:
+            self.mean = self.mean + amplitude.real
+        elif frequency == 0 and order < 0:
+            self.add(-order, 0.0, amplitude.conj())
+        else:
+            key = (order, frequency)
+            self.amplitude[key] = self.amplitude.get(key, self.zero) + amplitude
+
+
+def order_spectrum(
+    assembly: Assembly,
+    speed: Array,
+    *,
+    statically_twisted: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> OrderSpectrum:
+    """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
+
+    Raises
+    ------
+    InputError : a line with too long a period.
+    """
+    shaken = exciters(assembly)
+    case = _Case(assembly, shaken, statically_twisted)
+    parts: list[tuple[_Sum, Array]] = []
+    done = 0
+    while done < len(speed):
+        chunk = speed[done : done + case.batch]
+        parts.append(case.solved(chunk))
+        done += len(chunk)
+        if progress:
+            progress(done / len(speed))
+    channels, n = channels_of(assembly.topology), assembly.topology.size
+    keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
+    amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
+    base = np.zeros((len(speed), len(keys), n), dtype=complex)
+    start = 0
+    for total, cut_off in parts:
+        rows = slice(start, start + len(cut_off))
+        for j, key in enumerate(keys):
+            amplitude[rows, j] = total.amplitude.get(key, total.zero)
+            base[rows, j] = total.base.get(key, total.flat)
+        start += len(cut_off)
+    return OrderSpectrum(
+        speed=speed,
+        order=tuple(order for order, _ in keys),
+        frequency=np.array([frequency for _, frequency in keys]),
+        amplitude=amplitude,
+        base=base,
+        mean=np.concatenate([total.mean for total, _ in parts]),
+        cut_off=np.concatenate([cut_off for _, cut_off in parts]),
+        channels=channels,
+        damping=case.coefficients(speed[:1]).damping[0],
+        loss=case.coefficients(speed[:1]).loss[0],
+    )
+
+
+class _Case:
+    """What solving takes, apart from the speeds."""
+
+    def __init__(self, assembly: Assembly, shaken: tuple[Exciter, ...], statically_twisted: bool) -> None:
+        self.assembly, self.topo, self.shaken = assembly, assembly.topology, shaken
+        self.twisted = statically_twisted
+        one = self.coefficients(np.array([1.0]))
+        self.row = assembly.table(1)[0]
+        self.varies = bent(assembly)
+        self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
+        self.reach = _reach(one.angle)
+        if self.varies:
+            self.batch = max(1, MOST_NUMBERS // self._blocks(self.reach) ** 2)
+        else:
+            self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
+
+    def coefficients(self, speed: Array) -> LineCoefficients:
+        return self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
+
+    def _table(self, speed: Array) -> Array:
+        table = self.assembly.table(len(speed))
+        table[:, 0] = speed
+        return table
+
+    def _blocks(self, reach: int) -> int:
+        """Unknowns of the largest system."""
+        spans = [g.highest - g.lowest for g in groups_of(self.shaken, self.row, 1 / self.turns, reach)]
+        return (max(spans, default=0) + 2 * reach + 1) * self.topo.size
+
+    def solved(self, speed: Array) -> tuple[_Sum, Array]:
+        """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
+        if not self.varies:
+            return self._straight(speed), np.zeros(len(speed))
+        while True:
+            found, last = self._bent(speed, self.reach)
+            if self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
+                return found, last
+            self.reach = min(MOST, self.reach + max(1, self.reach // 2))
+
+    def _straight(self, speed: Array) -> _Sum:
+        topo, table, co = self.topo, self._table(speed), self.coefficients(speed)
+        matrices = line_matrices(topo, co, np.zeros(1))
+        loss = _loss_matrix(self.assembly, co)
+        base = self._base(speed, co, np.zeros(1))
+        total = _Sum(len(speed), channels_of(topo).count, topo.size)
+        groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
+        if groups:
+            carrier = [[g.frequency if g.frequency else float(e.order) for e, _ in g.members][0] for g in groups]
+            in_time = np.array([g.frequency > 0 for g in groups])
+            nu = np.where(in_time[:, None], np.array(carrier)[:, None], np.array(carrier)[:, None] * speed)
+            sources = [self._sources(g, table, co, base, nu[j][:, None], None) for j, g in enumerate(groups)]
+            right = np.stack([force[:, 0, :] for force, _ in sources])
+            y = straight_response(topo, matrices, loss, nu, right)
+            for j, group in enumerate(groups):
+                seen = motion_channels(topo, y[j][:, None], matrices.ratio, base.relative)
+                seen[:, :, channels_of(topo).twist] += sources[j][1]
+                self._add_torque(seen, co, nu[j][:, None])
+                order = Fraction(0) if group.frequency else group.members[0][0].order
+                total.add(order, group.frequency, seen[:, 0])
+        self._add_static(total, co)
+        return total
+
+    def _bent(self, speed: Array, reach: int) -> tuple[_Sum, Array]:
+        topo, table, co = self.topo, self._table(speed), self.coefficients(speed)
+        cycles = 1 / self.turns
+        groups = [OWN, *groups_of(self.shaken, self.row, cycles, reach)]
+        widest = max(g.highest - g.lowest for g in groups) + 2 * reach + 1
+        times = 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+        tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
+        matrices, base = line_matrices(topo, co, tau), self._base(speed, co, tau)
+        step = float(cycles) * speed
+        blocks = HillBlocks(topo, matrices, co.loss, step)
+        places = channels_of(topo)
+        total, last = _Sum(len(speed), places.count, topo.size), np.zeros(len(speed))
+        for group in groups:
+            carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
+            h = np.arange(group.lowest - reach, group.highest + reach + 1)
+            nu = carrier[:, None] + h * step[:, None]
+            right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
+            x = blocks.solve(carrier, h, right)
+            seen = _seen(topo, x, h, times, matrices, base)
+            seen[..., places.twist] += error
+            self._add_torque(seen, co, nu)
+            last = np.maximum(last, np.abs(seen[:, [0, -1], places.torque]).max(axis=(1, 2)))
+            for j, harmonic in enumerate(h):
+                total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
+        self._add_base(total, base, cycles, reach)
+        self._add_static(total, co)
+        largest = np.max([np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()], axis=0)
+        return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
+
+    def _base(self, speed: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
+        plain = self.assembly.coefficients(self._table(speed), statically_twisted=False, any_frequency=True)
+        return base_of_excitation(self.topo, co, plain, tau)
+
+    def _sources(
+        self, group: Group, table: Array, co: LineCoefficients, base: BaseOfExcitation, nu: Array, only: Exciter | None
+    ) -> tuple[Complex, Complex]:
+        """Torque on the unknowns (case, time, n) and twist by transmission errors (case, 1, spring), all members
+        (or one) together; ``nu`` (case, 1) is their frequency."""
+        cases, times = base.relative.shape[:2]
+        force = np.zeros((cases, times, self.topo.size), dtype=complex)
+        error = np.zeros((cases, 1, len(self.topo.compliances)), dtype=complex)
+        for exciter, _ in group.members:
+            if only is not None and exciter is not only:
+                continue
+            sizes = size(exciter, table)
+            if exciter.compliance < 0:
+                force += torque_on_unknowns(self.topo, exciter, sizes, base)
+                continue
+            e = exciter.compliance
+            torque = (co.stiffness[:, e, None] + 1j * nu * co.damping[:, e, None]) * sizes[:, None]
+            torque = np.broadcast_to(torque, (cases, times))
+            force += twist_on_unknowns(self.topo, exciter, torque, base.relative)
+            error[:, 0, e] += sizes
+        return force, error
+
+    def _sources_by_harmonic(
+        self,
+        group: Group,
+        h: Integers,
+        table: Array,
+        co: LineCoefficients,
+        base: BaseOfExcitation,
+        nu: Array,
+        matrices: LineMatrices,
+    ) -> tuple[Complex, Complex]:
+        """The same as Fourier coefficients (case, h, n) and (case, h, spring)."""
+        cases, times, n = matrices.forcing.shape
+        right = np.zeros((cases, len(h), n), dtype=complex)
+        error = np.zeros((cases, len(h), len(self.topo.compliances)), dtype=complex)
+        if group.own:
+            right += np.fft.fft(matrices.forcing, axis=1)[:, h % times] / times
+        for exciter, m in group.members:
+            at = int(m - h[0])
+            force, twist = self._sources(group, table, co, base, nu[:, at : at + 1], exciter)
+            right += np.fft.fft(force, axis=1)[:, (h - m) % times] / times
+            error[:, at] += twist[:, 0]
+        return right, error
+
+    def _add_torque(self, seen: Complex, co: LineCoefficients, nu: Array) -> None:
+        """Torque of every spring from its elastic twist, in place."""
+        places, v = channels_of(self.topo), nu[..., None]
+        k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
+        seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
+
+    def _add_static(self, total: _Sum, co: LineCoefficients) -> None:
+        places = channels_of(self.topo)
+        total.mean[:, places.twist] += co.twist
+        total.mean[:, places.torque] += co.torque
+
+    def _add_base(self, total: _Sum, base: BaseOfExcitation, cycles: Fraction, reach: int) -> None:
+        """How the base motion itself turns: what joints force without any twist."""
+        topo = self.topo
+        first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
+        spectrum = np.fft.rfft(base.rotation[..., first], axis=1) / base.rotation.shape[1]
+        for h in range(1, min(spectrum.shape[1] - 1, 2 * reach) + 1):
+            total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
+
+
+def _seen(
+    topo: Topology, x: Complex, h: Integers, times: int, matrices: LineMatrices, base: BaseOfExcitation
+) -> Complex:
+    """Channels (case, h, channel) without torque, of the unknowns' harmonics x (case, h, n)."""
+    middle = int(h[len(h) // 2])
+    spectrum = np.zeros((len(x), times, x.shape[2]), dtype=complex)
+    spectrum[:, (h - middle) % times] = x
+    grid = np.fft.ifft(spectrum, axis=1) * times
+    seen = motion_channels(topo, grid, matrices.ratio, base.relative)
+    return np.asarray(np.fft.fft(seen, axis=1)[:, (h - middle) % times] / times)
+
+
+def _loss_matrix(assembly: Assembly, co: LineCoefficients) -> Array:
+    """H (case, n, n) of a straight line: its stiffness matrix with the loss in the place of k."""
+    if not co.loss.any():
+        n = assembly.topology.size
+        return np.zeros((len(co.speed), n, n))
+    none = {
+        key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load", "viscous", "quadratic")
+    }
+    return line_matrices(assembly.topology, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
+
+
+def _reach(angle: Array) -> int:
+    """As many harmonics as the largest bend asks for: they fall off as tan^2h(β/2)."""
+    share = np.tan(np.abs(angle).max(initial=0.0) / 2) ** 2
+    return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))

@@ -1,0 +1,69 @@
+"""Steady response of a line whose equations do not vary: one complex system per order and speed, all at once.
+
+    (−ν² M + iν C + K + i sgn(ν) H) Y = g,   ν = KΩ or a fixed ω,
+
+with H the part of the stiffness that damps whatever the frequency. The matrix has the pattern of the line's tree, so
+elimination from the leaves solves all orders and speeds together; where that loses figures, a dense solution follows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.equations.linear import LineMatrices
+from trunnion.equations.topology import Topology
+from trunnion.numerics.tree_solve import tree_solve
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+RESIDUAL = 1e-13
+SINGULAR = 1e-13
+"""Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
+
+
+def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
+    """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
+
+    ``matrices`` at one time, ``loss`` (case, n, n) is H. NaN where the line resonates without damping.
+    """
+    mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
+    parent = np.full(topo.size, -1, dtype=np.int64)
+    for compliance in topo.compliances:
+        far = topo.coordinate[compliance.far_group]
+        if far >= 0:
+            parent[far] = topo.coordinate[topo.group_of(compliance.near)]
+    orders, cases, n = right.shape
+    tied = np.where(parent >= 0, parent, 0)
+    every = np.arange(n)
+
+    def dynamic(rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Complex:
+        m, c, k, h = (part[:, rows, columns].T[:, None] for part in (mass, damping, stiffness, loss))
+        w = frequency[None]
+        return np.asarray(k - w**2 * m + 1j * (w * c + np.sign(w) * h)).reshape(n, orders * cases)
+
+    diagonal, coupling = dynamic(every, every), dynamic(every, tied)
+    coupling[parent < 0] = 0.0
+    b = np.moveaxis(right, 2, 0).reshape(n, orders * cases)
+    x, residual = tree_solve(diagonal, coupling, parent, b)
+    force = np.abs(b).max(axis=0)
+    with np.errstate(invalid="ignore"):
+        lost = np.flatnonzero(~(np.abs(residual).max(axis=0) <= RESIDUAL * force))
+    for j in lost:
+        x[:, j] = _dense(diagonal[:, j], coupling[:, j], parent, b[:, j])
+    weight = np.maximum(np.abs(diagonal), np.abs(coupling)) * np.abs(x)
+    x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
+    x[:, force == 0] = 0.0
+    return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
+
+
+def _dense(diagonal: Complex, coupling: Complex, parent: NDArray[np.int64], right: Complex) -> Complex:
+    matrix = np.diag(diagonal)
+    for i, p in enumerate(parent):
+        if p >= 0:
+            matrix[i, p] = matrix[p, i] = coupling[i]
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan)

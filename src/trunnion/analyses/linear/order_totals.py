@@ -1,0 +1,69 @@
+"""Sums of a steady response over its cycle: extremes, common period, wave form."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.order_spectrum import OrderSpectrum
+from trunnion.equations.topology import LONGEST_PERIOD
+from trunnion.numerics.cycle_extremes import cycle_extremes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def common_base(orders: tuple[Fraction, ...]) -> Fraction | None:
+    """Largest order that all ``orders`` are multiples of; None without orders or with too long a common period."""
+    base = Fraction(0)
+    for order in orders:
+        other = order
+        while other:
+            base, other = other, base % other
+    return base if base and 1 / base <= LONGEST_PERIOD else None
+
+
+def common_turns(spectrum: OrderSpectrum) -> Fraction | None:
+    """Turns of the input after which everything repeats; None where it does not."""
+    if np.any(spectrum.frequency != 0):
+        return None
+    base = common_base(spectrum.order)
+    return 1 / base if base else None
+
+
+def adds_exactly(spectrum: OrderSpectrum) -> bool:
+    """Whether extremes of the sum are those of the motion, not the sum of amplitudes as a bound."""
+    in_time = np.count_nonzero(spectrum.frequency)
+    if in_time:
+        return in_time == len(spectrum.order) == 1
+    return not spectrum.order or common_turns(spectrum) is not None
+
+
+def extremes(spectrum: OrderSpectrum, amplitude: Complex, mean: Array) -> tuple[Array, Array]:
+    """Lowest and highest value (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
+
+    With phases over the common period of the orders; what has no common period is added by its amplitudes, a bound.
+    """
+    shape = mean.shape
+    turning = spectrum.frequency == 0
+    orders = tuple(o for o, t in zip(spectrum.order, turning, strict=True) if t)
+    base = common_base(orders)
+    loose = ~turning if base else np.ones(len(turning), dtype=bool)
+    beside = np.abs(amplitude[:, loose]).sum(axis=1)
+    low = high = np.zeros(shape)
+    if base and orders:
+        index = np.array([int(order / base) for order in orders], dtype=np.int64)
+        rows = np.moveaxis(amplitude[:, turning], 1, 2).reshape(-1, len(orders))
+        low, high = (part.reshape(shape) for part in cycle_extremes(index, rows))
+    return mean + low - beside, mean + high + beside
+
+
+def wave(spectrum: OrderSpectrum, at: int, amplitude: Complex, mean: Array, time: Array) -> Array:
+    """Values (time, channel) at ``time`` [s] of the amplitudes (order, channel) and mean (channel,) of speed ``at``.
+
+    Time counts from zero rotation of the input.
+    """
+    turning = np.exp(1j * np.multiply.outer(time, spectrum.angular_frequency[at]))
+    return np.asarray(mean + (turning @ amplitude).real)

@@ -1,0 +1,141 @@
+"""What shakes a line from outside: harmonic torques of disks and transmission errors of meshes, by order.
+
+An exciter of order K (cycles per turn of the input) acts as Re[g(τ) e^{iKτ}] on the unknowns, one fixed in time as
+Re[g(τ) e^{iωt}]; g repeats with the joints and is constant on a straight line. The torque of a disk follows the base
+motion of its disk, joints' lead and static twist included,
+
+    A cos(k (|R| τ + d̄(τ)) + phase),
+
+so K = k |R| with R the mean speed ratio of the disk. A transmission error e adds to the twist of its mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.gears import GearPair
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.line_regimes import mesh_cycles
+from trunnion.equations.topology import Topology
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Exciter:
+    """One harmonic of one element.
+
+    ``order`` is K in cycles per turn of the input, 0 for a torque fixed in time, whose frequency [rad/s] stands in
+    the packed column ``frequency`` (−1 otherwise); ``own_order`` counts per turn of the disk. ``station`` is where a
+    torque acts, ``compliance`` the mesh of a transmission error; the other is −1. ``held`` torques act on a rotation
+    that a ConstantSpeed prescribes, and do nothing.
+    """
+
+    element: str
+    order: Fraction
+    own_order: float
+    amplitude: int
+    phase: int
+    frequency: int = -1
+    station: int = -1
+    compliance: int = -1
+    over: float = 1.0
+    held: bool = False
+
+    @property
+    def in_time(self) -> bool:
+        """Whether its frequency is fixed, whatever the speed."""
+        return self.frequency >= 0
+
+
+def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
+    """Every harmonic torque and transmission error of a line, those of no amplitude included."""
+    topo, line, column = assembly.topology, assembly.line, assembly.packed.column
+    found = []
+    for s, place in topo.disks:
+        element = line.elements[place]
+        assert isinstance(element, Disk)
+        held = topo.coordinate[topo.group_of(s)] < 0
+        for h, harmonic in enumerate(element.excitation, start=1):
+            own = harmonic.order or 0.0
+            found.append(
+                Exciter(
+                    line.names[place],
+                    Fraction(str(own)) * abs(topo.speed_ratio[s]),
+                    own,
+                    column(place, f"excitation {h} amplitude"),
+                    column(place, f"excitation {h} phase"),
+                    column(place, f"excitation {h} frequency"),
+                    station=s,
+                    held=held,
+                )
+            )
+    for e, compliance in enumerate(topo.compliances):
+        place = compliance.shafts[0]
+        mesh = line.elements[place]
+        if isinstance(mesh, GearPair):
+            for h, error in enumerate(mesh.transmission_error, start=1):
+                amplitude, phase = (column(place, f"transmission_error {h} {k}") for k in ("amplitude", "phase"))
+                order = int(error.order) * mesh_cycles(assembly, place)
+                name = line.names[place]
+                over = 1 / mesh.radii[1]
+                found.append(Exciter(name, order, error.order, amplitude, phase, compliance=e, over=over))
+    return tuple(found)
+
+
+def size(exciter: Exciter, table: Array) -> Complex:
+    """A e^{i phase} of an exciter, (case,): torque [N m], or transmission error as a twist [rad]."""
+    phase = table[:, exciter.phase]
+    return np.asarray(exciter.over * table[:, exciter.amplitude] * np.exp(1j * phase))
+
+
+@dataclass(frozen=True)
+class BaseOfExcitation:
+    """What exciters need of the base motion at the input angles asked for.
+
+    relative (case, time, station): r from a group's first station; rotation (case, time, station): deviation of the
+    base motion from uniform rotation [rad].
+    """
+
+    relative: Array
+    rotation: Array
+
+
+def base_of_excitation(topo: Topology, coefficients: LineCoefficients, untwisted: LineCoefficients, tau: Array) -> (
+    BaseOfExcitation
+):  # fmt: skip
+    """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
+    ratios = ratio_values(topo)
+    motion = base_motion(topo, coefficients, tau, ratios)
+    straight = replace(untwisted, angle=np.zeros_like(untwisted.angle))
+    uniform = base_motion(topo, straight, tau, ratios)
+    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle)
+
+
+def torque_on_unknowns(topo: Topology, exciter: Exciter, sizes: Complex, base: BaseOfExcitation) -> Complex:
+    """g (case, time, n) of a disk's torque [N m]; ``sizes`` as of ``size``."""
+    s = exciter.station
+    sense = float(np.sign(float(topo.speed_ratio[s])))
+    turned = np.exp(1j * exciter.own_order * sense * base.rotation[..., s])
+    g = np.zeros((*turned.shape, topo.size), dtype=complex)
+    g[..., topo.coordinate[topo.group_of(s)]] = base.relative[..., s] * sense * sizes[:, None] * turned
+    return g
+
+
+def twist_on_unknowns(topo: Topology, exciter: Exciter, torque: Complex, relative: Array) -> Complex:
+    """g (case, time, n) of a mesh whose transmission error alone gives it the ``torque`` (case, time) [N m]."""
+    ends = topo.compliances[exciter.compliance]
+    far, near = topo.coordinate[ends.far_group], topo.coordinate[topo.group_of(ends.near)]
+    g = np.zeros((*torque.shape, topo.size), dtype=complex)
+    if far >= 0:
+        g[..., far] -= torque
+    if near >= 0:
+        g[..., near] += relative[..., ends.near] * torque
+    return g

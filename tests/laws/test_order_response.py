@@ -1,0 +1,236 @@
+"""Linear steady response by order against closed forms, dense solutions and the nonlinear periodic motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.linear.order_result import OrderResponse
+
+
+def two_masses(**shaft: Any) -> tn.Driveline:
+    engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0, "phase": 0.7}])
+    return tn.Driveline([engine, tn.Shaft(stiffness=1e4, **shaft), tn.Disk(inertia=0.8)])
+
+
+def test_two_masses_in_closed_form() -> None:
+    """Relative motion: (−ν² J + iνc + k) q = −(J/J₁) T with J = J₁J₂/(J₁ + J₂); torque (k + iνc) q."""
+    speed = np.array([20.0, 90.0, 125.0, 400.0])
+    r = tn.order_response(two_masses(damping=3.0), speed)
+    v, z, reduced = 2 * speed, 1e4 + 3j * 2 * speed, 0.2 * 0.8 / 1.0
+    q = -(reduced / 0.2) * 100 * np.exp(0.7j) / (z - v**2 * reduced)
+    assert list(r.order) == [2.0]
+    assert r.torque[:, 0, 0] == pytest.approx(z * q, rel=1e-12)
+    assert r.twist[:, 0, 0] == pytest.approx(q, rel=1e-12)
+    assert r.vibratory_torque[:, 0] == pytest.approx(np.abs(z * q), rel=1e-12)
+    whole = -100 * np.exp(0.7j) / (v**2 * 1.0)  # both turn as one under the torque, and about their centre
+    assert r.rotation[:, 0, 0] * 0.2 + r.rotation[:, 0, 1] * 0.8 == pytest.approx(whole, rel=1e-10)
+    assert r.heat[:, 0] == pytest.approx(3.0 * v**2 * np.abs(q) ** 2 / 2, rel=1e-12)
+    assert r.acceleration[:, 0] == pytest.approx(v**2 * np.abs(r.rotation[:, 0, 0]), rel=1e-12)
+    assert r.speed_fluctuation[:, 1] == pytest.approx(v * np.abs(r.rotation[:, 0, 1]), rel=1e-12)
+
+
+def test_loss_factor_at_all_frequencies_in_closed_form() -> None:
+    speed = np.array([20.0, 125.0, 400.0])
+    r = tn.order_response(two_masses(loss_factor=0.08), speed)
+    v, z, reduced = 2 * speed, 1e4 * (1 + 0.08j), 0.16
+    q = -0.8 * 100 * np.exp(0.7j) / (z - v**2 * reduced)
+    assert r.torque[:, 0, 0] == pytest.approx(z * q, rel=1e-12)
+    # Loss per cycle over 2π times the largest elastic energy is the loss factor.
+    assert r.heat[:, 0] / (v / (2 * np.pi)) / (1e4 * np.abs(q) ** 2 / 2) / (2 * np.pi) == pytest.approx(0.08)
+
+
+def test_undamped_resonance_is_refused_at_its_speed() -> None:
+    at = np.sqrt(1e4 / 0.16) / 2
+    r = tn.order_response(two_masses(), [50.0, at, 200.0])
+    assert np.isnan(r.peak_torque[1, 0]) and np.all(np.isfinite(r.peak_torque[[0, 2], 0]))
+    assert any("No steady state exists" in f.sentence and "125 rad/s" in f.sentence for f in r.findings)
+
+
+def branched(rng: np.random.Generator) -> tn.Driveline:
+    def shaken() -> list[dict[str, float]]:
+        return [
+            {"order": float(order), "amplitude": float(rng.uniform(5, 50)), "phase": float(rng.uniform(-3, 3))}
+            for order in rng.choice([0.5, 1, 1.5, 2, 3], 2, replace=False)
+        ]
+
+    def shaft(after: str | None = None) -> tn.Shaft:
+        return tn.Shaft(stiffness=float(rng.uniform(5e3, 5e4)), damping=float(rng.uniform(1, 9)), after=after)
+
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.3, excitation=shaken(), name="engine"), shaft(), tn.Disk(inertia=0.1, name="gear"),
+            tn.Ratio(ratio=-2.5), tn.Disk(inertia=0.2, excitation=shaken()), shaft(), tn.Disk(inertia=0.4),
+            shaft(after="gear"), tn.Disk(inertia=0.5, excitation=shaken()), shaft(), tn.Disk(inertia=0.1),
+        ]
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_straight_branched_line_against_dense_matrices(seed: int) -> None:
+    """Rotations R_i of the groups' first disks; the matrices are written here once more, from energies."""
+    line = branched(np.random.default_rng(seed))
+    speed = np.array([15.0, 60.0, 170.0])
+    r = tn.order_response(line, speed)
+    e = [x for x in line.elements if not isinstance(x, tn.Ratio)]
+    disks, shafts = [x for x in e if isinstance(x, tn.Disk)], [x for x in e if isinstance(x, tn.Shaft)]
+    rho = -1 / 2.5
+    mass = np.diag([0.3, 0.1 + 0.2 * rho**2, 0.4, 0.5, 0.1])
+    # Twists of the shafts over the unknowns: engine, gear (first disk of its group), output, branch, branch end.
+    twist = np.array(
+        [[-1, 1, 0, 0, 0], [0, -rho, 1, 0, 0], [0, -1, 0, 1, 0], [0, 0, 0, -1, 1]], dtype=float
+    )  # fmt: skip
+    assert r.inertias[1] == "gear"
+    where = {0: (0, 1.0, 1.0), 2: (1, rho, -1.0), 4: (3, 1.0, 1.0)}
+    total = np.zeros((len(speed), len(r.order), 4), dtype=complex)
+    for place, (unknown, arm, sense) in where.items():
+        for h in disks[place].excitation:
+            assert h.order is not None
+            own = h.order * abs(arm)
+            k = int(np.flatnonzero(np.abs(r.order - own) < 1e-12)[0])
+            for s, w in enumerate(speed):
+                v = own * w
+                z = np.array([x.torsional_stiffness + 1j * v * x.damping for x in shafts])
+                a = twist.T @ (z[:, None] * twist) - v**2 * mass
+                b = np.zeros(5, dtype=complex)
+                b[unknown] = arm * sense * h.amplitude * np.exp(1j * h.phase)
+                total[s, k] += z * (twist @ np.linalg.solve(a, b))
+    assert r.torque == pytest.approx(total, rel=1e-10, abs=1e-12 * np.abs(total).max())
+
+
+def test_sum_over_the_cycle_is_that_of_the_wave() -> None:
+    r = tn.order_response(branched(np.random.default_rng(5)), [40.0, 90.0])
+    for at, speed in enumerate(r.speed):
+        wave = r.wave(float(speed))
+        half = np.ptp(wave.torque, axis=0) / 2
+        assert np.all(half <= r.vibratory_torque[at] * (1 + 1e-12))
+        assert half == pytest.approx(r.vibratory_torque[at], rel=3e-3)
+        assert wave.torque[0] == pytest.approx(wave.torque[-1], rel=1e-9)
+
+
+def test_excitation_on_a_held_disk_is_said() -> None:
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Disk(inertia=1.0, excitation=[{"order": 2, "amplitude": 50.0}], name="engine"),
+            tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=1.0),
+        ]
+    )  # fmt: skip
+    r = tn.order_response(line, [30.0])
+    assert r.peak_torque[0, 0] == 0
+    said = [f.sentence for f in r.findings]
+    assert any("The excitation of engine does nothing" in s for s in said)
+    assert any("Nothing excites this line" in s for s in said)
+
+
+def test_frequencies_in_time_and_orders_add_to_a_bound() -> None:
+    both = [{"order": 2, "amplitude": 30.0}, {"frequency": 77.7, "amplitude": 20.0, "phase": 0.3}]
+    line = tn.Driveline(
+        [tn.Disk(inertia=0.2, excitation=both), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]
+    )
+    r = tn.order_response(line, [50.0, 100.0])
+    assert r.sum_is_bound and any("bounds" in f.sentence for f in r.findings)
+    assert list(r.order) == [2.0, 0.0] and list(r.frequency) == [0.0, 77.7]
+    z = 1e4 + 2j * 77.7
+    q = -0.8 * 20 * np.exp(0.3j) / (z - 77.7**2 * 0.16)
+    assert r.torque[:, 1, 0] == pytest.approx([z * q, z * q], rel=1e-12)
+    assert r.vibratory_torque[:, 0] == pytest.approx(np.abs(r.torque[:, :, 0]).sum(axis=1), rel=1e-12)
+
+
+def test_transmission_error_in_closed_form() -> None:
+    """Two gears between two clamps' shafts would do; here the mesh is the only spring: q = −e ν² J / (…)."""
+    mesh = tn.GearPair(
+        teeth_in=20, teeth_out=30, module=0.003, mesh_stiffness=1e8, mesh_damping=400.0,
+        transmission_error=[{"amplitude": 1e-5, "order": 1, "phase": 0.4}],
+    )  # fmt: skip
+    line = tn.Driveline([tn.Disk(inertia=0.01), mesh, tn.Disk(inertia=0.02)])
+    speed = np.array([30.0, 90.0])
+    r = tn.order_response(line, speed)
+    r1, r2 = mesh.radii
+    v = 20 * speed
+    z, reduced = 1e8 + 400j * v, 1 / (r1**2 / 0.01 + r2**2 / 0.02)
+    e = 1e-5 * np.exp(0.4j)
+    # u = r₁φ₁ − r₂φ₂ − e carries z u; m(u″ + e″) = −z u with m the reduced mass along the line of action.
+    u = v**2 * reduced * e / (z - v**2 * reduced)
+    assert list(r.order) == [20.0]
+    assert r.torque[:, 0, 0] == pytest.approx(-r2 * z * u, rel=1e-10)
+
+
+def jointed(seed: int, scale: float) -> tn.Driveline:
+    """Random driven lines; excitations fall with ``scale``, joint angles with its root, since β² is what they force."""
+    rng = np.random.default_rng(seed)
+    root = np.sqrt(scale)
+
+    def disk(load: bool = False) -> tn.Disk:
+        harmonics = [
+            {
+                "order": float(rng.choice([1, 2, 3, 4])),
+                "amplitude": scale * float(rng.uniform(10, 60)),
+                "phase": float(rng.uniform(-3, 3)),
+            }
+            for _ in range(int(rng.integers(0, 3)))
+        ]
+        torque = float(rng.uniform(0, 40)) if load else 0.0
+        return tn.Disk(inertia=float(rng.uniform(0.1, 0.5)), load_torque=torque, excitation=harmonics)
+
+    def shaft() -> tn.Shaft:
+        k = float(rng.uniform(5e3, 2e4))
+        return tn.Shaft(stiffness=k, damping=k * 1e-3, fork_offset=float(rng.uniform(-3, 3)))
+
+    def joint() -> tn.HookeJoint:
+        return tn.HookeJoint(angle=root * float(rng.uniform(0.1, 0.4)), plane=float(rng.uniform(-3, 3)))
+
+    elements: list[Any] = [tn.ConstantSpeed(), shaft(), disk(), joint(), shaft(), disk(load=True)]
+    kind = int(rng.integers(4))
+    if kind == 0:
+        elements += [joint(), disk(), shaft(), disk(load=True)]
+    elif kind == 1:
+        elements += [tn.Ratio(ratio=float(rng.choice([-2.0, 0.5, 2.0]))), joint(), disk(), shaft(), disk(load=True)]
+    elif kind == 2:
+        elements += [joint(), shaft(), disk(load=True)]
+    return tn.Driveline(elements)
+
+
+def departure(line: tn.Driveline, speed: float) -> tuple[float, float]:
+    """Largest difference by any order and spring from the nonlinear periodic motion [N m], and the largest order."""
+    r = tn.order_response(line, [speed])
+    true = tn.periodic_response(line, speed, compare=False, settle=False)
+    assert true.outcome.ok
+    count = len(true.torque)
+    spectrum = 2 * np.fft.fft(true.torque, axis=0) / count
+    worst = 0.0
+    everything: OrderResponse = tn.order_response(line, [speed], orders=np.arange(1, 9) / 2)
+    for k, order in enumerate(everything.order):
+        place = order * true.turns
+        if abs(place - round(place)) < 1e-9:
+            found = spectrum[round(place)] * np.exp(-1j * order * speed * true.time[0])
+            worst = max(worst, float(np.abs(found - everything.torque[0, k]).max()))
+    return worst, float(np.abs(r.torque).max())
+
+
+def falls_with_the_square(seed: int) -> tuple[float, float]:
+    """Exponent of the difference over the last step of scale, and its size there relative to the largest order."""
+    speed = float(np.random.default_rng(1000 + seed).uniform(25, 60))
+    scales = [1 / 256, 1 / 8192]
+    (far, _), (near, largest) = (departure(jointed(seed, scale), speed) for scale in scales)
+    return float(np.log(far / near) / np.log(scales[0] / scales[1])), near / largest
+
+
+def check_square(seed: int) -> None:
+    exponent, share = falls_with_the_square(seed)
+    # Below 1e-9 of the largest order the difference is the accuracy of the nonlinear motion.
+    assert exponent > 1.95 or share < 1e-9
+    assert share < 1e-5
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_differs_from_the_nonlinear_motion_by_the_square(seed: int) -> None:
+    check_square(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8, 108))
+def test_differs_by_the_square_on_a_hundred_lines(seed: int) -> None:
+    check_square(seed)
