@@ -160,6 +160,7 @@ def chart_json(chart: StabilityChart, unit: str, written: Sequence[Path]) -> dic
         "unstable_share": chart.unstable_share,
         "error_estimate": _error_json(chart),
         "spot_check": None if chart.spot_check is None else asdict(chart.spot_check),
+        "way": chart.way,
         "remarks": list(chart.remarks),
         "written": [str(path) for path in written],
     }

@@ -37,7 +37,7 @@ def provenance(contents: Contents, source: Path | None, made: datetime) -> list[
         if chart.spot_check is not None:
             rows.append(
                 ("self-check", f"{chart.spot_check.points} random points integrated anew; they differ by up to "
-                 f"{chart.spot_check.worst_ratio:.2g} of the estimated error")
+                 f"{chart.spot_check.worst_ratio:.2g} of the estimated error; built as: {chart.way}")
             )  # fmt: skip
     if contents.limit is not None:
         limit = contents.limit

@@ -21,7 +21,7 @@ from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.drawing import drawing
 from trunnion.results.files import read_dataset, save_dataset
 from trunnion.results.units import with_unit
-from trunnion.results.verdict import Verdict, flag_attributes, verdicts
+from trunnion.results.verdict import Verdict, flag_attributes
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -65,8 +65,8 @@ class StabilityChart:
 
     ``verdict`` holds the int8 codes of ``Verdict``; a failed point keeps its place as NaN. ``speed`` [rad/s]
     is the fixed input speed where no axis is the speed; ``period`` [rad] of input angle; ``remarks`` say what
-    was clipped or enlarged; ``function`` are the patches behind the pixels; ``error_factor`` is what a failed
-    spot check multiplied all error estimates by, those of ``at`` and ``zoom`` too.
+    was clipped or built anew; ``function`` are the patches behind the pixels; ``way`` is how the chart was built in
+    the end: "patches", or after a failed check "smaller patches", "whole periods" or "pixel by pixel".
     """
 
     x: Array
@@ -89,7 +89,7 @@ class StabilityChart:
     evaluate_point: Callable[[float, float], ChartPoint] | None = field(default=None, repr=False, compare=False)
     resample: Resample | None = field(default=None, repr=False, compare=False)
     spot_check: SpotCheck | None = None
-    error_factor: float = 1.0
+    way: str = "patches"
 
     @property
     def x_label(self) -> str:
@@ -120,12 +120,7 @@ class StabilityChart:
                 )
         if self.evaluate_point is None:
             raise InputError("was read without its family and cannot be evaluated between pixels", element="chart")
-        point = self.evaluate_point(float(x), float(y))
-        if self.error_factor == 1.0:
-            return point
-        error = point.error_estimate * self.error_factor
-        code = verdicts(np.array(point.spectral_radius), np.array(error), np.array(point.verdict is Verdict.MARGINAL))
-        return replace(point, error_estimate=error, verdict=Verdict(int(code)))
+        return self.evaluate_point(float(x), float(y))
 
     def zoom(self, x: Sequence[float | str], y: Sequence[float | str]) -> StabilityChart:
         """The same chart on other pixels: ``x`` and ``y`` are (low, high, points) inside its box.
@@ -140,18 +135,9 @@ class StabilityChart:
         if self.resample is None:
             raise InputError("was read without its family and cannot be resampled", element="chart")
         radius, error, critical, verdict = self.resample(x, y)
-        plain = replace(
-            self, x=x, y=y, spectral_radius=radius, error_estimate=error, critical_multiplier=critical,
-            verdict=verdict, error_factor=1.0,
-        )  # fmt: skip
-        return plain if self.error_factor == 1.0 else plain.with_errors_times(self.error_factor)
-
-    def with_errors_times(self, factor: float) -> StabilityChart:
-        """The same chart with all error estimates enlarged and the verdicts drawn from them anew."""
-        error = self.error_estimate * factor
-        marginal = self.verdict == Verdict.MARGINAL
-        verdict = verdicts(self.spectral_radius, error, marginal)
-        return replace(self, error_estimate=error, verdict=verdict, error_factor=self.error_factor * factor)
+        return replace(
+            self, x=x, y=y, spectral_radius=radius, error_estimate=error, critical_multiplier=critical, verdict=verdict
+        )
 
     def count(self, verdict: Verdict) -> int:
         """Number of points with that verdict."""
@@ -190,7 +176,7 @@ class StabilityChart:
                 "x_parameter": _parameter_text(self.x_parameter),
                 "y_parameter": _parameter_text(self.y_parameter),
                 "speed": float("nan") if self.speed is None else self.speed,
-                "error_factor": self.error_factor,
+                "way": self.way,
                 "spot_check": json.dumps(asdict(self.spot_check) if self.spot_check else None),
             },
         )
@@ -297,7 +283,7 @@ def _chart_of(data: xr.Dataset) -> StabilityChart:
         line=loads(text) if text else None,
         function=_function_of(data),
         spot_check=SpotCheck(**check) if check else None,
-        error_factor=float(data.attrs.get("error_factor", 1.0)),
+        way=str(data.attrs["way"]),
     )
 
 

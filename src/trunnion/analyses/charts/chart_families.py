@@ -7,8 +7,7 @@ functions, so a speed axis is patched in 1/Ω.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Protocol
 
@@ -20,7 +19,6 @@ from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
-from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.chain.chain_monodromy import (
     Window,
     chain_monodromy,
@@ -30,10 +28,8 @@ from trunnion.numerics.chain.chain_monodromy import (
 )
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices
-from trunnion.numerics.chain.dense_monodromy import propagate
-from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
+from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid
 from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
-from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
 
@@ -61,8 +57,11 @@ class ChartFamily(Protocol):
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """Quantities and their error bounds at points (x, y), each (points, quantities)."""
 
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
-        """How to sample grids in the patch variables when building the patches of ``box``."""
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
+        """How to sample grids in the patch variables when building the patches of ``box``; by slabs where they pay."""
+
+    def over_whole_periods(self) -> ChartFamily:
+        """The same family integrated over whole periods, whatever symmetry it may have."""
 
     def to_patch(self, value: Array, of_x: bool) -> Array:
         """Axis values → the variable in which the quantities are smooth."""
@@ -91,13 +90,14 @@ def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]
 
 @dataclass(frozen=True)
 class LineFamily:
-    """A driveline over two of its parameters."""
+    """A driveline over two of its parameters; ``half_windows``: half periods suffice where the joints' phases allow."""
 
     assembly: Assembly
     x: Axis
     y: Axis
     speed: float
     statically_twisted: bool
+    half_windows: bool = True
     affordable: ClassVar[int] = 200_000
 
     @property
@@ -138,9 +138,9 @@ class LineFamily:
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
-        program, period = self.program, self.period
+        program = self.program
         lanes = self.lanes(x, y)
-        window = _window(program, lanes, period)
+        window = self._window(program, lanes)
         # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
         order = _kinematic_order(lanes)
         sorted_lanes = lanes if order is None else ChainLanes(*(part[..., order] for part in lanes))
@@ -154,18 +154,24 @@ class LineFamily:
         """See ``ChartFamily``."""
         return quantities(*self.matrices(x, y, tolerance / AMPLIFICATION.get(self.size, 4), threads))
 
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
+    def over_whole_periods(self) -> LineFamily:
+        """See ``ChartFamily``."""
+        return replace(self, half_windows=False)
+
+    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
-        ends = np.array([box.u0, box.u0, box.u1, box.u1]), np.array([box.v0, box.v1] * 2)
-        corners = self._patch_lanes(*ends)
+        if not slabs or pixels < FEWEST_PIXELS:
+            return grid_by_grid(self, box, tolerance, threads)
+        lanes = self._patch_lanes(*spread(box))
         program = self.program
-        window = _window(program, corners, self.period)
+        # One window serves the whole box, so it must suit every point of it: corners alone would not tell.
+        window = self._window(program, lanes)
         length = window.period / 2 if window.half else window.period
         # ν is the root mean square of the modes; the highest is at most √n times that.
-        highest = float(corners.frequency.max()) * np.sqrt(self.size)
-        edges = slab_edges(highest, *self._swiftness(ends, window.begin, length))
+        swiftest = float(lanes.frequency.max())
+        edges = slab_edges(swiftest * np.sqrt(self.size), *self._swiftness(spread(box, 5), window.begin, length))
         count = len(edges) - 1
-        if count < FEWEST_SLABS or pixels < FEWEST_PIXELS:
+        if count < FEWEST_SLABS:
             return grid_by_grid(self, box, tolerance, threads)
         # Slabs are so cheap that a sharper tolerance costs little, and every bound below grows with it.
         sharper = tolerance / (10 if self.size <= 2 else 100)
@@ -174,18 +180,23 @@ class LineFamily:
             asked = max(sharper / (4 * count), 1e-14)
             return chain_propagator(program, self._patch_lanes(u, v), begin, stretch, asked, threads)
 
-        slabs = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
-        if slabs is None:
+        built = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
+        if built is None:
             return grid_by_grid(self, box, tolerance, threads)
 
         def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
             return [
                 quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
-                for grid, parts in zip(grids, on_grids(slabs, grids, threads), strict=True)
+                for grid, parts in zip(grids, on_grids(built, grids, threads), strict=True)
             ]
 
         # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
-        return Sampler(evaluate, -1, self._first_boxes(box, float(corners.frequency.max())))
+        return Sampler(evaluate, -1, self._first_boxes(box, swiftest))
+
+    def _window(self, program: ChainProgram, lanes: ChainLanes) -> Window:
+        """The window that suits all ``lanes``: half a period where every joint is even about one phase in each."""
+        begin = symmetry_phase(program, lanes, self.period) if self.half_windows else None
+        return Window(0.0 if begin is None else begin, self.period, begin is not None)
 
     def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
         """Input angles over a stretch, and the speed of the swiftest station over the input's at each."""
@@ -272,9 +283,14 @@ def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) 
     return Sampler(evaluate, 0.8 * NODES**2, [box])
 
 
-def _window(program: ChainProgram, lanes: ChainLanes, period: float) -> Window:
-    begin = symmetry_phase(program, lanes, period)
-    return Window(0.0 if begin is None else begin, period, begin is not None)
+def spread(box: Box, count: int = 24) -> tuple[Array, Array]:
+    """Points (u, v) all over a box: edges and ``count`` places per axis between them that share no period.
+
+    What holds at the corners need not hold between them: a fork offset from 0 to 90° is symmetric at both ends.
+    """
+    places = np.concatenate([[0.0, 1.0], np.mod((np.sqrt(5) - 1) / 2 * np.arange(1, count + 1), 1.0)])
+    u, v = box.u0 + places * (box.u1 - box.u0), box.v0 + places * (box.v1 - box.v0)
+    return np.tile(u, len(v)), np.repeat(v, len(u))
 
 
 def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
@@ -289,133 +305,3 @@ def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
     key = np.lexsort((1 / lanes.frequency, *moving))
     sorted_changes = sum(np.count_nonzero(np.diff(row[key])) for row in moving)
     return key if sorted_changes < changes / 4 else None
-
-
-@dataclass(frozen=True)
-class OwnFamily:
-    """A user's ``PeriodicLinearFamily`` over two of its parameters; ``middle`` is a typical point."""
-
-    family: PeriodicLinearFamily
-    x_name: str
-    y_name: str
-    middle: tuple[float, float]
-    rigid_body: bool = False
-    affordable: ClassVar[int] = 2_000
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates."""
-        return self.family.size
-
-    @property
-    def period(self) -> float:
-        """Period in τ."""
-        return self.family.period
-
-    @cached_property
-    def _unit(self) -> Array | None:
-        """Units of the state at the typical point, kept everywhere so that entries of Z stay analytic.
-
-        None where that point has no answer; then each takes its own units, and entries may jump.
-        """
-        try:
-            return propagate(self._member(*self.middle), self.period, self.size, 1e-6).scale
-        except ComputationError:
-            return None
-
-    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
-        """Monodromy matrices in common units, their errors and ∫ tr(M⁻¹C) dτ, member by member; NaN where it fails."""
-        n = self.size
-        matrix, error, trace = np.full((len(x), 2 * n, 2 * n), np.nan), np.full(len(x), np.nan), np.full(len(x), np.nan)
-        for p in range(len(x)):
-            try:
-                run = propagate(self._member(x[p], y[p]), self.period, n, tolerance)
-            except ComputationError:
-                continue
-            unit = run.scale if self._unit is None else self._unit
-            matrix[p], trace[p] = run.monodromy * unit[None, :] / unit[:, None], run.damping_trace
-            change = run.scale / unit
-            error[p] = run.error * change.max() / change.min()
-        return matrix, error, trace
-
-    def failures(self, x: Array, y: Array, failed: NDArray[np.bool_], tolerance: float) -> list[str]:
-        """What went wrong at the pixels (y, x) that ``failed``, as a sentence about the first."""
-        if not failed.any():
-            return []
-        row, column = np.argwhere(failed)[0]
-        place = f"{self.x_name} = {x[column]:g}, {self.y_name} = {y[row]:g}"
-        try:
-            propagate(self._member(x[column], y[row]), self.period, self.size, tolerance)
-            why = "the motion grows beyond numbers"
-        except ComputationError as error:
-            why = str(error)
-        count = int(failed.sum())
-        return [f"{count} point{'s' if count > 1 else ''} failed; at {place}: {why}"]
-
-    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
-        """See ``ChartFamily``."""
-        return quantities(*self.matrices(x, y, tolerance, threads))
-
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
-        """See ``ChartFamily``."""
-        return grid_by_grid(self, box, tolerance, threads)
-
-    def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
-        values = {self.x_name: np.array([x]), self.y_name: np.array([y])}
-
-        def at(tau: Array) -> tuple[Array, Array, Array, Array]:
-            m, c, k = (part[0] for part in self.family.matrices(tau, values))
-            return m, c, k, np.zeros((len(tau), self.size))
-
-        return at
-
-    def to_patch(self, value: Array, of_x: bool) -> Array:
-        """Parameters are taken as they are."""
-        return np.asarray(value, dtype=float)
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """The inverse of ``to_patch``."""
-        return np.asarray(value, dtype=float)
-
-
-@dataclass(frozen=True)
-class PatchesAlone:
-    """A family read from a file without its function: only its patches answer."""
-
-    size: int
-    period: float
-    rigid_body: bool = False
-    affordable: ClassVar[int] = 0
-
-    @classmethod
-    def of(cls, function: PatchedFunction, period: float) -> PatchesAlone | None:
-        """The family behind some patches; None where there are none."""
-        if not function.patches:
-            return None
-        count = len(function.patches[0].error) - 1
-        return cls((count if count <= LARGEST else round(np.sqrt(count))) // 2, period)
-
-    def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
-        """Nothing but the patches is known: NaN."""
-        m = 2 * self.size
-        return np.full((len(x), m, m), np.nan), np.full(len(x), np.nan), np.full(len(x), np.nan)
-
-    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
-        """Nothing but the patches is known."""
-        raise InputError(
-            f"has no patch at ({x[0]:g}, {y[0]:g}) and was read without its family",
-            element="chart",
-            remedy="load_chart(path, family=…)",
-        )
-
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int) -> Sampler:
-        """See ``ChartFamily``."""
-        return grid_by_grid(self, box, tolerance, threads)
-
-    def to_patch(self, value: Array, of_x: bool) -> Array:
-        """Parameters are taken as they are."""
-        return np.asarray(value, dtype=float)
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """The inverse of ``to_patch``."""
-        return np.asarray(value, dtype=float)

@@ -2,7 +2,8 @@
 
 The chart samples analytic quantities at the nodes of adaptive Chebyshev patches, interpolates them to the
 pixels and finds multipliers there; small regions are evaluated pixel by pixel. At the end it checks itself
-at random pixels by direct integration at a much smaller tolerance.
+at random pixels by direct integration at a much smaller tolerance, and is built in another way where that
+check fails (see ``building``).
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
-from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily, OwnFamily, PatchesAlone
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, multipliers_of
+from trunnion.analyses.charts.building import build, decide, family_for, fill, way_named
+from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of
+from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -24,16 +27,13 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
-from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction, build
-from trunnion.numerics.threads import on_threads
-from trunnion.results.chart import ChartPoint, SpotCheck, StabilityChart
+from trunnion.numerics.patches.patches import PatchedFunction
+from trunnion.results.chart import ChartPoint, StabilityChart
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
-SPOTS = 24
-"""Random pixels at which a chart checks itself."""
 
 
 def stability_chart(
@@ -69,6 +69,7 @@ def stability_chart(
     Raises
     ------
     InputError : see ``axes.axis``; both axes the same; no speed.
+    ComputationError : the chart's check of itself fails in every way of building it.
     KeyboardInterrupt : passed on; nothing is kept.
     """
     task = (
@@ -83,16 +84,13 @@ def stability_chart(
     workers = threads or os.cpu_count() or 1
     tell = progress or (lambda share: None)
     x_axis, y_axis = task.x, task.y
-    function = _patched(task.family, x_axis.values, y_axis.values, tolerance, workers, tell)
-    pixels = _fill(task.family, function, x_axis.values, y_axis.values, tolerance, workers)
+    built = build(task.family, x_axis.values, y_axis.values, tolerance, workers, tell)
     tell(1.0)
-    remarks = list(task.remarks)
-    if function.stubborn:
-        many = f"{function.stubborn} small regions" if function.stubborn > 1 else "1 small region"
-        remarks.append(f"{many} did not converge as patches: integrated pixel by pixel")
+    pixels = built.pixels
+    remarks = [*task.remarks, *built.remarks]
     if isinstance(task.family, OwnFamily):
         remarks += task.family.failures(x_axis.values, y_axis.values, pixels.verdict == Verdict.FAILED, tolerance)
-    chart = StabilityChart(
+    return StabilityChart(
         x=x_axis.values,
         y=y_axis.values,
         x_parameter=x_axis.parameter,
@@ -109,11 +107,12 @@ def stability_chart(
         statically_twisted=statically_twisted,
         remarks=tuple(remarks),
         line=task.line,
-        function=function,
-        evaluate_point=_pointwise(task.family, function, tolerance),
-        resample=_resampler(task.family, function, tolerance, workers),
+        function=built.function,
+        evaluate_point=_pointwise(built.family, built.function, built.tolerance),
+        resample=_resampler(built.family, built.function, built.tolerance, workers),
+        spot_check=built.check,
+        way=built.way.name,
     )
-    return _self_checked(chart, task.family, tolerance, workers)
 
 
 @dataclass(frozen=True)
@@ -181,86 +180,6 @@ def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> _
     return _Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
 
 
-def _patched(
-    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress
-) -> PatchedFunction:
-    u, v = family.to_patch(x, True), family.to_patch(y, False)
-    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
-    if box.u0 == box.u1 or box.v0 == box.v1:
-        return PatchedFunction((), (box,))
-
-    sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads)
-    return build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
-
-
-def _fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int) -> Pixels:
-    """Every pixel, patch by patch in parallel, the rest by direct integration."""
-    shape = (len(y), len(x))
-    radius, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    critical, verdict = np.full(shape, np.nan, dtype=complex), np.full(shape, Verdict.FAILED, dtype=np.int8)
-    left = np.ones(shape, dtype=bool)
-    u, v = family.to_patch(x, True), family.to_patch(y, False)
-
-    def fill_strip(task: tuple[Patch, Array, slice, slice]) -> None:
-        patch, along, rows, columns = task
-        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.rigid_body)
-        radius[rows, columns], error[rows, columns] = found.radius, found.error
-        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
-
-    # One patch may cover most of the pixels, so threads share strips.
-    tasks = []
-    for patch in function.patches:
-        rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
-        if rows.stop > rows.start and columns.stop > columns.start:
-            width = (columns.stop - columns.start) * len(patch.error)
-            along = patch.columns(u[columns])
-            tasks += [(patch, along, part, columns) for part in _strips(rows, width)]
-            left[rows, columns] = False
-    on_threads(fill_strip, tasks, threads)
-    r, c = np.nonzero(left)
-    for start in range(0, len(r), 65536):
-        here = (r[start : start + 65536], c[start : start + 65536])
-        values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
-        found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.rigid_body)
-        radius[here], error[here], critical[here], verdict[here] = (
-            found.radius,
-            found.error,
-            found.critical,
-            found.verdict,
-        )
-    pixels = Pixels(radius, error, critical, verdict)
-    _decide(family, pixels, x, y, tolerance, threads)
-    return pixels
-
-
-def _decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:
-    """Judge undecided pixels (y, x) anew, in place, from monodromy matrices of their own.
-
-    Stiff and soft shafts together make coefficients so large that their rounding hides roots which the matrix
-    still shows; there are few such pixels in most charts.
-    """
-    rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
-    if family.rigid_body or not 0 < len(rows) <= family.affordable:
-        return
-    found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
-    better = found.error < pixels.error[rows, columns]
-    here = rows[better], columns[better]
-    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
-    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
-
-
-def _between(axis: Array, low: float, high: float) -> slice:
-    """Places of a monotonic axis that lie between two values."""
-    inside = np.flatnonzero((axis >= low) & (axis <= high))
-    return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
-
-
-def _strips(rows: slice, per_row: int, limit: int = 200_000) -> list[slice]:
-    """Rows in strips of at most ``limit`` numbers: bounded memory, and work for every thread's cache."""
-    step = max(1, limit // max(per_row, 1))
-    return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]
-
-
 def _pointwise(
     family: ChartFamily, function: PatchedFunction, tolerance: float
 ) -> Callable[[float, float], ChartPoint]:
@@ -275,7 +194,7 @@ def _pointwise(
             values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.rigid_body)
         grid = Pixels(found.radius[None], found.error[None], found.critical[None], found.verdict[None])
-        _decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
+        decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
         found = Pixels(grid.radius[0], grid.error[0], grid.critical[0], grid.verdict[0])
         return ChartPoint(
             x=x,
@@ -294,33 +213,10 @@ def _resampler(
     family: ChartFamily, function: PatchedFunction, tolerance: float, threads: int
 ) -> Callable[[Array, Array], tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]]:
     def resample(x: Array, y: Array) -> tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]:
-        pixels = _fill(family, function, x, y, tolerance, threads)
+        pixels = fill(family, function, x, y, tolerance, threads)
         return pixels.radius, pixels.error, pixels.critical, pixels.verdict
 
     return resample
-
-
-def _self_checked(chart: StabilityChart, family: ChartFamily, tolerance: float, threads: int) -> StabilityChart:
-    """Compare random pixels with direct integration; enlarge the error estimates if one falls short."""
-    rng = np.random.default_rng(chart.verdict.size)
-    rows, columns = rng.integers(0, len(chart.y), SPOTS), rng.integers(0, len(chart.x), SPOTS)
-    values, bounds = family.evaluate(chart.x[columns], chart.y[rows], max(tolerance * 1e-3, 1e-13), threads)
-    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
-    off = np.abs(found.radius - chart.spectral_radius[rows, columns])
-    allowed = chart.error_estimate[rows, columns] + found.error
-    # Without error and without estimate is not off.
-    ratio = float(np.nanmax(off / np.maximum(allowed, 1e-300))) if np.isfinite(off).any() else float("nan")
-    check = SpotCheck(SPOTS, ratio, float(np.nanmax(off)) if np.isfinite(off).any() else float("nan"))
-    if not ratio > 1:
-        return replace(chart, spot_check=check)
-    return replace(
-        chart.with_errors_times(2 * ratio),
-        spot_check=check,
-        remarks=(
-            *chart.remarks,
-            f"a spot check was off by {ratio:.1f} times its estimate; all were enlarged",
-        ),
-    )
 
 
 def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | None = None) -> StabilityChart:
@@ -342,10 +238,12 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
         own = _family_of_line(chart, chart.line)
     if own is None:
         return chart
+    way = way_named(chart.way)
+    own, tolerance = family_for(way, own), chart.tolerance * way.share
     return replace(
         chart,
-        evaluate_point=_pointwise(own, chart.function, chart.tolerance),
-        resample=_resampler(own, chart.function, chart.tolerance, os.cpu_count() or 1),
+        evaluate_point=_pointwise(own, chart.function, tolerance),
+        resample=_resampler(own, chart.function, tolerance, os.cpu_count() or 1),
     )
 
 

@@ -1,0 +1,244 @@
+"""How a chart is built, and built anew in another way where its own check fails.
+
+A chart interpolates, and interpolation rests on assumptions that nobody has proved for every line: that the
+tails of the series tell the error, that slabs are smooth, that half a period suffices. So every chart compares
+random pixels with direct integration over whole periods, at a thousandth of its tolerance. Where one differs by
+more than its estimate, no estimate can be trusted and the chart is built in the next way of ``LADDER``, each of
+which assumes less; a chart that fails in every way is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.charts.chart_families import ChartFamily
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows
+from trunnion.errors import ComputationError, InputError
+from trunnion.numerics.patches import patches
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.numerics.threads import on_threads
+from trunnion.results.chart import SpotCheck
+from trunnion.results.verdict import Verdict
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+SPOTS = 24
+"""Random pixels at which a chart checks itself."""
+UNEVEN = 0.4713
+"""Where boxes are divided for smaller patches: not in the middle, so that no node stands where one stood."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way of building a chart.
+
+    ``name`` as results carry it; ``said``: how a note puts it; ``share`` of the tolerance asked for; ``smaller``
+    patches, without slabs; ``half_windows``: half periods where symmetry allows; ``patched``: patches at all.
+    """
+
+    name: str
+    said: str
+    share: float = 1.0
+    smaller: bool = False
+    half_windows: bool = True
+    patched: bool = True
+
+
+LADDER = (
+    Way("patches", "patches"),
+    Way("smaller patches", "smaller patches at a tenth of the tolerance", 0.1, smaller=True),
+    Way(
+        "whole periods",
+        "smaller patches at a tenth of the tolerance, integrated over whole periods",
+        0.1, smaller=True, half_windows=False,
+    ),
+    Way(
+        "pixel by pixel",
+        "every pixel integrated by itself over whole periods at a tenth of the tolerance",
+        0.1, half_windows=False, patched=False,
+    ),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Built:
+    """A chart's pixels and what stands behind them: the way that held, its family and tolerance, and its check.
+
+    ``failed``: what the checks of the ways before found.
+    """
+
+    way: Way
+    family: ChartFamily
+    tolerance: float
+    function: PatchedFunction
+    pixels: Pixels
+    check: SpotCheck
+    failed: tuple[SpotCheck, ...]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What a reader of the chart must know of how it was built."""
+        said = []
+        if self.failed:
+            ratio = max(check.worst_ratio for check in self.failed)
+            said.append(
+                f"its check found the chart as first built off by {ratio:.2g} times its error estimate; "
+                f"it was built anew from {self.way.said}"
+            )
+        if count := self.function.stubborn:
+            many = f"{count} small regions" if count > 1 else "1 small region"
+            said.append(f"{many} did not converge as patches: integrated pixel by pixel")
+        return said
+
+
+def way_named(name: str) -> Way:
+    """The way of ``LADDER`` that a saved chart names."""
+    for way in LADDER:
+        if way.name == name:
+            return way
+    raise InputError(
+        "is not a way of building charts", element="chart", key="way", value=name, remedy="compute it again"
+    )
+
+
+def family_for(way: Way, family: ChartFamily) -> ChartFamily:
+    """The family as this way integrates it."""
+    return family if way.half_windows else family.over_whole_periods()
+
+
+def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress) -> Built:
+    """Pixels (y, x) in the first way of ``LADDER`` whose check passes.
+
+    Raises
+    ------
+    ComputationError : the check fails in every way.
+    """
+    failed: list[SpotCheck] = []
+    for way in LADDER:
+        own, asked = family_for(way, family), tolerance * way.share
+        if way.smaller and not way.half_windows and own is family:
+            continue  # it never used half periods, so this was tried before
+        function = _patched(way, own, x, y, asked, threads, tell)
+        pixels = fill(own, function, x, y, asked, threads)
+        check = spot_check(family, pixels, x, y, tolerance, threads, SPOTS * (1 + len(failed)))
+        if not check.worst_ratio > 1:
+            return Built(way, own, asked, function, pixels, check, tuple(failed))
+        failed.append(check)
+    worst = failed[-1]
+    raise ComputationError(
+        f"the chart failed its own check in each of {len(failed)} ways of building it: points integrated anew move the "
+        f"spectral radius by {worst.worst_difference:.1e}, {worst.worst_ratio:.2g} times the error estimated; "
+        "raise the tolerance, or ask stability() for single points"
+    )
+
+
+def _patched(
+    way: Way, family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress
+) -> PatchedFunction:
+    u, v = family.to_patch(x, True), family.to_patch(y, False)
+    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+    if not way.patched or box.u0 == box.u1 or box.v0 == box.v1:
+        return PatchedFunction((), (box,))
+    sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads, slabs=not way.smaller)
+    boxes = [part for whole in sampler.boxes for part in (_quarters(whole) if way.smaller else [whole])]
+    return patches.build(sampler.evaluate, boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
+
+
+def _quarters(box: Box) -> list[Box]:
+    """Four parts that share no node with the whole."""
+    u, v = box.u0 + UNEVEN * (box.u1 - box.u0), box.v0 + UNEVEN * (box.v1 - box.v0)
+    return [Box(a, b, c, d) for a, b in ((box.u0, u), (u, box.u1)) for c, d in ((box.v0, v), (v, box.v1))]
+
+
+def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int) -> Pixels:
+    """Every pixel, patch by patch in parallel, the rest by direct integration."""
+    shape = (len(y), len(x))
+    radius, error = np.full(shape, np.nan), np.full(shape, np.nan)
+    critical, verdict = np.full(shape, np.nan, dtype=complex), np.full(shape, Verdict.FAILED, dtype=np.int8)
+    left = np.ones(shape, dtype=bool)
+    u, v = family.to_patch(x, True), family.to_patch(y, False)
+
+    def fill_strip(task: tuple[Patch, Array, slice, slice]) -> None:
+        patch, along, rows, columns = task
+        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.rigid_body)
+        radius[rows, columns], error[rows, columns] = found.radius, found.error
+        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
+
+    # One patch may cover most of the pixels, so threads share strips.
+    tasks = []
+    for patch in function.patches:
+        rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
+        if rows.stop > rows.start and columns.stop > columns.start:
+            width = (columns.stop - columns.start) * len(patch.error)
+            along = patch.columns(u[columns])
+            tasks += [(patch, along, part, columns) for part in _strips(rows, width)]
+            left[rows, columns] = False
+    on_threads(fill_strip, tasks, threads)
+    r, c = np.nonzero(left)
+    for start in range(0, len(r), 65536):
+        here = (r[start : start + 65536], c[start : start + 65536])
+        values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
+        found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.rigid_body)
+        radius[here], error[here], critical[here], verdict[here] = (
+            found.radius,
+            found.error,
+            found.critical,
+            found.verdict,
+        )
+    pixels = Pixels(radius, error, critical, verdict)
+    decide(family, pixels, x, y, tolerance, threads)
+    return pixels
+
+
+def spot_check(
+    family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int, count: int
+) -> SpotCheck:
+    """Compare ``count`` random pixels (y, x) with integration over whole periods at a thousandth of the tolerance.
+
+    The same pixels for the same shape: a chart built anew is asked first where it failed before.
+    """
+    shares = np.random.default_rng(pixels.verdict.size).random((count, 2))
+    rows, columns = (shares[:, 0] * len(y)).astype(int), (shares[:, 1] * len(x)).astype(int)
+    whole = family.over_whole_periods()
+    values, bounds = whole.evaluate(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads)
+    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
+    off = np.abs(found.radius - pixels.radius[rows, columns])
+    # Without error and without estimate is not off.
+    ratio = off / np.maximum(pixels.error[rows, columns] + found.error, 1e-300)
+    known = np.isfinite(ratio)
+    if not known.any():
+        return SpotCheck(count, float("nan"), float("nan"))
+    return SpotCheck(count, float(ratio[known].max()), float(off[known].max()))
+
+
+def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:
+    """Judge undecided pixels (y, x) anew, in place, from monodromy matrices of their own.
+
+    Stiff and soft shafts together make coefficients so large that their rounding hides roots which the matrix
+    still shows; there are few such pixels in most charts.
+    """
+    rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
+    if family.rigid_body or not 0 < len(rows) <= family.affordable:
+        return
+    found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
+    better = found.error < pixels.error[rows, columns]
+    here = rows[better], columns[better]
+    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
+    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
+
+
+def _between(axis: Array, low: float, high: float) -> slice:
+    """Places of a monotonic axis that lie between two values."""
+    inside = np.flatnonzero((axis >= low) & (axis <= high))
+    return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
+
+
+def _strips(rows: slice, per_row: int, limit: int = 200_000) -> list[slice]:
+    """Rows in strips of at most ``limit`` numbers: bounded memory, and work for every thread's cache."""
+    step = max(1, limit // max(per_row, 1))
+    return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]
