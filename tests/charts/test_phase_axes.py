@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from phase_charts import QUARTER, PhaseChart, phase_chart
 
 import trunnion as tn
 from trunnion.analyses.charts import chart_families
 from trunnion.results.verdict import Verdict
-
-from phase_charts import QUARTER, PhaseChart, phase_chart
 
 
 def compare(asked: PhaseChart, points: int) -> None:
@@ -44,7 +43,7 @@ def test_five_hundred_points(seed: int) -> None:
 
 @pytest.mark.parametrize("path", ["Shaft 2.fork_offset", "HookeJoint 2.plane", "Shaft 1.fork_offset"])
 def test_stiff_line_whose_axis_is_symmetric_at_its_corners_only(path: str) -> None:
-    """At (169.53, 1.1414) of the first the line is unstable, by half a period at the corners' phase it looked stable."""
+    """At (169.53, 1.1414) the first is unstable; by half a period at the corners' phase it looked stable."""
     angle = np.deg2rad(25)
     line = tn.Driveline(
         [
