@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.equations.lanes import chain_lanes, chain_program
+from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.spectrum import multipliers, spectral_radius
@@ -23,7 +23,9 @@ def chain_kernel(
     table = assembly.table(np.size(speed))
     table[:, 0] = speed
     topo = assembly.topology
-    program, lanes = chain_program(topo), chain_lanes(topo, assembly.coefficients(table))
+    coefficients = assembly.coefficients(table)
+    by_speed = loaded_by_speed(topo, coefficients)
+    program, lanes = chain_program(topo, by_speed), chain_lanes(topo, coefficients, by_speed)
     period = 2 * np.pi * float(require_period(line, topo))
     begin = symmetry_phase(program, lanes, period) if halved else None
     window = Window(0.0 if begin is None else begin, period, begin is not None)

@@ -18,6 +18,7 @@ from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
 from trunnion.equations.line_regimes import line_regimes, mesh_rates, staged_springs
+from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link
 from trunnion.errors import InputError
@@ -155,14 +156,35 @@ class LineSystem:
     def _numbers(self, values: Mapping[str, float]) -> Array:
         return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))
 
-    def numbers(self, row: Array, course: Course | None = None) -> Array:
-        """What the compiled right-hand side reads, from one row of packed numbers and the input's course."""
+    @property
+    def excited(self) -> bool:
+        """Whether any disk carries a harmonic torque."""
+        return any(isinstance(e, Disk) and e.excitation for e in self.assembly.line.elements)
+
+    def with_drive(self, torque: float) -> System:
+        """The system with ``torque`` [N m at the input] more from its drives than balances the loads."""
+
+        def numbers(values: Mapping[str, float]) -> Array:
+            row = np.array([values[label] for label in self.assembly.packed.labels])
+            return self.numbers(row, drive=torque)
+
+        return replace(self.system, numbers_of=numbers)
+
+    def numbers(self, row: Array, course: Course | None = None, drive: float = 0.0) -> Array:
+        """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
+
+        ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads.
+        """
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
         co = assembly.coefficients(table, statically_twisted=False, free_play=True)
         course = course or Course(float(row[0]))
         core = kernel()
         ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
+        load = co.load[0]
+        if drive:
+            share = drive_places(topo, assembly.packed.column, table)
+            load = load + drive_torques(topo, share, np.array([drive]))[0]
         stations = np.zeros((len(topo.stations), core.PER_STATION))
         phase, joint = np.zeros(len(topo.stations)), 0
         column = assembly.packed.column
@@ -173,7 +195,7 @@ class LineSystem:
             out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
             out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
             out[core.INERTIA] = co.inertia[0, s]
-            out[core.LOAD] = co.load[0, s] * np.sign(mean[s])
+            out[core.LOAD] = load[s] * np.sign(mean[s])
             before = phase[station.before] if station.before >= 0 else 0.0
             chi = before + co.shift[0, s]
             if station.link is Link.SHAFT:
@@ -272,6 +294,16 @@ class LineSystem:
         d = (base.angle - plain.angle)[0, 0, places]
         v = (base.speed - plain.speed)[0, 0, places] * self.speed
         return np.concatenate([d, v])
+
+    def twisted(self) -> Array:
+        """State (2n,) of the line with rigid shafts, each twisted by the torque it carries on average."""
+        topo, table = self.assembly.topology, self.assembly.table(1, self.speed)
+        plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
+        held = self.assembly.coefficients(table, free_play=True)
+        motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, _straight(plain))]
+        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
+        d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
+        return np.concatenate([d[places], v[places] * self.speed])
 
 
 def _straight(coefficients: LineCoefficients) -> LineCoefficients:

@@ -47,15 +47,21 @@ def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:
     return values, 2 * bound
 
 
-def without(matrix: Array, vectors: Array) -> Array:
+def without(matrix: Array, vectors: Array) -> tuple[Array, Array]:
     """What is left of ``matrix`` (m, m) when an invariant subspace spanned by ``vectors`` (m, k) is set aside.
 
-    The eigenvalues of the result (m − k, m − k) are the others, each known as well as ``matrix`` is: no choice among
-    computed eigenvalues is made, which collide where the subspace's own does.
+    The eigenvalues of the first result (m − k, m − k) are the others, each known as well as ``matrix`` is: no choice
+    among computed eigenvalues is made, which collide where the subspace's own does. The second (m, m − k) is the
+    orthonormal basis in which it stands.
     """
-    basis = np.linalg.qr(vectors, mode="complete")[0]
-    rest = basis[:, vectors.shape[1] :]
-    return np.asarray(rest.T @ matrix @ rest)
+    rest = np.linalg.qr(vectors, mode="complete")[0][:, vectors.shape[1] :]
+    return np.asarray(rest.T @ matrix @ rest), np.asarray(rest)
+
+
+def along(matrix: Array, direction: Array) -> int:
+    """Which eigenvalue of ``matrix``, in the order of ``multipliers``, has the eigenvector nearest to ``direction``."""
+    vectors = np.linalg.eig(matrix)[1]
+    return int(np.argmax(np.abs(direction @ vectors) / np.linalg.norm(vectors, axis=0)))
 
 
 def spectral_radius(values: Complex, bound: Array) -> tuple[Array, Array]:

@@ -18,11 +18,15 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
+from trunnion.analyses.orbits.periodic_orbit import speed_in_words
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
+from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
@@ -37,8 +41,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 TIMES_PER_PERIOD = 128
+SPEED_ALONE = 0.05
+"""A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
-    1: "the multiplier at 1 of a turn of the whole line is set aside; that of its speed is judged",
+    1: "the multiplier at 1 of a turn of the whole line is set aside",
     2: "the rigid-body pair of multipliers at 1 is set aside",
 }
 
@@ -53,8 +59,11 @@ class Stability:
     (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
     floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
     resonance: the one the critical multiplier names; response: the linear forced response (None for a system
-    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,); left_out: findings
-    about what the line has and this does not count.
+    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,); extra_torque: of a bent
+    line that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
+    beyond the balance of the loads (None elsewhere); speed_sentence: of such a line none of whose torques depends on
+    the speed, what becomes of a change of its mean speed; left_out: findings about what the line has and this does
+    not count.
     """
 
     multipliers: NDArray[np.complex128]
@@ -71,6 +80,8 @@ class Stability:
     names: tuple[str, ...]
     set_aside: int
     left_out: tuple[Finding, ...] = ()
+    extra_torque: float | None = None
+    speed_sentence: str = ""
 
     @property
     def exponents(self) -> NDArray[np.complex128]:
@@ -138,6 +149,13 @@ class Stability:
             lines.append(f"  the critical multiplier belongs to the {self.resonance} (at {at})")
         if self.set_aside:
             lines.append(f"  {SET_ASIDE[self.set_aside]}")
+        if self.extra_torque is not None:
+            lines.append(
+                f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
+                "beyond the balance of the loads"
+            )
+        if self.speed_sentence:
+            lines.append(f"  {self.speed_sentence}")
         if self.response is not None:
             lines.append("  " + str(self.response).replace("\n", "\n  "))
         return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
@@ -161,7 +179,8 @@ def stability(
     speed : mean input speed [rad/s]; default the operating speed of the file.
     tolerance : error asked of Z in energy-like units.
     statically_twisted : linearise about the line twisted by its load torques (joint phases and η′T̄);
-        False takes zero twist, as S1 and S3 do.
+        False takes zero twist, as S1 and S3 do. A bent line that starts free is judged about its own periodic
+        motion, twist and all, whatever this says.
 
     Raises
     ------
@@ -176,6 +195,9 @@ def stability(
         return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, np.zeros((2 * line.size, 0)))
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
+    if assembly.topology.free and bent(assembly):
+        found = _about_own_motion(assembly, float(table[0, 0]))
+        return replace(found, left_out=left_out("stability", assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = _propagate(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
@@ -186,6 +208,42 @@ def stability(
     half_turns = 2 * require_period(assembly.line, topo)
     found = _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
     return replace(found, left_out=left_out("stability", assembly.line))
+
+
+def _about_own_motion(assembly: Assembly, speed: float) -> Stability:
+    """Of a free line with bent joints, which no motion of rigid shafts stands for."""
+    topo = assembly.topology
+    half_turns = 2 * require_period(assembly.line, topo)
+    motion = own_motion(assembly.line, speed)
+    orbit, named = motion.orbit, None
+    critical = orbit.multipliers[np.argmin(np.abs(np.abs(orbit.multipliers) - orbit.spectral_radius))]
+    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(critical.real - 1) > SPEED_ALONE:
+        frequency = natural_frequencies(assembly).frequency / speed
+        rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
+        farthest = 0.5 if orbit.verdict is Verdict.UNSTABLE else 0.1
+        named = nearest_resonance(frequency, complex(critical), rates, half_turns, farthest)
+    if named is not None:
+        named = Resonance(named.speed * speed, named.kind, named.modes, named.order, named.rate)
+    scale = np.repeat([1.0, 1 / speed], topo.size)
+    modes = np.linalg.eig(orbit.monodromy)
+    vectors = modes[1][:, np.argsort(-np.abs(modes[0]))] * scale[:, None]
+    return Stability(
+        multipliers=orbit.multipliers,
+        multiplier_error=orbit.multiplier_error,
+        floquet_modes=vectors / np.abs(vectors).max(0),
+        spectral_radius=orbit.spectral_radius,
+        error_estimate=orbit.error_estimate,
+        verdict=orbit.verdict,
+        period=np.pi * float(half_turns),
+        speed=speed,
+        resonance=named,
+        response=motion.response,
+        liouville_defect=orbit.liouville_defect,
+        names=topo.names,
+        set_aside=1,
+        extra_torque=motion.extra_torque,
+        speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
+    )
 
 
 def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
@@ -212,7 +270,7 @@ def _judge(
     modes = np.linalg.eig(matrix)[1][:, order] * run.scale[:, None]
     judged, off = values, bound
     if aside.shape[1]:
-        judged, off = multipliers(without(matrix, aside / run.scale[:, None]), np.array(run.error))
+        judged, off = multipliers(without(matrix, aside / run.scale[:, None])[0], np.array(run.error))
     # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
     radius, error = spectral_radius(judged, off) if len(judged) else (np.array(1.0), np.array(0.0))
     undamped = abs(run.damping_trace) < 1e-13 * system.size

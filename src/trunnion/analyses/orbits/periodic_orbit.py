@@ -23,7 +23,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
-from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
@@ -54,7 +54,8 @@ class PeriodicOrbit:
 
     start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
     (n,) by falling modulus with multiplier_error (n,); spectral_radius and error_estimate leave out the
-    trivial multiplier of an autonomous system; monodromy (n, n); liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|,
+    trivial multiplier of an autonomous system, and the ``speed_multiplier`` of a free line none of whose torques
+    depends on the speed (NaN elsewhere); monodromy (n, n); liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|,
     NaN where a jump takes part; residual: of the period, in units of the states' scale; regime_changes: how
     often the motion changes its regime in a period.
     """
@@ -75,6 +76,7 @@ class PeriodicOrbit:
     iterations: int
     outcome: Outcome
     trajectory: Trajectory
+    speed_multiplier: float = float("nan")
 
     @property
     def growth_rate(self) -> float:
@@ -219,7 +221,7 @@ def periodic_orbit(
             remedy="give a positive time in seconds, from a simulation",
         )  # fmt: skip
     length = periods * system.forcing_period if system.forcing_period is not None else float(period or 0.0)
-    shots = _Shots(system, phase, length, forced, tolerance)
+    shots = Shots(system, phase, length, forced, tolerance)
     for count in SETTLING if settle else SETTLING[:1]:
         guess = first
         if count:
@@ -233,11 +235,16 @@ def periodic_orbit(
         root = shots.solve(guess)
         if root.converged:
             break
-    return _judged(shots, root)
+    return judged(shots, root)
 
 
 def torque_driven_orbit(
-    at_speed: Callable[[float], System], speed: float, start: Array, *, tolerance: float = TOLERANCE
+    at_speed: Callable[[float], System],
+    speed: float,
+    start: Array,
+    *,
+    neutral: Callable[[float], Callable[[System, Array], Neutral]],
+    tolerance: float = TOLERANCE,
 ) -> tuple[PeriodicOrbit, float]:
     """The periodic motion of a line whose speed follows from its torques, and that speed [rad/s].
 
@@ -247,7 +254,7 @@ def torque_driven_orbit(
     """
     n, phase = len(start), 0.0
     scale = np.append(np.asarray(at_speed(speed).scale), speed)
-    last: list[_Shots] = []
+    last: list[Shots] = []
 
     def residual(z: Array) -> tuple[Array, Array]:
         r, slope = np.full(n + 1, np.nan), np.full((n + 1, n + 1), np.nan)
@@ -265,10 +272,10 @@ def torque_driven_orbit(
             slope[n], slope[n, 0] = 0.0, 1.0
         return r, slope
 
-    def shots_at(omega: float) -> _Shots:
+    def shots_at(omega: float) -> Shots:
         system = at_speed(omega)
         assert system.forcing_period is not None
-        return _Shots(system, phase, system.forcing_period, False, tolerance)
+        return Shots(system, phase, system.forcing_period, False, tolerance, neutral=neutral(omega))
 
     root = solve(residual, np.append(start, speed), scale, tolerance=200 * tolerance)
     found = float(root.x[n])
@@ -276,12 +283,33 @@ def torque_driven_orbit(
         last[:] = [shots_at(found)]
         last[0].last = last[0].run(root.x[:n], last[0].length, tolerance)
     closed = replace(root, x=np.append(root.x[:n], last[0].length))
-    return _judged(last[0], closed), found
+    return judged(last[0], closed), found
+
+
+def speed_in_words(orbit: PeriodicOrbit) -> str:
+    """What becomes of a change of the mean speed of a free line none of whose torques depends on the speed."""
+    rate = float(np.log(orbit.speed_multiplier) / orbit.period) if orbit.speed_multiplier > 0 else np.nan
+    return (
+        f"no torque depends on the speed: a change of the mean speed goes at {rate:+.3g} 1/s (multiplier "
+        f"{orbit.speed_multiplier:.10g}), which the verdict leaves out"
+    )
+
+
+@dataclass(frozen=True)
+class Neutral:
+    """Disturbances of a line that starts free: those that come back exactly (n, k), phase first; and where no torque
+    depends on the speed but dampers do, the change of speed (n,), whose multiplier is near 1 and stated by itself."""
+
+    returns: Array
+    drifts: Array | None = None
 
 
 @dataclass
-class _Shots:
-    """Trial motions over one period, and the last one made."""
+class Shots:
+    """Trial motions over one period, and the last one made.
+
+    ``neutral``: of a line that starts free, from its system and the motion's start.
+    """
 
     system: System
     phase: float
@@ -289,6 +317,7 @@ class _Shots:
     forced: bool
     tolerance: float
     last: Trajectory | None = None
+    neutral: Callable[[System, Array], Neutral] | None = None
 
     def run(self, x: Array, length: float, tolerance: float, dense: bool = False) -> Trajectory:
         block = np.vstack([x, np.eye(self.system.size)])
@@ -328,7 +357,8 @@ class _Shots:
         return run.final[0] - x, run.final[1:].T - np.eye(n)
 
 
-def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
+def judged(shots: Shots, root: Root) -> PeriodicOrbit:
+    """The orbit where shooting ended: its multipliers, their error and the verdict; or why there is none."""
     system, n = shots.system, shots.system.size
     assert shots.last is not None
     if not root.converged:
@@ -346,10 +376,14 @@ def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
     values, bound = multipliers(scaled, np.array(error))
     order = np.argsort(-np.abs(values))
     values, bound = values[order], bound[order]
-    kept = np.arange(n)
-    if not shots.forced:
-        kept = np.delete(kept, int(np.argmin(np.abs(values - 1))))
-    radius, radius_error = spectral_radius(values[kept], bound[kept]) if len(kept) else (np.array(0.0), np.array(0.0))
+    kept, off = values, bound
+    speed = np.nan
+    if shots.neutral is not None:
+        kept, off, speed = _beside_neutral(scaled, error, shots.neutral(system, x), scale)
+    elif not shots.forced:
+        others = np.delete(np.arange(n), int(np.argmin(np.abs(values - 1))))
+        kept, off = values[others], bound[others]
+    radius, radius_error = spectral_radius(kept, off) if len(kept) else (np.array(0.0), np.array(0.0))
     divergence = _divergence(system, run)
     undamped = bool(abs(divergence) < 1e-10 * n)
     sign, log_det = np.linalg.slogdet(scaled)
@@ -358,7 +392,7 @@ def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
     time = shots.phase + length * np.arange(SAMPLES + 1) / SAMPLES
     nearest = int(np.argmin(np.abs(values - 1)))
     left = float(np.abs(root.residual[:n] / scale).max())
-    if shots.forced and left > RUNAWAY and abs(values[nearest] - 1) <= bound[nearest]:
+    if shots.forced and shots.neutral is None and left > RUNAWAY and abs(values[nearest] - 1) <= bound[nearest]:
         # Relative to a motion that ran away, what is left is small.
         return _failed(shots, root, _unbounded(system, x))
     words = f"closes to {root.size:.1e} after {root.iterations} iterations"
@@ -381,7 +415,22 @@ def _judged(shots: _Shots, root: Root) -> PeriodicOrbit:
         iterations=root.iterations,
         outcome=Outcome(True, "found", words),
         trajectory=run,
+        speed_multiplier=speed,
     )
+
+
+def _beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array) -> tuple[Complex, Array, float]:
+    """The multipliers to judge, their bounds, and the one of the line's speed where that is not judged with them."""
+    aside = neutral.returns / scale[:, None]
+    missed = float(np.linalg.norm(scaled @ aside[:, :1] - aside[:, :1]) / np.linalg.norm(aside[:, :1]))
+    if missed > 1e-6 + 100 * error:  # something holds the phase after all
+        aside = aside[:, :0]
+    rest, basis = without(scaled, aside)
+    values, bound = multipliers(rest, np.array(error))
+    if neutral.drifts is None or not aside.shape[1]:
+        return values, bound, np.nan
+    place = along(rest, (neutral.drifts / scale) @ basis)
+    return np.delete(values, place), np.delete(bound, place), float(values[place].real)
 
 
 def _unbounded(system: System, x: Array) -> Outcome:
@@ -394,7 +443,7 @@ def _unbounded(system: System, x: Array) -> Outcome:
     )
 
 
-def _shares(shots: _Shots, run: Trajectory, x: Array, length: float) -> int:
+def _shares(shots: Shots, run: Trajectory, x: Array, length: float) -> int:
     """How many times the motion repeats within ``length``."""
     system = shots.system
     most = MOST_SHARES
@@ -411,7 +460,7 @@ def _shares(shots: _Shots, run: Trajectory, x: Array, length: float) -> int:
     return 1
 
 
-def _failed(shots: _Shots, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
+def _failed(shots: Shots, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
     system, n, nan = shots.system, shots.system.size, float("nan")
     assert shots.last is not None
     run = shots.last

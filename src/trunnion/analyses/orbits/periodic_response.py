@@ -7,7 +7,8 @@ the two linearisations say is stated beside it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.analyses.motion.simulation import simulate_system
+from trunnion.analyses.orbits.free_orbit import kept_speed_orbit, loaded_by_speed, neutral_motions, require_closing
 from trunnion.analyses.orbits.periodic_orbit import (
     TOLERANCE,
+    Neutral,
     PeriodicOrbit,
     periodic_orbit,
+    speed_in_words,
     torque_driven_orbit,
 )
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
@@ -28,6 +32,8 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
+from trunnion.equations.loads import given_shares
+from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.curves import extremes, extremes_of_samples, fourier
 from trunnion.results.drawing import drawing
@@ -270,6 +276,7 @@ class PeriodicResponse:
                 f"{self.growth_rate:+.6g} 1/s",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),
+                *([f"  {speed_in_words(self.orbit)}"] if np.isfinite(self.orbit.speed_multiplier) else []),
                 f"  {against}",
                 f"  {self.outcome}",
             ]
@@ -297,8 +304,8 @@ def periodic_response(
     Parameters
     ----------
     line : a driveline, or a ``System``.
-    speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, a guess of the
-        mean speed that its torques lead to.
+    speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, its mean speed,
+        kept by the disks with a drive_share; where none has one, a guess of the speed that its torques lead to.
     start : a state near the motion (2n,); by default that of rigid shafts.
     period : of an autonomous ``System``, a guess [s].
     periods : of the excitation in one period of the motion (a subharmonic of that order).
@@ -320,15 +327,9 @@ def periodic_response(
     description = line.line if isinstance(line, Assembly) else line
     prepared = line_system(line, operating_speed(description, speed))
     if prepared.assembly.topology.free:
-        return _torque_driven(prepared, start, tolerance, settle)
+        return _free(prepared, start, tolerance, settle)
     require_forced(prepared)
-    orbit = periodic_orbit(
-        prepared.system,
-        start=prepared.rest() if start is None else start,
-        periods=periods,
-        tolerance=tolerance,
-        settle=settle,
-    )
+    orbit = _forced(prepared, start, periods, tolerance, settle)
     response = PeriodicResponse(prepared, prepared.speed, orbit, None, "not asked for")
     if not compare or not orbit.outcome.ok:
         return response
@@ -339,25 +340,63 @@ def periodic_response(
     return PeriodicResponse(prepared, prepared.speed, orbit, comparison, reason)
 
 
-def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settle: bool) -> PeriodicResponse:
-    """A free line: its mean speed is found with the motion, from the speed given as a guess."""
-    if prepared.period_turns is None or prepared.time_harmonics:
-        raise InputError(
-            "starts free and is excited in time or without a common period: its motion does not close",
-            element="driveline",
-            remedy="put a ConstantSpeed in front, give orders instead of frequencies, or simulate it",
-        )
-    vary, speed = prepared.varied("speed"), prepared.speed
+def _forced(
+    prepared: LineSystem, start: ArrayLike | None, periods: int, tolerance: float, settle: bool
+) -> PeriodicOrbit:
+    """The motion of a driven line; soft lines under load lie far from rest, but near their static twist."""
     first = prepared.rest() if start is None else prepared.system.checked(start, "start")
-    orbit, found = torque_driven_orbit(vary, speed, first, tolerance=tolerance)
+    carries = start is None and bool(np.any(prepared.twisted() != first))
+    orbit = periodic_orbit(
+        prepared.system, start=first, periods=periods, tolerance=tolerance, settle=settle and not carries
+    )
+    if orbit.outcome.ok or not carries:
+        return orbit
+    return periodic_orbit(
+        prepared.system, start=prepared.twisted(), periods=periods, tolerance=tolerance, settle=settle
+    )
+
+
+def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settle: bool) -> PeriodicResponse:
+    """A free line: its drives keep the mean speed, or where none has a share its torques lead to one."""
+    assembly = prepared.assembly
+    row = assembly.table(1, prepared.speed)
+    shares = given_shares(assembly.topology, assembly.packed.column, row).any()
+    # Constant torques that balance lead to no speed of their own.
+    if shares or not (loaded_by_speed(assembly) or imbalance(assembly, row)[0]):
+        found = kept_speed_orbit(prepared, start, tolerance=tolerance, settle=settle)
+        words = (
+            "does not apply (the line starts free; beyond the balance of its loads its drives give "
+            f"{found.extra_torque:.4g} N m at the input)"
+        )
+        return PeriodicResponse(prepared, prepared.speed, found.orbit, None, words)
+    return _torque_driven(prepared, start, tolerance, settle)
+
+
+def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settle: bool) -> PeriodicResponse:
+    """A free line without shares: its mean speed is found with the motion, from the speed given as a guess."""
+    require_closing(prepared)
+    row = prepared.assembly.table(1, prepared.speed)
+    left = float(imbalance(prepared.assembly, row)[0])
+    if left > 0 and not loaded_by_speed(prepared.assembly):
+        require_balance(prepared.assembly, row)  # nothing but dampers could drive it
+    vary, speed = prepared.varied("speed"), prepared.speed
+    first = prepared.twisted() if start is None else prepared.system.checked(start, "start")
+
+    def neutral(omega: float) -> Callable[[System, Array], Neutral]:
+        return neutral_motions(prepared, omega)
+
+    orbit, found = torque_driven_orbit(vary, speed, first, neutral=neutral, tolerance=tolerance)
     if not orbit.outcome.ok and settle:
         run = simulate_system(prepared.system, periods=400, start=first, tolerance=1e-8, dense=False)
         n = prepared.assembly.topology.size
         speed += float(run.final[n])
         if run.outcome.ok and speed > 0:
             orbit, found = torque_driven_orbit(
-                vary, speed, line_system(prepared.assembly, speed).rest(), tolerance=tolerance
+                vary, speed, line_system(prepared.assembly, speed).twisted(), neutral=neutral, tolerance=tolerance
             )
+    if not orbit.outcome.ok and left:
+        words = f"{orbit.outcome.sentence}; {torques_in_words(prepared.assembly, row[0])}"
+        orbit = replace(orbit, outcome=Outcome(False, orbit.outcome.kind, words))
     return PeriodicResponse(
         prepared, found, orbit, None, "does not apply (the line starts free: its speed is a result, not given)"
     )
