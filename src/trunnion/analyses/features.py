@@ -79,6 +79,7 @@ _NO_LAW = {
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = {"excitation by order": _FORCES, "excitation in time": _FORCES, "transmission error": _FORCES}
+_FAR_END = {"prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _BASE = {
     "free start": "bent, it is judged about its own periodic motion",
     "drive share": "belongs to lines that start free",
@@ -152,7 +153,7 @@ TABLE: dict[str, Row] = {
         },
     ),
     "stability": _row(
-        refused={**_NO_LAW, **_BASE},
+        refused={**_NO_LAW, **_FAR_END},
         said={
             "excitation by order": "the forced response is that of the joints alone; ask periodic_response()",
             "excitation in time": "the forced response is that of the joints alone; ask periodic_response()",
@@ -172,7 +173,7 @@ TABLE: dict[str, Row] = {
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     "speed_sweep": _row(
-        refused={**_NO_LAW, **_BASE},
+        refused={**_NO_LAW, **_FAR_END},
         said={
             "excitation by order": "amplitudes are those the joints force; ask periodic_response()",
             "excitation in time": "amplitudes are those the joints force; ask periodic_response()",

@@ -5,7 +5,8 @@ one linear system per speed (Hill's infinite system, cut off):
 
     Σ_h [−(hbΩ)² M_{m−h} + i hbΩ C_{m−h} + K_{m−h}] X_h = F_m,
 
-with M_k … the Fourier coefficients over the input angle. A second solution with fewer harmonics tells how
+with M_k … the Fourier coefficients over the input angle. Of a line that starts free the mean drive torque is one
+more unknown, and its mean deviation has no part of a rigid turn. A second solution with fewer harmonics tells how
 far the series has converged. ``stability(...).response`` finds the same by integration, at one speed.
 """
 
@@ -22,9 +23,11 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
+from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.linear import LineMatrices, line_matrices
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.loads import drive_places, drive_torques
+from trunnion.equations.steady_base import require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.results.drawing import drawing
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 FEWEST, MOST = 6, 14
 """Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
@@ -135,7 +139,6 @@ def speed_sweep(
     every = assembly.table(len(speed))
     every[:, 0] = speed
     require_steady_base(assembly, every)
-    refuse_own_motion(assembly, "put a ConstantSpeed in front")
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
     harmonics = int(np.ceil(_harmonics(assembly) * float(half_turns)))
@@ -151,7 +154,7 @@ def speed_sweep(
         table = assembly.table(len(speed[start : start + BATCH]))
         table[:, 0] = speed[start : start + BATCH]
         coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
-        parts.append(_amplitudes(topo, coefficients, period, harmonics))
+        parts.append(_amplitudes(topo, coefficients, period, harmonics, _border(assembly)))
         if progress:
             progress(min(1.0, (start + BATCH) / len(speed)))
     twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
@@ -186,15 +189,15 @@ def _harmonics(assembly: Assembly) -> int:
 
 
 def _amplitudes(
-    topo: Topology, coefficients: LineCoefficients, period: float, harmonics: int
+    topo: Topology, coefficients: LineCoefficients, period: float, harmonics: int, border: Border | None
 ) -> tuple[Array, Array, Array, Array, Array]:
     times = max(64, 8 * harmonics)
     tau = period * np.arange(times) / times
     matrices = line_matrices(topo, coefficients, tau)
-    x, rate = _periodic(matrices, coefficients.speed, period, harmonics)
+    x, rate = _periodic(matrices, coefficients.speed, period, harmonics, border)
     twist, torque = shaft_motion(topo, coefficients, tau, x, rate)
     coarse = shaft_motion(
-        topo, coefficients, tau, *_periodic(matrices, coefficients.speed, period, max(1, 2 * harmonics // 3))
+        topo, coefficients, tau, *_periodic(matrices, coefficients.speed, period, max(1, 2 * harmonics // 3), border)
     )[1]
     amplitude = np.ptp(torque, axis=1) / 2
     largest = np.maximum(amplitude.max(axis=1), 1e-300)
@@ -203,7 +206,32 @@ def _amplitudes(
     return np.ptp(twist, axis=1) / 2, amplitude, torque.mean(axis=1), rotation, cut_off
 
 
-def _periodic(matrices: LineMatrices, speed: Array, period: float, harmonics: int) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class Border:
+    """What determines the mean rotation of a free line: generalised forces (n,) of a unit torque of its drives, which
+    is an unknown beside the motion, and the rigid rotation (n,) that the mean deviation has no part of."""
+
+    drive: Array
+    turn: Array
+
+
+def _border(assembly: Assembly) -> Border | None:
+    topo = assembly.topology
+    if not topo.free:
+        return None
+    share = drive_places(topo, assembly.packed.column, assembly.table(1))
+    torque = -drive_torques(topo, share, np.ones(1))[0]
+    drive, turn = np.zeros(topo.size), np.zeros(topo.size)
+    for s, ratio in enumerate(topo.speed_ratio):
+        i = topo.coordinate[topo.group_of(s)]
+        drive[i] += torque[s] * relative_ratio(topo, s) * np.sign(float(ratio))
+        turn[i] = float(topo.speed_ratio[topo.reference[topo.group_of(s)]])
+    return Border(drive, turn)
+
+
+def _periodic(
+    matrices: LineMatrices, speed: Array, period: float, harmonics: int, border: Border | None
+) -> tuple[Array, Array]:
     """x and dx/dt (case, time, n) of the periodic solution."""
     mass, damping, stiffness, forcing = (
         np.fft.fft(part, axis=1) / part.shape[1]
@@ -222,10 +250,21 @@ def _periodic(matrices: LineMatrices, speed: Array, period: float, harmonics: in
         )
         matrix = blocks.transpose(0, 2, 1, 3).reshape(len(h) * n, len(h) * n)
         right = forcing[case, h % times].reshape(-1)
-        try:
-            found = np.linalg.solve(matrix, right)
-        except np.linalg.LinAlgError:  # a free line keeps its rigid rotation undetermined
-            found = np.linalg.lstsq(matrix, right, rcond=1e-13)[0]
+        if border is not None:
+            matrix, right = _bordered(matrix, right, border, harmonics * n)
+        found = np.linalg.solve(matrix, right)[: len(h) * n]
         found = found.reshape(len(h), n)
         x[case, h % times], rate[case, h % times] = found, found * s[:, None]
     return tuple((np.fft.ifft(part, axis=1) * times).real for part in (x, rate))  # type: ignore[return-value]
+
+
+def _bordered(matrix: Complex, right: Complex, border: Border, place: int) -> tuple[Complex, Complex]:
+    """The equations with an unknown torque and a condition more, both at the mean: its block begins at ``place``."""
+    n, size = len(border.turn), len(right)
+    wide = np.zeros((size + 1, size + 1), dtype=complex)
+    wide[:size, :size] = matrix
+    # In the units of the mean block, so that the condition of the whole stays that of its parts.
+    unit = float(np.abs(matrix[place : place + n, place : place + n]).max()) or 1.0
+    wide[place : place + n, size] = -unit * border.drive / np.linalg.norm(border.drive)
+    wide[size, place : place + n] = unit * border.turn / np.linalg.norm(border.turn)
+    return wide, np.append(right, 0.0)
