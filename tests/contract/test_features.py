@@ -30,6 +30,7 @@ RUN = {
     "stability_chart": lambda line: tn.stability_chart(line, ("speed", 300, 330, 3), ("load.inertia", 0.15, 0.25, 3)),
     "stable_limit": lambda line: tn.stable_limit(line, "joint 2.angle", [145.0, 150.0, 460.0], scan=20, high=1.4),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
+    "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
     "bending_speeds": tn.bending_speeds,
     "kinetostatics": lambda line: tn.kinetostatics(line, SPEED, rigid=False, inertia=True, points=16),
     "phase_forks": tn.phase_forks,

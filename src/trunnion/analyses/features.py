@@ -182,6 +182,11 @@ TABLE: dict[str, Row] = {
         },
         inert=_PASSIVE,
     ),
+    "order_response": _row(
+        refused={**_NO_LAW, **_BASE},
+        said={"mesh-stiffness variation": "amplitudes are those of the mean stiffness; ask periodic_response()"},
+        inert=_PASSIVE,
+    ),
     "bending_speeds": _row(
         refused=_NO_LAW,
         inert={f.key: _TUBE for f in FEATURES if f.key not in (*_NO_LAW, *_TUBES)},

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.order_result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum
@@ -173,6 +174,7 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
     yield from _nominal_angle(assembly, spectrum, at_work)
+    yield from left_out("order_response", assembly.line)
 
 
 def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
