@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from oracles.comparisons import set_distance
 from oracles.package_kernels import chain_kernel
-from oracles.random_lines import random_line
+from oracles.random_lines import random_geared_line, random_line
 from oracles.trees import Tree
 
 import trunnion as tn
@@ -34,9 +36,10 @@ def base(assembly: Assembly, time: float, *, twisted: bool) -> tuple[np.ndarray,
 
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.parametrize("twisted", [False, True])
-def test_matrices_are_exact_derivatives(seed: int, twisted: bool) -> None:
+@pytest.mark.parametrize("made", [random_line, random_geared_line])
+def test_matrices_are_exact_derivatives(seed: int, twisted: bool, made: Callable[[int], tn.Driveline]) -> None:
     """M, C, K and the forcing against the complex-step derivatives of the virtual work."""
-    line = random_line(seed)
+    line = made(seed)
     assembly, tree = assemble(line), Tree(line, SPEED)
     coefficients = assembly.coefficients(assembly.table(1, SPEED), statically_twisted=twisted)
     assert assembly.topology.size == tree.size

@@ -62,3 +62,23 @@ def random_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
         elements += [*shaft(after=disks[int(rng.integers(len(disks)))]), *group()]
         elements += [*shaft(), *group()]
     return tn.Driveline(elements)
+
+
+def random_geared_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
+    """A random line between two gear pairs whose stiffness varies; joints rigidly in front of either or not."""
+    rng = np.random.default_rng(seed + 5000)
+
+    def mesh() -> list[Any]:
+        joint = [tn.HookeJoint(angle=float(rng.uniform(0.1, steepest)))] if rng.random() < 0.5 else []
+        variation = [
+            {"share": float(rng.uniform(0, 0.4)), "order": order, "phase": float(rng.uniform(-3, 3))}
+            for order in (1, 2)
+        ]
+        teeth = {"teeth_in": int(rng.integers(2, 9)), "teeth_out": int(rng.integers(2, 9)), "module": 0.05}
+        own = {"mesh_stiffness": float(rng.uniform(1e5, 1e6)), "mesh_damping": float(rng.uniform(0, 500))}
+        disk = tn.Disk(inertia=float(rng.uniform(0.1, 1)), load_torque=float(rng.uniform(-20, 60)))
+        return [*joint, tn.GearPair(**teeth, **own, stiffness_variation=variation[: int(rng.integers(1, 3))]), disk]
+
+    inside = random_line(seed, steepest)
+    front = [inside.elements[0], tn.Shaft(stiffness=2000.0, damping=1.0, fork_offset=0.4), tn.Disk(inertia=0.3)]
+    return tn.Driveline([*front, *mesh(), *inside.elements[1:], *mesh()])

@@ -52,7 +52,7 @@ class Tree:
         heavy: set[int] = set()
         for i, element in enumerate(elements):
             parent = parents[i]
-            leader.append(i if parent is None or element.kind == "Shaft" else leader[parent])
+            leader.append(i if parent is None or element.kind in ("Shaft", "GearPair") else leader[parent])
             if element.kind == "Disk":
                 heavy.add(leader[i])
             if element.kind == "Shaft" and element.density:
@@ -95,6 +95,16 @@ class Tree:
                 over = 1 / element.speed_ratio
                 mean = before.mean * over
                 points.append(_Point(before.owner, before.angle * over, before.r * over, before.r1 * over, mean))
+            elif element.kind == "GearPair":
+                # A ratio, and behind it a shaft whose stiffness varies with the teeth that have gone by.
+                over, out = 1 / element.speed_ratio, element.radii[1]
+                mean, own = before.mean * over, self.unknowns.index(i)
+                near = _Point(before.owner, before.angle * over, before.r * over, before.r1 * over, mean)
+                teeth = abs(mean) * element.teeth_out * self.speed * time
+                wave = 1 + sum(h.share * np.cos(h.order * teeth + h.phase) for h in element.stiffness_variation)
+                points.append(_Point(own, angle[own], 1.0, 0.0, mean))
+                k, c = element.mesh_stiffness * out**2 * wave, element.mesh_damping * out**2
+                springs.append((near, points[-1], points[-1].angle - near.angle, k, c))
             elif parent is not None:
                 points.append(before)
                 if parent in waiting:

@@ -140,7 +140,6 @@ TABLE: dict[str, Row] = {
     "resonance_speeds": _row(
         refused=_NO_LAW,
         said={
-            "mesh-stiffness variation": "orders of the mesh are not named; ask stability() over speed",
             "viscous load": "resonance speeds are those of the line without it",
             "quadratic load": "resonance speeds are those of the line without it",
         },
@@ -155,30 +154,26 @@ TABLE: dict[str, Row] = {
     "stability": _row(
         refused={**_NO_LAW, **_FAR_END},
         said={
-            "excitation by order": "the forced response is that of the joints alone; ask periodic_response()",
-            "excitation in time": "the forced response is that of the joints alone; ask periodic_response()",
-            "transmission error": "the forced response is that of the joints alone; ask periodic_response()",
-            "mesh-stiffness variation": "the verdict is that of the mean stiffness; ask periodic_response()",
+            "excitation by order": "the forced response is that of joints and meshes alone; ask periodic_response()",
+            "excitation in time": "the forced response is that of joints and meshes alone; ask periodic_response()",
+            "transmission error": "the forced response is that of joints and meshes alone; ask periodic_response()",
         },
         inert=_PASSIVE,
     ),
     "stability_chart": _row(
         refused={**_NO_LAW, **_BASE},
-        said={"mesh-stiffness variation": "verdicts are those of the mean stiffness; ask periodic_response()"},
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     "stable_limit": _row(
         refused={**_NO_LAW, **_BASE},
-        said={"mesh-stiffness variation": "the limit is that of the mean stiffness; ask periodic_response()"},
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     "speed_sweep": _row(
         refused={**_NO_LAW, **_FAR_END},
         said={
-            "excitation by order": "amplitudes are those the joints force; ask periodic_response()",
-            "excitation in time": "amplitudes are those the joints force; ask periodic_response()",
-            "transmission error": "amplitudes are those the joints force; ask periodic_response()",
-            "mesh-stiffness variation": "amplitudes are those of the mean stiffness; ask periodic_response()",
+            "excitation by order": "amplitudes are those that joints and meshes force; ask periodic_response()",
+            "excitation in time": "amplitudes are those that joints and meshes force; ask periodic_response()",
+            "transmission error": "amplitudes are those that joints and meshes force; ask periodic_response()",
         },
         inert=_PASSIVE,
     ),

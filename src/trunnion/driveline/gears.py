@@ -141,7 +141,8 @@ class GearPair(Element):
     transmission_error, stiffness_variation : harmonics in the mesh phase, see ``TransmissionError`` and
         ``StiffnessVariation``; they take tooth numbers. They follow the mean rotation of the gears.
 
-    Linear analyses take the slope that the static load puts the mesh on, and nothing that varies with the mesh phase.
+    Linear analyses take the slope that the static load puts the mesh on, times its variation with the mesh phase; the
+    transmission error is no part of them.
     """
 
     example: ClassVar[str] = 'teeth_in = 25, teeth_out = 40, module = "3 mm" and mesh_stiffness = "2e8 N/m"'

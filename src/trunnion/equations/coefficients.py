@@ -19,10 +19,28 @@ from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffne
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
-from trunnion.equations.topology import Link, Topology, topology
+from trunnion.equations.topology import Link, Mesh, Topology, topology
 from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MeshWave:
+    """A mesh's stiffness over its mean: 1 + Σ share cos(cycles τ + phase), as a factor of one compliance's.
+
+    cycles (harmonic,) per turn of the input; share and phase (case, harmonic).
+    """
+
+    compliance: int
+    cycles: Array
+    share: Array
+    phase: Array
+
+    def at(self, tau: Array) -> Array:
+        """The factor (case, time) at input angles ``tau`` (time,) or (case, time) [rad]."""
+        angle = np.asarray(tau)[..., None] * self.cycles + self.phase[:, None, :]
+        return np.asarray(1 + np.sum(self.share[:, None, :] * np.cos(angle), axis=-1))
 
 
 @dataclass(frozen=True)
@@ -35,7 +53,8 @@ class LineCoefficients:
     drive_share carries included in ``load``; angle [rad] per joint; ``shift`` [rad] per station: what a shaft adds
     to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
     measure it from its own plane. ``loss`` [N m/rad] per compliance is ηk where a loss factor holds at all
-    frequencies: the stiffness is then k + i·loss·sgn(frequency).
+    frequencies: the stiffness is then k + i·loss·sgn(frequency). ``waves``: meshes
+    whose stiffness varies about the one given here.
     """
 
     speed: Array
@@ -50,6 +69,7 @@ class LineCoefficients:
     angle: Array
     shift: Array
     loss: Array
+    waves: tuple[MeshWave, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -251,4 +271,14 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         angle=angle,
         shift=shift,
         loss=loss,
+        waves=tuple(_mesh_wave(assembly, table, mesh) for mesh in topo.meshes if mesh.stiffness),
     )
+
+
+def _mesh_wave(assembly: Assembly, table: Array, mesh: Mesh) -> MeshWave:
+    names = [f"stiffness_variation {i}" for i in range(1, len(mesh.stiffness) + 1)]
+    share, phase = (
+        np.stack([table[:, assembly.packed.column(mesh.element, f"{name} {key}")] for name in names], axis=1)
+        for key in ("share", "phase")
+    )
+    return MeshWave(mesh.compliance, np.array([float(rate) for rate in mesh.stiffness_rates]), share, phase)

@@ -21,7 +21,6 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.line_regimes import mesh_cycles
 from trunnion.equations.topology import Topology
 
 Array = NDArray[np.float64]
@@ -77,16 +76,15 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
                     held=held,
                 )
             )
-    for e, compliance in enumerate(topo.compliances):
-        place = compliance.shafts[0]
-        mesh = line.elements[place]
-        if isinstance(mesh, GearPair):
-            for h, error in enumerate(mesh.transmission_error, start=1):
-                amplitude, phase = (column(place, f"transmission_error {h} {k}") for k in ("amplitude", "phase"))
-                order = int(error.order) * mesh_cycles(assembly, place)
-                name = line.names[place]
-                over = 1 / mesh.radii[1]
-                found.append(Exciter(name, order, error.order, amplitude, phase, compliance=e, over=over))
+    for mesh in topo.meshes:
+        place = mesh.element
+        pair = line.elements[place]
+        assert isinstance(pair, GearPair)
+        for h, own_order in enumerate(mesh.error, start=1):
+            amplitude, phase = (column(place, f"transmission_error {h} {k}") for k in ("amplitude", "phase"))
+            order, over = own_order * mesh.teeth, 1 / pair.radii[1]
+            name = line.names[place]
+            found.append(Exciter(name, order, own_order, amplitude, phase, compliance=mesh.compliance, over=over))
     return tuple(found)
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
-from trunnion.equations.topology import Link, Topology
+from trunnion.equations.topology import Link, Mesh, Topology
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 
 Array = NDArray[np.float64]
@@ -71,7 +71,15 @@ def chain_program(topo: Topology, by_speed: frozenset[int] = frozenset()) -> Cha
         np.array([topo.coordinate[topo.group_of(s)] for s in members], dtype=np.int64),
         *_split([walk.within[s] for s in members]),
         *_split(member_speed),
+        *_split([(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates]),
     )
+
+
+def _varying(topo: Topology) -> list[tuple[int, Mesh]]:
+    """The unknown behind each mesh whose stiffness varies, and the mesh."""
+    return [
+        (topo.coordinate[topo.compliances[mesh.compliance].far_group], mesh) for mesh in topo.meshes if mesh.stiffness
+    ]
 
 
 def loaded_by_speed(topo: Topology, coefficients: LineCoefficients) -> frozenset[int]:
@@ -106,6 +114,10 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     sign = np.sign([float(topo.speed_ratio[s]) for s in members])
     walk = _Walk(topo, co.shift)
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
+    waves = [
+        np.concatenate([getattr(wave, key).T for wave in co.waves]) if co.waves else np.zeros((0, cases))
+        for key in ("share", "phase")
+    ]
     return ChainLanes(
         cosine=np.ascontiguousarray(np.cos(co.angle).T),
         phase=phase,
@@ -117,6 +129,8 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
         member_load=np.ascontiguousarray((sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
         member_viscous=np.ascontiguousarray((co.viscous[:, members] / inertia[:, owner] * over_speed[:, None]).T),
         member_quadratic=np.ascontiguousarray((co.quadratic[:, members] / inertia[:, owner]).T),
+        wave_share=np.ascontiguousarray(waves[0]),
+        wave_phase=np.ascontiguousarray(waves[1]),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
         frequency=np.sqrt(np.where(trace > 0, trace / n, 1.0)),
     )

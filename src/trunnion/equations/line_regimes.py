@@ -9,7 +9,6 @@ zero whose sign is rounding.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from math import prod
 from types import ModuleType
 
@@ -92,7 +91,8 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
     table = np.concatenate([oscillator.regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
     error, wave = np.zeros((0, 3)), np.zeros((0, 3))
     if isinstance(element, GearPair):
-        cycles = float(mesh_cycles(assembly, place))
+        teeth = next((mesh.teeth for mesh in assembly.topology.meshes if mesh.element == place), 0)
+        cycles = float(teeth)
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
@@ -134,24 +134,6 @@ def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, 
         for i, harmonic in enumerate(getattr(element, key), start=1)
     ]
     return np.array(rows, dtype=float).reshape(-1, 3)
-
-
-def mesh_cycles(assembly: Assembly, place: int) -> Fraction:
-    """Teeth in mesh per turn of the line's input."""
-    topo, element = assembly.topology, assembly.line.elements[place]
-    assert isinstance(element, GearPair)
-    station = next(s for s, here in enumerate(topo.stations) if here.element == place)
-    return abs(topo.speed_ratio[station]) * (element.teeth_out or 0)
-
-
-def mesh_rates(assembly: Assembly) -> list[Fraction]:
-    """Cycles per turn of the input of everything that varies with a mesh phase."""
-    rates = []
-    for place, element in enumerate(assembly.line.elements):
-        if isinstance(element, GearPair):
-            orders = [h.order for h in element.transmission_error] + [h.order for h in element.stiffness_variation]
-            rates += [int(order) * mesh_cycles(assembly, place) for order in orders]
-    return rates
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,10 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
-from trunnion.equations.line_regimes import line_regimes, mesh_rates, staged_springs
+from trunnion.equations.line_regimes import line_regimes, staged_springs
 from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.stage_laws import has_stages, stage_law
-from trunnion.equations.topology import LONGEST_PERIOD, Link
+from trunnion.equations.topology import LONGEST_PERIOD, Link, common_rate
 from trunnion.errors import InputError
 from trunnion.laws import tripod
 from trunnion.numerics.compiled import kernel_file
@@ -83,20 +83,14 @@ class LineSystem:
     def period_turns(self) -> Fraction | None:
         """Period of everything that depends on the input's rotation, in turns; None where there is none."""
         topo = self.assembly.topology
-        rates = [1 / topo.period_turns()] if topo.joints or topo.tripods else []
+        rates = [*topo.rates, *(rate for mesh in topo.meshes for rate in mesh.rates)]
         stations = {element: s for s, element in topo.disks}
         for i, element in enumerate(self.assembly.line.elements):
             for harmonic in element.excitation if isinstance(element, Disk) else ():
                 if harmonic.order is not None:
                     rates.append(Fraction(str(harmonic.order)) * abs(topo.speed_ratio[stations[i]]))
-        rates += mesh_rates(self.assembly)
-        if not rates:
-            return Fraction(1, 2)
-        base = rates[0]
-        for rate in rates[1:]:
-            while rate:
-                base, rate = rate, base % rate
-        return 1 / base if 1 / base <= LONGEST_PERIOD else None
+        turns = 1 / common_rate(rates) if any(rates) else Fraction(1, 2)
+        return turns if turns <= LONGEST_PERIOD else None
 
     @cached_property
     def system(self) -> System:
@@ -151,7 +145,7 @@ class LineSystem:
         topo = self.assembly.topology
         disks = [e for e in self.assembly.line.elements if isinstance(e, Disk)]
         shaken = any(h.order is not None for d in disks for h in d.excitation)
-        return bool(topo.joints or topo.tripods or mesh_rates(self.assembly)) or shaken
+        return bool(topo.joints or topo.tripods or topo.meshes) or shaken
 
     def _numbers(self, values: Mapping[str, float]) -> Array:
         return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))

@@ -10,6 +10,10 @@ where J(a) = Σ J_s r_s² is the inertia of a group (it depends on the angle whe
 group), J′ and J″ its derivatives by the angle of the group, M = M₀ + c₁v + c₂v|v| the load torques at the
 station's own speed v = rw, behind a bent joint a periodic one, M′ = c₁ + 2c₂|v| their slope, and q̇_e the
 full derivative with ṙ. Each group inherits w, w′ from ``kinematics``.
+
+The stiffness of a gear mesh varies with its phase: with w(τ) its factor over the mean, k stands for wk and T̄ for wT̄,
+which is what the mesh carries in its static twist. A line without joints moves exactly so while each mesh keeps its
+stage.
 """
 
 from __future__ import annotations
@@ -34,7 +38,8 @@ Array = NDArray[np.float64]
 class LineMatrices:
     """Matrices in time (not divided by Ω), shapes (case, time, n, n) and (case, time, n).
 
-    ``ratio`` and ``ratio_slope`` (case, time, compliance) are r and dr/dτ of each compliance's near end.
+    ``ratio`` and ``ratio_slope`` (case, time, compliance) are r and dr/dτ of each compliance's near end, ``wave`` its
+    stiffness over the mean.
     """
 
     mass: Array
@@ -43,6 +48,7 @@ class LineMatrices:
     forcing: Array
     ratio: Array
     ratio_slope: Array
+    wave: Array
 
 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
@@ -53,7 +59,9 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     mass, damping, stiffness = (np.zeros((cases, times, n, n)) for _ in range(3))
     forcing = np.zeros((cases, times, n))
     slope_seen = np.zeros((cases, times, len(topo.compliances)))
-    ratio_seen = np.zeros_like(slope_seen)
+    ratio_seen, wave = np.zeros_like(slope_seen), np.ones_like(slope_seen)
+    for mesh in coefficients.waves:
+        wave[..., mesh.compliance] = mesh.at(tau)
     for s in range(len(topo.stations)):
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]
@@ -77,8 +85,8 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         far, near = topo.coordinate[compliance.far_group], topo.coordinate[near_group]
         r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
         r_dot = r1 * motion.speed[..., topo.reference[near_group]] * speed
-        k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
-        torque = coefficients.torque[:, e, None]
+        k, c = coefficients.stiffness[:, e, None] * wave[..., e], coefficients.damping[:, e, None]
+        torque = coefficients.torque[:, e, None] * wave[..., e]
         ratio_seen[..., e], slope_seen[..., e] = r, r_dot / speed
         if far >= 0:
             damping[..., far, far] += c
@@ -93,7 +101,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
             damping[..., near, far] -= c * r
             stiffness[..., far, near] -= k * r + c * r_dot
             stiffness[..., near, far] -= k * r
-    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, slope_seen)
+    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, slope_seen, wave)
 
 
 def periodic_linear_system(
@@ -120,7 +128,8 @@ def periodic_linear_system(
         return Matrices(m.mass[0], m.damping[0] / speed, m.stiffness[0] / speed**2, m.forcing[0] / speed**2)
 
     aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
-    return PeriodicLinearSystem(period, at, topo.size, speed, topo.names, tuple(map(float, aligned / speed)))
+    names, over_speed = topo.names, tuple(map(float, aligned / speed))
+    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, topo.fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:

@@ -9,6 +9,7 @@ compliance. The root group is prescribed if the line starts with a ConstantSpeed
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
@@ -63,12 +64,38 @@ class Compliance:
 
 
 @dataclass(frozen=True)
+class Mesh:
+    """A gear mesh whose stiffness or transmission error varies with its phase.
+
+    ``compliance`` is its place, ``teeth`` how many come into mesh in a turn of the line's input; ``stiffness`` and
+    ``error`` are the orders of the harmonics, in cycles per tooth.
+    """
+
+    compliance: int
+    element: int
+    teeth: Fraction
+    stiffness: tuple[int, ...]
+    error: tuple[int, ...]
+
+    @property
+    def stiffness_rates(self) -> list[Fraction]:
+        """Cycles per turn of the input of the harmonics of the stiffness."""
+        return [order * self.teeth for order in self.stiffness]
+
+    @property
+    def rates(self) -> list[Fraction]:
+        """Cycles per turn of the input of all harmonics."""
+        return [order * self.teeth for order in (*self.stiffness, *self.error)]
+
+
+@dataclass(frozen=True)
 class Topology:
     """Stations, groups and compliances of a line; independent of its numbers.
 
     ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
     where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
-    an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station.
+    an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station; ``meshes`` are those that
+    vary with their phase.
     """
 
     stations: tuple[Station, ...]
@@ -80,6 +107,7 @@ class Topology:
     tube_ends: tuple[tuple[int, int], ...]
     speed_ratio: tuple[Fraction, ...]
     names: tuple[str, ...]
+    meshes: tuple[Mesh, ...]
 
     @property
     def size(self) -> int:
@@ -105,20 +133,28 @@ class Topology:
         """The group a station belongs to."""
         return self.stations[station].group
 
-    def period_turns(self) -> Fraction:
-        """Turns of the input after which every joint is back in phase: half a turn for joints at input speed.
+    @property
+    def rates(self) -> tuple[Fraction, ...]:
+        """Cycles per turn of the input of everything that makes the linear coefficients vary.
 
-        Hooke's joints excite with the frequency 2 |speed_ratio| per input turn and tripods with 3 |speed_ratio|;
-        the base frequency is their greatest common divisor.
+        Hooke's joints excite with the frequency 2 |speed_ratio| per input turn, tripods with 3 |speed_ratio|, and the
+        stiffness of a mesh with its harmonics.
         """
         rates = [abs(2 * self.speed_ratio[j]) for j in self.joints]
         rates += [abs(3 * self.speed_ratio[j]) for j in self.tripods]
-        if not rates:
-            return Fraction(1, 2)
-        base = rates[0]
-        for rate in rates[1:]:
-            base = _gcd(base, rate)
-        return 1 / base
+        return tuple(rates + [rate for mesh in self.meshes for rate in mesh.stiffness_rates])
+
+    @property
+    def fastest(self) -> float:
+        """Cycles per turn of the input of the fastest harmonic of a mesh's stiffness; 0 without."""
+        return float(max((rate for mesh in self.meshes for rate in mesh.stiffness_rates), default=0))
+
+    def period_turns(self) -> Fraction:
+        """Turns of the input after which every joint and mesh is back in phase: half a turn for joints at input speed.
+
+        Its inverse is the greatest common divisor of the ``rates``.
+        """
+        return 1 / common_rate(self.rates) if self.rates else Fraction(1, 2)
 
 
 LONGEST_PERIOD = 60
@@ -142,10 +178,14 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
     """Period in turns of the input, or an InputError where ratios leave none of a usable length."""
     turns = topo.period_turns()
     if turns > LONGEST_PERIOD:
+        varying = [topo.joints or topo.tripods, any(mesh.stiffness for mesh in topo.meshes)]
+        what = " and ".join(name for name, some in zip(("joints", "meshes"), varying, strict=True) if some)
         for i, element in enumerate(line.elements):
-            if isinstance(element, Ratio | GearPair) and element.fraction.limit_denominator(12) != element.fraction:
+            if not isinstance(element, Ratio | GearPair) or element.teeth_in is not None:
+                continue
+            if element.fraction.limit_denominator(12) != element.fraction:
                 raise InputError(
-                    f"joints in front of and behind this ratio are back in phase only after {float(turns):g} "
+                    f"{what} in front of and behind this ratio are back in phase only after {float(turns):g} "
                     "turns of the input",
                     element=line.names[i],
                     key="ratio",
@@ -153,19 +193,22 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
                     remedy="give the tooth numbers, teeth_in and teeth_out, instead of a rounded ratio",
                 )
         raise InputError(
-            f"joints are back in phase only after {float(turns):g} turns of the input "
+            f"{what} are back in phase only after {float(turns):g} turns of the input "
             f"(at most {LONGEST_PERIOD} are followed)",
             element=next(n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio | GearPair)),
             key="teeth_in/teeth_out",
-            remedy="study the joints on each side of the ratio separately",
+            remedy=f"study the {what} on each side of the ratio separately",
         )
     return turns
 
 
-def _gcd(a: Fraction, b: Fraction) -> Fraction:
-    while b:
-        a, b = b, a % b
-    return a
+def common_rate(rates: Iterable[Fraction]) -> Fraction:
+    """The greatest common divisor of some rates."""
+    base = Fraction(0)
+    for rate in rates:
+        while rate:
+            base, rate = rate, base % rate
+    return base
 
 
 @dataclass
@@ -276,7 +319,19 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         tuple(draft.tube_ends),
         tuple(draft.speed_ratio),
         tuple(_names(line, draft, coordinate)),
+        tuple(_meshes(line, draft, compliances)),
     )
+
+
+def _meshes(line: Driveline, draft: _Draft, compliances: list[Compliance]) -> Iterable[Mesh]:
+    for e, compliance in enumerate(compliances):
+        i = compliance.shafts[0]
+        element = line.elements[i]
+        if isinstance(element, GearPair) and (element.stiffness_variation or element.transmission_error):
+            # Harmonics in the mesh phase go with tooth numbers, see ``GearPair``.
+            teeth = abs(draft.speed_ratio[compliance.near]) * (element.teeth_out or 0)
+            orders = (element.stiffness_variation, element.transmission_error)
+            yield Mesh(e, i, teeth, *(tuple(int(h.order) for h in harmonics) for harmonics in orders))
 
 
 def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:

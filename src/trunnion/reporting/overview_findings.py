@@ -151,7 +151,7 @@ def _unsettled(chart: StabilityChart, where: str) -> Iterator[Finding]:
 
 
 def _named(resonance: Resonance) -> str:
-    return f"{resonance.kind} resonance {resonance.formula}"
+    return f"{resonance.kind} resonance {resonance.label}"
 
 
 def _speed(speed: float, unit: str) -> str:

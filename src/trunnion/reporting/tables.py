@@ -147,7 +147,7 @@ def crossing_table(contents: Contents, speed_unit: str, frequency_unit: str) -> 
 def resonances(contents: Contents, unit: str) -> Table:
     """Parametric resonance speeds in the range that can open."""
     rows = [
-        (four(r.speed * speed_factor(unit)), r.kind, r.formula) for r in contents.overview.resonance_speeds if r.opens
+        (four(r.speed * speed_factor(unit)), r.kind, r.label) for r in contents.overview.resonance_speeds if r.opens
     ]
     return Table((f"input speed [{unit}]", "kind", "formula"), tuple(rows[:MOST_RESONANCES]))
 

@@ -42,6 +42,8 @@ class PeriodicLinearSystem:
     names : a name per coordinate.
     frequencies : natural frequencies of the averaged system in units of τ, where known; resonances are
         named after them.
+    fastest : the highest frequency of the coefficients in radians per unit τ, where known: no step of an integration
+        is longer than a quarter of its cycle.
     """
 
     period: float
@@ -50,6 +52,7 @@ class PeriodicLinearSystem:
     rate: float = 1.0
     names: tuple[str, ...] = ()
     frequencies: tuple[float, ...] = ()
+    fastest: float = 0.0
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.period) and self.period > 0):

@@ -157,7 +157,7 @@ def shaft_motion(
             q, q_dot = q - r * x[..., near], q_dot - r * rate[..., near] - slope * x[..., near]
         k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
         twist[..., e] = coefficients.twist[:, e, None] + q
-        torque[..., e] = coefficients.torque[:, e, None] + k * q + c * q_dot
+        torque[..., e] = matrices.wave[..., e] * (coefficients.torque[:, e, None] + k * q) + c * q_dot
     return twist, torque
 
 

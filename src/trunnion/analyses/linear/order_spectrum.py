@@ -154,7 +154,9 @@ class _Case:
         one = self.coefficients(np.array([1.0]))
         self.row = assembly.table(1)[0]
         self.varies = bent(assembly)
-        self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
+        # Meshes keep their mean stiffness here, so the joints alone make the period.
+        alone = replace(self.topo, meshes=())
+        self.turns = require_period(assembly.line, alone) if self.varies else Fraction(1)
         self.reach = _reach(one.angle)
         if self.varies:
             self.batch = max(1, MOST_NUMBERS // self._blocks(self.reach) ** 2)
@@ -162,7 +164,8 @@ class _Case:
             self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
 
     def coefficients(self, speed: Array) -> LineCoefficients:
-        return self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
+        found = self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
+        return replace(found, waves=())
 
     def _table(self, speed: Array) -> Array:
         table = self.assembly.table(len(speed))

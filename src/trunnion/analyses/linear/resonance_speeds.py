@@ -1,4 +1,4 @@
-"""Input speeds at which the joints of a line can excite parametric resonance, and their names.
+"""Input speeds at which joints and gear meshes can excite parametric resonance, and their names.
 
 A Hooke's joint whose shaft turns at R times the input excites with 2|R|Ω and its multiples m. Modes i and j
 respond where m · 2|R|Ω = ω_i ± ω_j:
@@ -8,14 +8,15 @@ respond where m · 2|R|Ω = ω_i ± ω_j:
     sum          Ω = (ω_i + ω_j) / (2k|R|)  complex pair
     difference   Ω = (ω_i − ω_j) / (2k|R|)  complex pair
 
-(S1 equations 23–24, S3 equations 15–16.) While the stiffness stays positive definite only the first three
+(S1 equations 23–24, S3 equations 15–16.) A mesh of varying stiffness excites with its teeth per turn of the input, z,
+and counts as a joint of R = z/2. While the stiffness stays positive definite only the first three
 can open: their modes have opposite Krein signatures. Difference tongues of the papers come from
 mis-linearised equations.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -26,6 +27,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
@@ -41,13 +43,17 @@ LOCKED = 0.7
 
 @dataclass(frozen=True)
 class Resonance:
-    """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|."""
+    """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|.
+
+    A mesh excites as a joint at half its teeth per turn of the input would; ``mesh`` is its name, empty for joints.
+    """
 
     speed: float
     kind: str
     modes: tuple[int, ...]
     order: int
     rate: Fraction = Fraction(1)
+    mesh: str = ""
 
     @property
     def opens(self) -> bool:
@@ -65,12 +71,16 @@ class Resonance:
             top = f"({mode[0]}+{mode[1]})" if self.kind == "sum" else f"({mode[1]}−{mode[0]})"
             below = 2 * self.order
         under = below * self.rate
-        if under == 1:
-            return top
-        return f"{top}/{under}" if under.denominator == 1 else f"{top}/({under})"
+        over = "" if under.denominator == 1 else f"{under.denominator}"
+        return f"{over}{top}" if under.numerator == 1 else f"{over}{top}/{under.numerator}"
+
+    @property
+    def label(self) -> str:
+        """The formula, and the mesh that excites where it is one."""
+        return f"{self.formula} (mesh of {self.mesh})" if self.mesh else self.formula
 
     def __str__(self) -> str:
-        return f"{self.kind} {self.formula}"
+        return f"{self.kind} {self.label}"
 
 
 @dataclass(frozen=True)
@@ -98,6 +108,11 @@ class ResonanceSpeeds:
                 "speed": ("resonance", [r.speed for r in rows], {"units": "rad/s"}),
                 "kind": ("resonance", [r.kind for r in rows]),
                 "order": ("resonance", [r.order for r in rows]),
+                "mesh": (
+                    "resonance",
+                    [r.mesh for r in rows],
+                    {"long_name": "gear mesh that excites; empty for joints"},
+                ),
                 "opens": (
                     "resonance",
                     np.array([r.opens for r in rows], dtype=np.int8),
@@ -115,7 +130,7 @@ class ResonanceSpeeds:
             {
                 f"speed [{unit}]": r.speed * factor,
                 "kind": r.kind,
-                "formula": r.formula,
+                "formula": r.label,
                 "can open": "yes" if r.opens else "no",
             }
             for r in self.resonances
@@ -128,14 +143,14 @@ class ResonanceSpeeds:
     def __str__(self) -> str:
         said = [f"  {finding}" for finding in self.findings]
         if not self.resonances:
-            none = "no parametric resonance speeds: the line has no bent joint or no elastic mode"
+            none = "no parametric resonance speeds: the line has no bent joint or varying mesh, or no elastic mode"
             return "\n".join([none, *said])
         rows = [f"  {show_speed(r.speed)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
         return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows, *said])
 
 
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:
-    """Named parametric resonance speeds of ``line`` up to order k = ``orders``, ascending.
+    """Named parametric resonance speeds of ``line`` up to order k = ``orders``, ascending; of joints and meshes.
 
     Raises
     ------
@@ -145,10 +160,30 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
         raise InputError("must be a whole number, 1 or more", key="orders", value=orders)
     assembly = line if isinstance(line, Assembly) else assemble(line)
     modes = natural_frequencies(assembly).frequency
-    rates = sorted({abs(assembly.topology.speed_ratio[j]) for j in assembly.topology.joints})
-    found = [r for rate in rates for r in _at_rate(modes, orders, rate)]
+    found = [r for source in sources(assembly) for r in _excited(modes, orders, source)]
     said = left_out("resonance_speeds", assembly.line)
     return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said)
+
+
+@dataclass(frozen=True)
+class Source:
+    """What excites with 2 ``rate`` cycles per turn of the input: joints, or the ``mesh`` of that name."""
+
+    rate: Fraction
+    mesh: str = ""
+
+
+def sources(assembly: Assembly) -> tuple[Source, ...]:
+    """Everything that makes the linear coefficients of a line vary: joints by their speed ratio, then meshes."""
+    topo = assembly.topology
+    joints = [Source(rate) for rate in sorted({abs(topo.speed_ratio[j]) for j in topo.joints})]
+    names = assembly.line.names
+    meshes = [Source(common_rate(m.stiffness_rates) / 2, names[m.element]) for m in topo.meshes if m.stiffness]
+    return (*joints, *meshes)
+
+
+def _excited(modes: np.ndarray, orders: int, source: Source) -> list[Resonance]:
+    return [replace(r, mesh=source.mesh) for r in _at_rate(modes, orders, source.rate)]
 
 
 def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:

@@ -42,6 +42,8 @@ Complex = NDArray[np.complex128]
 
 FEWEST, MOST = 6, 14
 """Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
+MESH_HARMONICS = (5, 4, 3, 2)
+"""Multiples kept of the fastest harmonic of a mesh's stiffness: as many of these as there is room for."""
 SMALL_ENOUGH = 1e-9
 MOST_UNKNOWNS = 3000
 BATCH = 40
@@ -141,8 +143,10 @@ def speed_sweep(
     require_steady_base(assembly, every)
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
-    harmonics = int(np.ceil(_harmonics(assembly) * float(half_turns)))
-    if (2 * harmonics + 1) * topo.size > MOST_UNKNOWNS:
+    joints, mesh = _harmonics(assembly) * float(half_turns), topo.fastest * float(half_turns) / 2
+    tried = (int(np.ceil(joints) + np.ceil(kept * mesh)) for kept in (MESH_HARMONICS if mesh else (0,)))
+    harmonics = next((count for count in tried if (2 * count + 1) * topo.size <= MOST_UNKNOWNS), None)
+    if harmonics is None:
         raise InputError(
             "repeats only after too many turns for a sweep over speed",
             element="driveline",

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
-TIMES_PER_PERIOD = 128
+TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -251,7 +251,10 @@ def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
         m = system.coefficients(tau)
         return m.mass, m.damping, m.stiffness, m.forcing
 
-    return propagate(arrays, system.period, system.size, tolerance, TIMES_PER_PERIOD // 2)
+    # A step that leaps over cycles of the coefficients could agree with its half by accident.
+    cycles = system.fastest * system.period / (2 * np.pi)
+    least = max(TIMES_PER_PERIOD // 2, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1)))))
+    return propagate(arrays, system.period, system.size, tolerance, least)
 
 
 def _judge(

@@ -30,6 +30,7 @@ from trunnion.numerics.chain.chain_tables import (
     PER_TABLE,
     PER_UNKNOWN,
     STIFFNESS,
+    WAVE,
     add_damping_trace,
     empty_table,
     fill,
@@ -107,7 +108,11 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
     trace[:] = 0.0
     done, count = 0.0, 0
     fastest = block.unknown[FREQUENCY * LANES : (FREQUENCY + 1) * LANES].max()
-    h = min(length / 4, 0.8 / fastest)
+    # A step that leaps over cycles of a stiffness could find its two orders agree by accident.
+    longest = length
+    for cycles in program.wave_cycles:
+        longest = min(longest, 1.0 / cycles)
+    h = min(length / 4, 0.8 / fastest, longest)
     while done < length and count < most_steps:
         count += 1
         if done + h > length * (1 - 1e-12):
@@ -133,7 +138,7 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
             done = length if done + h > length * (1 - 1e-12) else done + h
         elif not worst < np.inf and h < 1e-7 * length:
             break
-        h *= min(3.0, max(0.1, 0.9 * (worst + 1e-30) ** (-1 / 7.0)))
+        h = min(h * min(3.0, max(0.1, 0.9 * (worst + 1e-30) ** (-1 / 7.0))), longest)
     if done < length:
         error[:] = np.nan
         trace[:] = np.nan
@@ -180,7 +185,7 @@ _BY_SERIES = """\
 
 
 def lane_module_source(parent: tuple[int, ...], extra: bool) -> str:
-    """Whole module for a small tree of unknowns; ``extra``: static torque or angle-dependent inertia act.
+    """Whole module for a small tree of unknowns; ``extra``: as ``has_extra`` finds.
 
     Plain chains go by Taylor series, whose recurrences would be three times as long with the extra terms.
     """

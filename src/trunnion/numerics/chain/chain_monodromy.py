@@ -112,9 +112,10 @@ def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> Non
 
 
 def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:
-    """Whether static torque on a bent joint or angle-dependent inertia add terms to the plain chain."""
+    """Whether static torque on a bent joint, angle-dependent inertia or stiffness add terms to the plain chain."""
     behind_joint = program.near_source >= 0
-    return bool(len(program.member_unknown)) or bool(np.any(lanes.torque[behind_joint]))
+    varying = len(program.member_unknown) or len(program.wave_unknown)
+    return bool(varying) or bool(np.any(lanes.torque[behind_joint]))
 
 
 def symmetry_phase(program: ChainProgram, lanes: ChainLanes, period: float) -> float | None:

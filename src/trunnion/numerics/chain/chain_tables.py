@@ -35,6 +35,7 @@ class ChainProgram(NamedTuple):
     near_speed_source, near_speed (n,): joint and factor giving the speed of the parent group's reference.
     member_unknown, member_source, member_ratio (members,): inertias of groups that contain joints.
     member_speed_source, member_speed (members,): speed of that group's reference.
+    wave_unknown, wave_cycles (waves,): harmonics of the stiffness in front of an unknown, in cycles per turn.
     """
 
     parent: Integers
@@ -51,6 +52,8 @@ class ChainProgram(NamedTuple):
     member_ratio: Array
     member_speed_source: Integers
     member_speed: Array
+    wave_unknown: Integers
+    wave_cycles: Array
 
 
 class ChainLanes(NamedTuple):
@@ -60,6 +63,7 @@ class ChainLanes(NamedTuple):
     stiffness κ = k/(JΩ²), damping d = c/(JΩ), scale √(J_i/J_parent), torque T̄/(J_parent Ω²): (n, lanes).
     member_inertia J/J_i, member_load M₀/(J_i Ω²), member_viscous c₁/(J_i Ω) and member_quadratic c₂/J_i of the outer
         torque M₀ + c₁v + c₂v|v|: (members, lanes).
+    wave_share, wave_phase (waves, lanes): amplitude over the mean stiffness, and its phase [rad].
     frequency ν (lanes,): unit of the rates.
     """
 
@@ -73,6 +77,8 @@ class ChainLanes(NamedTuple):
     member_load: Array
     member_viscous: Array
     member_quadratic: Array
+    wave_share: Array
+    wave_phase: Array
     frequency: Array
 
 
@@ -86,8 +92,8 @@ MOVING = 4
 COS2, SIN2, SPEED, ACCELERATION, RATIO, RATIO1, RATIO2, ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
 MOVING_ROWS = 8
 STIFFNESS, DAMPING, NEAR_SCALE, SLOPE_SCALE, TORQUE, FREQUENCY = 0, 1, 2, 3, 4, 5
-NEAR, NEAR_SLOPE, EXTRA_DAMPING, EXTRA_STIFFNESS, OVER_MASS = 0, 1, 2, 3, 4
-TABLE_ROWS = 5
+NEAR, NEAR_SLOPE, EXTRA_DAMPING, EXTRA_STIFFNESS, OVER_MASS, WAVE = 0, 1, 2, 3, 4, 5
+TABLE_ROWS = 6
 PER_STAGE, PER_JOINT = MOVING_ROWS * LANES, (MOVING + MOVING_ROWS * STAGES) * LANES
 PER_UNKNOWN, PER_ROW = 6 * LANES, TABLE_ROWS * LANES
 PER_TABLE = PER_ROW * STAGES
@@ -96,6 +102,7 @@ PER_TABLE = PER_ROW * STAGES
 class Block(NamedTuple):
     """One block of lanes: flat rows (see above); κ, slopes and extra stiffness in units of ν.
 
+    wave_cosine, wave_sine (waves, LANES): harmonics of the stiffness over its mean, c cos − s sin.
     ``alike``: all lanes have the same joint angles and phases, so one of them speaks for all.
     """
 
@@ -105,6 +112,8 @@ class Block(NamedTuple):
     member_load: Array
     member_viscous: Array
     member_quadratic: Array
+    wave_cosine: Array
+    wave_sine: Array
     alike: bool
 
 
@@ -117,6 +126,8 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     members = lanes.member_inertia.shape[0]
     inertia, load = np.zeros((members, LANES)), np.zeros((members, LANES))
     viscous, quadratic = np.zeros((members, LANES)), np.zeros((members, LANES))
+    waves = len(program.wave_unknown)
+    wave_cosine, wave_sine = np.zeros((waves, LANES)), np.zeros((waves, LANES))
     alike = True
     for lane in range(LANES):
         at, first = picked[lane], picked[0]
@@ -147,7 +158,10 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
             load[k, lane] = lanes.member_load[k, at]
             viscous[k, lane] = lanes.member_viscous[k, at]
             quadratic[k, lane] = lanes.member_quadratic[k, at]
-    return Block(joint, unknown, inertia, load, viscous, quadratic, alike)
+        for k in range(waves):
+            wave_cosine[k, lane] = lanes.wave_share[k, at] * math.cos(lanes.wave_phase[k, at])
+            wave_sine[k, lane] = lanes.wave_share[k, at] * math.sin(lanes.wave_phase[k, at])
+    return Block(joint, unknown, inertia, load, viscous, quadratic, wave_cosine, wave_sine, alike)
 
 
 @njit(cache=True, nogil=True)
@@ -160,6 +174,7 @@ def empty_table(program, block):  # type: ignore[no-untyped-def]
             o = i * PER_TABLE + m * PER_ROW
             for lane in range(LANES):
                 table[o + OVER_MASS * LANES + lane] = 1.0
+                table[o + WAVE * LANES + lane] = 1.0
                 if program.near_source[i] < 0:
                     table[o + NEAR * LANES + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
     return table
@@ -210,6 +225,8 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
             for m in range(len(nodes)):
                 for lane in range(LANES):
                     rows[m * PER_ROW + EXTRA_STIFFNESS * LANES + lane] = 0.0
+    if len(program.wave_unknown) > 0:
+        _waves(program, block, begin, step, nodes, table)
     for i in range(len(parent)):
         if near_source[i] >= 0 and parent[i] >= 0:
             shaft = unknown[i * PER_UNKNOWN : (i + 1) * PER_UNKNOWN]
@@ -221,7 +238,7 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
                 _times_speed(driver, used == 1, len(nodes), rows)
             if extra:
                 above = table[parent[i] * PER_TABLE : (parent[i] + 1) * PER_TABLE]
-                _torque_on_joint(joint, shaft, used == 1, len(nodes), above)
+                _torque_on_joint(joint, shaft, used == 1, len(nodes), rows, above)
     if curved:
         _members(program, block, len(nodes), table)
 
@@ -409,13 +426,14 @@ def _times_speed(driver, alike, count, rows):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _torque_on_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
-    """−r₁T̄ on the unknown in front of the joint."""
+def _torque_on_joint(joint, shaft, alike, count, own, rows):  # type: ignore[no-untyped-def]
+    """−r₁T̄ of the shaft with rows ``own``, on the unknown in front of the joint."""
     for m in range(count):
         o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
         for lane in range(LANES):
             slope = joint[o + RATIO1 * LANES] if alike else joint[o + RATIO1 * LANES + lane]
-            rows[t + EXTRA_STIFFNESS * LANES + lane] -= slope * shaft[TORQUE * LANES + lane]
+            torque = shaft[TORQUE * LANES + lane] * own[t + WAVE * LANES + lane]
+            rows[t + EXTRA_STIFFNESS * LANES + lane] -= slope * torque
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
@@ -457,6 +475,22 @@ def _members(program, block, count, table):  # type: ignore[no-untyped-def]
                 for lane in range(LANES):
                     table[t + OVER_MASS * LANES + lane] = 1.0 / table[t + OVER_MASS * LANES + lane]
             done = owner[k]
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _waves(program, block, begin, step, nodes, table):  # type: ignore[no-untyped-def]
+    """Stiffness that varies over its mean: gear meshes."""
+    for i in program.wave_unknown:
+        for m in range(len(nodes)):
+            for lane in range(LANES):
+                table[i * PER_TABLE + m * PER_ROW + WAVE * LANES + lane] = 1.0
+    for k in range(len(program.wave_unknown)):
+        for m in range(len(nodes)):
+            angle = program.wave_cycles[k] * (begin + nodes[m] * step)
+            c, s = math.cos(angle), math.sin(angle)
+            o = program.wave_unknown[k] * PER_TABLE + m * PER_ROW + WAVE * LANES
+            for lane in range(LANES):
+                table[o + lane] += c * block.wave_cosine[k, lane] - s * block.wave_sine[k, lane]
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")

@@ -3,10 +3,11 @@
 For up to three unknowns the twelve stages of one column of the propagator are straight-line code over
 scalars, looped over lanes: the compiler keeps them in vector registers. With unknown i, parent p,
 
-    T_i = κ_i (x_i − e_i x_p) + d_i (v_i − e_i v_p − f_i x_p)
+    T_i = w_i κ_i (x_i − e_i x_p) + d_i (v_i − e_i v_p − f_i x_p)
     v_i′ = (−T_i + Σ_children e T − g_i v_i − h_i x_i)/m_i,     x_i′ = ν v_i
 
-(κ, f, h over ν). Lines without g, h and m go by Taylor series instead, see ``series_step_source``.
+(κ, f, h over ν; w is the stiffness over its mean). Lines without w, g, h and m go by Taylor series instead, see
+``series_step_source``.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from trunnion.numerics.chain.chain_tables import (
     PER_TABLE,
     PER_UNKNOWN,
     STIFFNESS,
+    WAVE,
 )
 from trunnion.numerics.integration.runge_kutta import E3, E5, STAGES, A, B
 
@@ -73,11 +75,12 @@ def _stage(m: int, parent: tuple[int, ...]) -> list[str]:
     force = {i: f"-T{i}" for i in range(n)}
     for i, p in enumerate(parent):
         if p < 0:
-            lines.append(f"T{i} = k{i} * x{i} + d{i} * x{n + i}")
+            lines.append(f"T{i} = {_at(m, i, WAVE)} * k{i} * x{i} + d{i} * x{n + i}")
             continue
         lines.append(f"e{i} = {_at(m, i, NEAR)}")
         lines.append(
-            f"T{i} = k{i} * (x{i} - e{i} * x{p}) + d{i} * (x{n + i} - e{i} * x{n + p} - {_at(m, i, NEAR_SLOPE)} * x{p})"
+            f"T{i} = {_at(m, i, WAVE)} * k{i} * (x{i} - e{i} * x{p})"
+            f" + d{i} * (x{n + i} - e{i} * x{n + p} - {_at(m, i, NEAR_SLOPE)} * x{p})"
         )
         force[p] += f" + e{i} * T{i}"
     for i in range(n):

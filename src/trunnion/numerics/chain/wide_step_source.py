@@ -26,7 +26,8 @@ def wide_slope(parent, table, unknown, m, lane, h, x, at, k):
     for i in range(n):
         p = parent[i]
         o, own = i * PER_TABLE + m * PER_ROW + lane, i * PER_UNKNOWN + lane
-        kappa, d = h * unknown[own + STIFFNESS * LANES], h * unknown[own + DAMPING * LANES]
+        kappa = h * unknown[own + STIFFNESS * LANES] * table[o + WAVE * LANES]
+        d = h * unknown[own + DAMPING * LANES]
         if p < 0:
             for c in range(columns):
                 k[at, n + i, c] -= kappa * x[i, c] + d * x[n + i, c]

@@ -1,0 +1,151 @@
+"""Mesh stiffness that varies with the teeth is a periodic stiffness: linear verdicts, charts, limits and names."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.comparisons import floquet, set_distance
+from oracles.package_kernels import chain_kernel
+from oracles.random_lines import random_geared_line
+from scipy.special import mathieu_a, mathieu_b
+
+import trunnion as tn
+from trunnion.results.verdict import Verdict
+
+RADIUS_IN, RADIUS_OUT = (teeth * 0.003 * np.cos(np.deg2rad(20.0)) / 2 for teeth in (25, 40))
+
+
+def geared(share: float, *joint: tn.HookeJoint, load: float = 100.0, **harmonic: Any) -> tn.Driveline:
+    """Shaft, disk, mesh of 25 and 40 teeth, disk, shaft, disk."""
+    return tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=1e5, damping=1), tn.Disk(inertia=0.01), *joint,
+         tn.GearPair(teeth_in=25, teeth_out=40, module=0.003, mesh_stiffness=1e8, mesh_damping=500,
+                     stiffness_variation=[{"share": share, **harmonic}]),
+         tn.Disk(inertia=0.02, load_torque=load), tn.Shaft(stiffness=2e4, damping=1), tn.Disk(inertia=0.05)]
+    )  # fmt: skip
+
+
+def by_hand(share: float, speed: float, phase: float) -> np.ndarray:
+    """Multipliers of ``geared`` from its Lagrangian along the line of action, in the mesh phase, by scipy."""
+    inertia = np.array([0.01, 0.02, 0.05])
+    along, twist = np.array([RADIUS_IN, -RADIUS_OUT, 0.0]), np.array([0.0, -1.0, 1.0])
+    damping = np.diag([1.0, 0, 0]) + 500 * np.outer(along, along) + np.outer(twist, twist)
+    steady = np.diag([1e5, 0, 0]) + 2e4 * np.outer(twist, twist)
+
+    def matrices(time: float) -> tuple[np.ndarray, np.ndarray]:
+        mesh = 1e8 * (1 + share * np.cos(25 * speed * time + phase))
+        return damping / inertia[:, None], (steady + mesh * np.outer(along, along)) / inertia[:, None]
+
+    return floquet(matrices, 3, 2 * np.pi / 25 / speed)
+
+
+@pytest.mark.parametrize(("share", "growth"), [(0.1, 9.2), (0.2, 127.5), (0.4, 363.0)])
+def test_a_varying_mesh_makes_a_line_unstable(share: float, growth: float) -> None:
+    """Growth rates as an independent review found them; multipliers as from the Lagrangian."""
+    found = tn.stability(geared(share, phase=0.7), 466.3)
+    assert found.growth_rate == pytest.approx(growth, rel=5e-3)
+    assert found.verdict is Verdict.UNSTABLE and found.period == pytest.approx(2 * np.pi / 25)
+    assert set_distance(found.multipliers, by_hand(share, 466.3, 0.7)) < 1e-8
+
+
+def test_linear_and_nonlinear_equations_agree_on_a_straight_line() -> None:
+    """They are the same equations while the mesh stays on its stage: multipliers and torques, load included."""
+    line = geared(0.2, load=300.0)
+    linear, nonlinear = tn.stability(line, 400.0), tn.periodic_response(line, speed=400.0)
+    assert set_distance(linear.multipliers, nonlinear.multipliers) < 1e-8
+    assert linear.response is not None
+    assert 2 * linear.response.torque_amplitude == pytest.approx(nonlinear.torque_peak_to_peak, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("q", "a", "trace"),
+    [
+        (1.0, 3.917025, 2),
+        (0.4, mathieu_a(1, 0.4), -2),
+        (0.2, mathieu_b(1, 0.2), -2),
+        (1.0, mathieu_a(2, 1.0), 2),
+        (3.0, mathieu_b(3, 3.0), -2),
+    ],
+)
+def test_one_mesh_and_one_disk_are_a_mathieu_oscillator(q: float, a: float, trace: float) -> None:
+    """At the boundaries of y″ + (a − 2q cos 2x) y = 0, one published and the others scipy's, multipliers sum to ±2.
+
+    With z teeth a turn, x = zτ/2 and stiffness k(1 − σ cos zτ): a = (2ω/zΩ)², q = aσ/2.
+    """
+    teeth, inertia = 12, 0.3
+    line = tn.Driveline(
+        [tn.ConstantSpeed(),
+         tn.GearPair(teeth_in=teeth, teeth_out=18, module=0.003, mesh_stiffness=1e7,
+                     stiffness_variation=[{"share": 2 * q / a, "phase": np.pi}]),
+         tn.Disk(inertia=inertia)]
+    )  # fmt: skip
+    (frequency,) = tn.natural_frequencies(line).frequency
+    found = tn.stability(line, 2 * frequency / (teeth * np.sqrt(a)))
+    assert found.multipliers.sum() == pytest.approx(trace, abs=2e-5)
+
+
+@pytest.mark.parametrize("seed", [5, 9, 17, 24])
+def test_chart_kernel_integrates_the_same_meshes(seed: int) -> None:
+    """Joints in front of meshes, loads on them, two harmonics: the charts' kernel against the dense integrator."""
+    line = random_geared_line(seed, steepest=0.4)
+    speed = 60.0
+    matrix, error, trace = chain_kernel(line, speed, 1e-11)
+    found, dense = np.linalg.eigvals(matrix[0]), tn.stability(line, speed, tolerance=1e-12)
+    assert np.linalg.slogdet(matrix[0])[1] == pytest.approx(-trace[0], abs=1e-8)
+    assert set_distance(found, dense.multipliers) < 1e-7 * max(1.0, dense.spectral_radius)
+
+
+def test_charts_and_limits_count_meshes() -> None:
+    line = geared(0.2)
+    share = "GearPair 1.stiffness_variation 1 share"
+    chart = tn.stability_chart(line, ("speed", 440.0, 490.0, 40), (share, 0.0, 0.4, 30))
+    assert chart.spot_check is not None and chart.spot_check.worst_ratio < 1
+    rng = np.random.default_rng(7)
+    for row, column in zip(rng.integers(0, 30, 12), rng.integers(0, 40, 12), strict=True):
+        own = tn.stability(geared(float(chart.y[row])), float(chart.x[column]))
+        off = abs(own.spectral_radius - chart.spectral_radius[row, column])
+        assert off <= chart.error_estimate[row, column] + own.error_estimate
+        assert own.verdict == chart.verdict[row, column]
+    limit = tn.stable_limit(line, share, [466.3, 470.0], low=0.0, high=0.4).limit[0]
+    assert tn.stability(geared(limit - 1e-5), 466.3).verdict is Verdict.STABLE
+    assert tn.stability(geared(limit + 1e-5), 466.3).verdict is Verdict.UNSTABLE
+
+
+def test_mesh_orders_are_named() -> None:
+    """Teeth per turn of the input excite: 25 in front of the mesh, 25/2 for a mesh behind a ratio of 2."""
+    line = geared(0.2)
+    modes = tn.natural_frequencies(line).frequency
+    named = {str(r): r.speed for r in tn.resonance_speeds(line)}
+    assert named["subharmonic 2ω₃/25 (mesh of GearPair 1)"] == pytest.approx(2 * modes[2] / 25)
+    assert named["sum (ω₁+ω₂)/25 (mesh of GearPair 1)"] == pytest.approx((modes[0] + modes[1]) / 25)
+    behind = [line.elements[0], tn.Shaft(stiffness=1e5), tn.Disk(inertia=1.0), tn.Ratio(ratio=2.0), *line.elements[1:]]
+    slow = tn.Driveline(behind)
+    first = tn.natural_frequencies(slow).frequency[0]
+    named = {str(r): r.speed for r in tn.resonance_speeds(slow)}
+    assert named["subharmonic 4ω₁/25 (mesh of GearPair 1)"] == pytest.approx(4 * first / 25)
+    both = geared(0.2, tn.HookeJoint(angle=0.2))
+    assert {r.mesh for r in tn.resonance_speeds(both)} == {"", "GearPair 1"}
+    assert tn.stability(both, 466.3).period == pytest.approx(2 * np.pi)
+
+
+def test_the_sweep_follows_the_mesh() -> None:
+    """Torque over speed by harmonic balance and by integration."""
+    line = geared(0.1, tn.HookeJoint(angle=0.1), load=300.0)
+    swept = tn.speed_sweep(line, [350.0])
+    integrated = tn.stability(line, 350.0).response
+    assert integrated is not None
+    assert swept.torque_amplitude[0] == pytest.approx(integrated.torque_amplitude, rel=5e-3)
+
+
+def test_joints_and_meshes_without_a_common_period_are_refused() -> None:
+    """Behind 61 teeth on 67 a joint is back in phase with the mesh only after 67 turns."""
+    line = geared(0.2, tn.HookeJoint(angle=0.1)).replace("GearPair 1", teeth_in=61, teeth_out=67)
+    behind = [tn.HookeJoint(angle=0.1), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1)]
+    both = tn.Driveline([*line.elements, *behind])
+    for refused in (lambda: tn.stability(both, 100.0), lambda: tn.speed_sweep(both, [100.0])):
+        with pytest.raises(tn.InputError, match="joints and meshes are back in phase only after 67 turns") as error:
+            refused()
+        assert "on each side of the ratio separately" in str(error.value)
+    assert tn.stability(line, 100.0).period == pytest.approx(2 * np.pi)
