@@ -27,15 +27,9 @@ def picture(figure: Figure, alt: str, caption: str = "") -> Picture:
     """``figure`` as SVG; meshes in it as pixels."""
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", dpi=RASTER_DPI, metadata={"Date": None})
-    return Picture(_address("image/svg+xml", stream.getvalue()), alt, caption)
+    return Picture(address("image/svg+xml", stream.getvalue()), alt, caption)
 
 
-def pixels(figure: Figure, alt: str, caption: str = "", dpi: int = 130) -> Picture:
-    """``figure`` as PNG, for pages with many charts."""
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=dpi)
-    return Picture(_address("image/png", stream.getvalue()), alt, caption)
-
-
-def _address(kind: str, content: bytes) -> str:
+def address(kind: str, content: bytes) -> str:
+    """``content`` as a data address of a page."""
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"

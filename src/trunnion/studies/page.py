@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from trunnion._version import __version__
-from trunnion.reporting.pictures import pixels
-from trunnion.studies.result import Reproduction
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from trunnion.reporting.pictures import Picture, address
+from trunnion.studies.result import LABELS, PaperFigure, Reproduction
 
 
-def page(found: Reproduction, drawn: Sequence[Figure]) -> str:
-    """HTML of ``found``; ``drawn`` are its figures followed by its evidence."""
+def page(studies: Sequence[tuple[Reproduction, Sequence[bytes]]]) -> str:
+    """HTML of one study or several, with an index on top; each with the PNGs of its figures and then its evidence."""
     from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
     templates = [PackageLoader(f"trunnion.{part}", "templates") for part in ("studies", "reporting")]
@@ -25,11 +21,20 @@ def page(found: Reproduction, drawn: Sequence[Figure]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    every = (*found.figures, *found.evidence)
-    shown = [(f, pixels(picture, f.caption)) for f, picture in zip(every, drawn, strict=True)]
-    return environment.get_template("reproduction.html.j2").render(
-        found=found,
-        figures=shown[: len(found.figures)],
-        evidence=shown[len(found.figures) :],
-        version=__version__,
+    shown = [
+        (found, *_split(found, [Picture(address("image/png", png), f.caption, "") for f, png in _named(found, drawn)]))
+        for found, drawn in studies
+    ]
+    return environment.get_template("reproduction.html.j2").render(studies=shown, labels=LABELS, version=__version__)
+
+
+def _named(found: Reproduction, drawn: Sequence[bytes]) -> list[tuple[PaperFigure, bytes]]:
+    return list(zip((*found.figures, *found.evidence), drawn, strict=True))
+
+
+def _split(found: Reproduction, pictures: list[Picture]) -> tuple[list[tuple[PaperFigure, Picture]], ...]:
+    count = len(found.figures)
+    return (
+        list(zip(found.figures, pictures[:count], strict=True)),
+        list(zip(found.evidence, pictures[count:], strict=True)),
     )

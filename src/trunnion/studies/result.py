@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -19,6 +20,11 @@ CHARTS_NOTE = (
     "Dark is unstable, as in the paper; grey, if anywhere, undecided (the spectral radius is 1 to within its error). "
     "Formulas name resonance speeds of the straight line."
 )
+
+
+def rounded(value: float) -> str:
+    """A small number, or "rounding" where it is no more than that and differs between processors."""
+    return "rounding" if abs(value) < 1e-10 else f"{value:.0e}"
 
 
 @dataclass(frozen=True)
@@ -67,13 +73,38 @@ class PaperFigure:
         return self.draw()
 
 
+CONFIRMED, CORRECTED, UNDECIDED, ADDED = "confirmed", "corrected", "not decided", "added"
+LABELS = {
+    CONFIRMED: "the computed figures bear it out, by more than their errors",
+    CORRECTED: "they contradict it, by more than their errors",
+    UNDECIDED: "they do neither: within the error, or different from one part of the range to another",
+    ADDED: "not in the paper",
+}
+"""What each label of a conclusion means."""
+
+
 @dataclass(frozen=True)
 class Conclusion:
-    """A statement of the paper, whether it holds, and the computed figures that say so."""
+    """A statement of the paper, whether it holds (one of ``LABELS``), and the computed figures that say so."""
 
     statement: str
     holds: str
     evidence: str
+
+    def __post_init__(self) -> None:
+        if self.holds not in LABELS:
+            raise ValueError(f"{self.holds!r} is none of {', '.join(LABELS)}")
+
+
+@dataclass(frozen=True)
+class Argument:
+    """A proof in words and numbers: its title and its steps."""
+
+    title: str
+    steps: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return "\n".join([self.title, *(f"  {i}. {step}" for i, step in enumerate(self.steps, start=1))])
 
 
 @dataclass(frozen=True)
@@ -90,28 +121,29 @@ class Reproduction:
     evidence: tuple[PaperFigure, ...]
     conclusions: tuple[Conclusion, ...]
     figures_note: str = CHARTS_NOTE
+    argument: Argument | None = None
 
     def figure(self, number: str | int) -> PaperFigure:
         """A figure by its number in the paper."""
         return next(f for f in self.figures if f.number == str(number))
 
+    def markdown(self) -> str:
+        """The conclusions as a table in Markdown, as the documentation has them."""
+        rows = [f"| {c.statement} | **{c.holds}** | {c.evidence} |" for c in self.conclusions]
+        return "\n".join(["| statement | | computed |", "|---|---|---|", *rows])
+
+    def drawn(self) -> list[bytes]:
+        """Every figure, then the evidence, as PNG."""
+        return [_png(figure.plot()) for figure in (*self.figures, *self.evidence)]
+
     def save(self, folder: str | os.PathLike[str]) -> list[Path]:
         """Write every figure as PNG and one page with everything into ``folder``; returns the paths."""
-        from trunnion.plots.style import DPI
-        from trunnion.studies.page import page
-
-        drawn = [(figure, figure.plot()) for figure in (*self.figures, *self.evidence)]
-        first = f"{self.name}.html"
-        with folder_written_whole(folder) as temporary:
-            for figure, picture in drawn:
-                picture.savefig(temporary / figure.file, format="png", dpi=DPI)
-            text = page(self, [picture for _, picture in drawn])
-            (temporary / first).write_text(text, encoding="utf-8", newline="\n")
-        return [Path(folder) / name for name in (first, *(figure.file for figure, _ in drawn))]
+        return _save(folder, f"{self.name}.html", (self,), lambda study: "")
 
     def __str__(self) -> str:
         parts = [f"{self.title}\n{self.source}"]
         parts += [str(table) for table in (*self.tables, self.errata)]
+        parts += [str(self.argument)] if self.argument else []
         parts.append(
             "Conclusions of the paper\n"
             + "\n".join(f"  {c.holds}: {c.statement}\n    {c.evidence}" for c in self.conclusions)
@@ -119,3 +151,49 @@ class Reproduction:
         return "\n\n".join(parts)
 
     __repr__ = __str__
+
+
+@dataclass(frozen=True)
+class Reproductions:
+    """Several papers computed anew, ``tn.reproduce("all")``: print them, or ``save`` them as one page."""
+
+    studies: tuple[Reproduction, ...]
+
+    def __getitem__(self, name: str) -> Reproduction:
+        """A study by its name in the catalogue."""
+        return next(study for study in self.studies if study.name == name)
+
+    def save(self, folder: str | os.PathLike[str]) -> list[Path]:
+        """Write ``index.html``, one page with every study and an index on top, and the figures as PNG; returns
+        the paths."""
+        return _save(folder, "index.html", self.studies, lambda study: f"{study.name}-")
+
+    def __str__(self) -> str:
+        return "\n\n\n".join(map(str, self.studies))
+
+    __repr__ = __str__
+
+
+def _save(
+    folder: str | os.PathLike[str], first: str, studies: tuple[Reproduction, ...], prefix: Callable[[Reproduction], str]
+) -> list[Path]:
+    """Write the page and the pictures, whose names start with the ``prefix`` of their study."""
+    from trunnion.studies.page import page
+
+    drawn = [(study, study.drawn()) for study in studies]
+    written = [first]
+    with folder_written_whole(folder) as temporary:
+        for study, pictures in drawn:
+            for figure, png in zip((*study.figures, *study.evidence), pictures, strict=True):
+                written.append(prefix(study) + figure.file)
+                (temporary / written[-1]).write_bytes(png)
+        (temporary / first).write_text(page(drawn), encoding="utf-8", newline="\n")
+    return [Path(folder) / name for name in written]
+
+
+def _png(figure: Figure) -> bytes:
+    from trunnion.plots.style import DPI
+
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI)
+    return stream.getvalue()

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.studies.double_tripod.contraction import torque_that_breaks_it
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 from trunnion.studies.result import Comparison, Row
+
+TABLE_RIGIDITY = 1.11e4
+"""Torsional rigidity [N m/rad] of Tables 1 and 2."""
 
 
 def errata() -> Comparison:
@@ -16,6 +20,12 @@ def errata() -> Comparison:
     polar = np.pi * one.d_A**4 / 32
     lowered = [mended.element(e).natural_frequency(WORST_ANGLE) for e in ("input", "output")]
     own = "Appendix B by its own data"
+    stiff = [part.stiffness(WORST_ANGLE) for part in (one, three)]
+    first, second = shaft.midshaft_frequencies(2)
+    turning = one.natural_frequency(WORST_ANGLE) / (2 * np.pi)
+    near = 100 * (first / turning - 1), 100 * (second / (2 * turning) - 1)
+    room = torque_that_breaks_it("input")
+    dropped = TABLE_RIGIDITY * one.joint_amplitude(WORST_ANGLE) / float(stiff[0])
     return Comparison(
         "Errata",
         (
@@ -30,9 +40,17 @@ def errata() -> Comparison:
             Row("(A9)", "sin²β₁", "sin²β₂", "element 3 stands at β₂"),
             Row("(19), (21)", "(−1)^k, + GJ sin", "(−1)^k, − GJ sin", "from (17) at x = L"),
             Row("(30)", "cos Θ₁ in one factor", "cos Θ₃", ""),
+            Row("Tables 1, 2: torsional rigidity", "1.11·10⁴ N m/rad", f"{stiff[0]:.3g}, {stiff[1]:.3g} N m/rad",
+                "the k_t of (1), (5) that gives the printed frequencies; whose rigidity the table has it does not say"),
             Row("(31)–(36)", "log₁₀, restarted perturbations", "natural log, variational equations",
-                "not Lyapunov exponents: positive for a decaying oscillator, and growing with N"),
+                "not Lyapunov exponents as the text reads; what the authors computed in fact is not known"),
             Row("(38), (39)", "criteria of chaos", "hold of themselves",
                 "a forced system has an exponent 0, a damped one a negative sum: they cannot discriminate"),
+            Row("(20), (21): midshaft terms", "dropped in (25), (26)",
+                f"ν₁, ν₂ {near[0]:.0f} % and {near[1]:.0f} % away",
+                "ν₁ from Ω₁/2π, ν₂ from 2Ω₁/2π. Their amplitudes A_k are free, no equation fixes them. As torques in "
+                f"time they would have to be {room:.2g} times the motor's mean before the bound below fails"),
+            Row("(10), (12): tripod terms", "k_tTJ A cos 3φ, dropped in (25)", f"{dropped:.0e} of k_t",
+                "with the table's 1.11·10⁴ N m/rad as the joint's k_tTJ; A = 3.65e-5 makes them nothing"),
         ),
     )  # fmt: skip

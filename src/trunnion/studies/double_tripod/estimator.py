@@ -5,8 +5,10 @@ the divergence of neighbours. With N intervals up to T_f and Δ the separation a
 
     L_k = (1/T_f) Σ_{i=1}^{N} log₁₀ ( |Δ_k(T_i)| / ‖Δ(T_f)‖ ).
 
-It mixes states of different units in the norm, uses the decimal logarithm, and depends on N: of a decaying
-oscillator Δ(T_f) is the smallest separation of all, so every term is positive and the sum grows with N.
+It mixes states of different units in the norm, uses the decimal logarithm, and depends on N: the sum grows with the
+number of terms. Its sign is that of the mean of log₁₀|Δ_k(T_i)| against log₁₀‖Δ(T_f)‖, not of a growth: of the plain
+decaying oscillator x″ + 2ζx′ + x = 0 it is positive, of (29) with its phase of growing size negative. The paper's
+figures show other values, so this reading is not what its authors computed.
 """
 
 from __future__ import annotations

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-HISTORY = {"input": 0.12, "output": 0.12}
+HISTORY = 0.12
 """Time drawn [s]; the paper does not state its own."""
-DIES_OUT = 5.0
-"""Times 1/(ζΩ) after which a motion counts as settled in a portrait."""
-MAP_POINTS = (10_000, 50_000)
+DIES_OUT = 7.0
+"""Times 1/(ζΩ) after which a motion counts as settled: the start is then below a thousandth."""
+SETTLED = 0.0102
+"""Time [s] of the settled portrait: three periods of the motor's torque."""
 TRANSIENT = 4000
 COUNTS = (100, 200)
 """Intervals N of the printed estimator."""
@@ -40,30 +41,79 @@ def frequency_figure(element: str) -> Figure:
 
 
 def motion_of(element: str, damping_ratio: float) -> Simulation:
-    """A motion of (25) or (26) from rest without twist."""
+    """A motion of (25) or (26) from rest without twist, until it has settled."""
     system = DoubleTripod(damping_ratio=damping_ratio).system(element, phase="own")
-    return simulate_system(system, HISTORY[element], tolerance=1e-9)
+    p = system.parameters
+    settled = DIES_OUT / (p["damping_ratio"] * p["natural_frequency"])
+    return simulate_system(system, max(HISTORY, settled) + SETTLED, tolerance=1e-9)
+
+
+def beats(motion: Simulation) -> int:
+    """How often the swing per natural period rises again by more than RISE of the first, while the start dies out."""
+    p = motion.system.parameters
+    period = 2 * np.pi / p["natural_frequency"]
+    count = int(min(3 / p["damping_ratio"] / (2 * np.pi), 0.9 * motion.end / period))
+    phi = motion.at(np.linspace(0, count * period, 64 * count, endpoint=False))[:, 0].reshape(count, 64)
+    swing = np.ptp(phi, axis=1)
+    low, risen, rises = swing[0], False, 0
+    for value in swing:
+        if value > low + RISE * swing[0] and not risen:
+            rises, risen, high = rises + 1, True, value
+        if risen and value < high - RISE * swing[0]:
+            risen, low = False, value
+        high, low = (max(high, value), low) if risen else (value, min(low, value))
+    return rises
+
+
+RISE = 0.02
+"""Share of the first swing by which an envelope must rise again to count as beating."""
 
 
 def motion_figure(motion: Simulation, title: str) -> Figure:
-    """φ over time, φ̇ over time, and the portrait, the settled part in another colour: (a), (b), (d)."""
-    figure, (one, two, three) = _figure(3)
-    p = motion.system.parameters
-    times = np.linspace(0, motion.end, 40_000)
-    state = motion.at(times) * np.array([1e6, 1.0])
-    settled = times > DIES_OUT / (p["damping_ratio"] * p["natural_frequency"])
-    one.plot(times, state[:, 0], color="#0072b2", lw=0.4)
-    two.plot(times, state[:, 1], color="#0072b2", lw=0.4)
-    three.plot(state[:, 0], state[:, 1], color="#0072b2", lw=0.3)
-    if settled.any():
-        three.plot(state[settled, 0], state[settled, 1], color="#d55e00", lw=0.9)
-    _labels(one, "time [s]", "rotation [µrad]")
-    _labels(two, "time [s]", "rate [rad/s]")
-    _labels(three, "rotation [µrad]", "rate [rad/s]")
-    for axes in (one, two):
-        axes.set_xlim(0, motion.end)
+    """The paper's panels (a) to (d), φ and φ̇ over time, both in space with time, and the portrait; beside them what is
+    left once the start has died out, at its own scale."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 7.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    mosaic: Any = [["a", "a", "a", "b", "b", "b"], ["c", "c", "d", "d", "e", "e"]]
+    axes: Any = figure.subplot_mosaic(mosaic, per_subplot_kw={"c": {"projection": "3d"}})
+    times = np.linspace(0, HISTORY, 20_000)
+    late = np.linspace(motion.end - SETTLED, motion.end, 8_000)
+    state, settled = (motion.at(t) * np.array([1e6, 1.0]) for t in (times, late))
+    phi, rate = "rotation [µrad]", "rate [rad/s]"
+    axes["a"].plot(times, state[:, 0], color="#0072b2", lw=0.4)
+    axes["b"].plot(times, state[:, 1], color="#0072b2", lw=0.4)
+    axes["c"].plot(state[:, 0], state[:, 1], times, color="#0072b2", lw=0.3)
+    axes["d"].plot(state[:, 0], state[:, 1], color="#0072b2", lw=0.3)
+    axes["e"].plot(settled[:, 0], settled[:, 1], color="#c04f00", lw=1.0)
+    if np.all(np.ptp(settled, axis=0) < 1e-2 * np.ptp(state, axis=0)):
+        axes["e"].plot(settled[-1:, 0], settled[-1:, 1], "o", color="#c04f00", ms=7)
+        half = np.ptp(state, axis=0) / 20
+        axes["e"].set(
+            xlim=(settled[-1, 0] - half[0], settled[-1, 0] + half[0]),
+            ylim=(settled[-1, 1] - half[1], settled[-1, 1] + half[1]),
+        )
+    for letter, x, y in (("a", "time [s]", phi), ("b", "time [s]", rate), ("d", phi, rate), ("e", phi, rate)):
+        _labels(axes[letter], x, y)
+    _in_space(axes["c"], phi, rate)
+    for letter in "ab":
+        axes[letter].set_xlim(0, HISTORY)
+    names = {"a": "(a)", "b": "(b)", "c": "(c)", "d": "(d)", "e": "settled"}
+    for letter, name in names.items():
+        axes[letter].set_title(name, fontsize=9.5, color="#4a4a4a", loc="left")
     _title(figure, title)
     return figure
+
+
+def _in_space(axes: Any, phi: str, rate: str) -> None:
+    """Labels of the panel in space, small enough to stay apart."""
+    for set_label, words in ((axes.set_xlabel, phi), (axes.set_ylabel, rate), (axes.set_zlabel, "time [s]")):
+        set_label(words, fontsize=8, labelpad=2)
+    axes.tick_params(labelsize=7, pad=0)
+    axes.locator_params(nbins=4)
+    axes.set_box_aspect(None, zoom=0.82)
 
 
 def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
@@ -86,25 +136,27 @@ def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
     return figure
 
 
-def map_of(element: str) -> PoincareMap:
-    """Points of (29) or (30) at ζ = 0.0016 and η = 2Ω, once per turn of the phase."""
-    system = DoubleTripod().system(element)
+def map_of(element: str, damping_ratio: float, points: int) -> PoincareMap:
+    """Points of (29) or (30) at η = 2Ω, once per turn of the phase."""
+    system = DoubleTripod(damping_ratio=damping_ratio).system(element)
     turn = 2 * np.pi / system.parameters["excitation"]
-    return poincare_map(system, MAP_POINTS[1], every=turn, transient=TRANSIENT, tolerance=1e-9)
+    return poincare_map(system, points, every=turn, transient=TRANSIENT, tolerance=1e-9)
 
 
-def map_figure(found: PoincareMap, title: str) -> Figure:
-    """The map at two numbers of points: Figures 25 and 28."""
+def map_figure(found: PoincareMap, counts: tuple[int, int], title: str) -> Figure:
+    """The map at two numbers of points: Figures 25 to 30."""
     figure, panels = _figure(2)
-    for axes, points in zip(panels, MAP_POINTS, strict=True):
+    for axes, points in zip(panels, counts, strict=True):
         at = found.points[:points, [0, 2]] * np.array([1e6, 1.0])
         size = found.size[[0, 2]] * np.array([1e6, 1.0])
         look: dict[str, Any] = {"marker": ".", "ls": "", "color": "#0072b2", "mew": 0}
-        axes.plot(at[:, 0], at[:, 1], ms=8.0 if found.repeat else 1.2, rasterized=True, **look)
+        small = 2.4 if points < 20_000 else 1.2
+        axes.plot(at[:, 0], at[:, 1], ms=8.0 if found.repeat else small, rasterized=True, **look)
         if found.repeat:  # one point: shown at the size of the motion
             axes.set_xlim(at[-1, 0] - size[0], at[-1, 0] + size[0])
             axes.set_ylim(at[-1, 1] - size[1], at[-1, 1] + size[1])
-        axes.set_title(f"N = {points}", fontsize=9.5, color="#6b6b6b", loc="left")
+        words = f"N = {points}" + (", all on one point" if found.repeat else "")
+        axes.set_title(words, fontsize=9.5, color="#4a4a4a", loc="left")
         _labels(axes, "rotation [µrad]", "rate [rad/s]")
     _title(figure, title)
     return figure

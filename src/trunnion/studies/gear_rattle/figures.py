@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RIGHT = 2.0
 """Highest frequency of the picture of ranges."""
+DRAWN = (2.0, 3.0, 4.0, 5.0, 8.0)
+"""Ranges of the fit in that picture; the table has all."""
 
 FREQUENCY = "frequency ω, dimensionless"
 
@@ -43,15 +45,16 @@ def methods_figure(found: ResponseComparison, title: str, doubled: Sequence[Freq
 def ranges_figure(exact: FrequencyResponse, by_range: Mapping[float, ApproximateResponse]) -> Figure:
     """First order for several ranges of the cubic fit, beside the exact response."""
     axes = draw_responses({"exact": exact}, new_axes(8.4, 5.2), length="rad", unit="", marks=False)
-    for (gaps, response), colour in zip(by_range.items(), ("#cc79a7", "#d55e00", "#e69f00", "#009e73"), strict=False):
+    drawn = {gaps: response for gaps, response in by_range.items() if gaps in DRAWN}
+    looks = zip(("#cc79a7", "#d55e00", "#e69f00", "#009e73", "#56b4e9"), ("-", "-.", ":", "-", "-."), strict=True)
+    for (gaps, response), (colour, style) in zip(drawn.items(), looks, strict=False):
         stable = response.stable
-        axes.plot(
-            response.frequency, np.where(stable, response.amplitude, np.nan), color=colour, label=f"fit to ±{gaps:g} b"
-        )
+        upper = np.where(stable, response.amplitude, np.nan)
+        axes.plot(response.frequency, upper, label=f"fit to ±{gaps:g} b", color=colour, ls=style, lw=1.8)
         axes.plot(response.frequency, np.where(~stable, response.amplitude, np.nan), color=colour, lw=1, ls=(0, (4, 2)))
     axes.set_xlim(0.2, RIGHT)
     axes.set_ylim(0, 1.1)
-    for response in by_range.values():
+    for response in drawn.values():
         _beyond(axes, response)
     axes.set_xlabel(FREQUENCY, fontsize=TEXT, color=INK)
     axes.legend(fontsize=SMALL, frameon=False, loc="upper left")

@@ -25,7 +25,9 @@ def errata() -> Comparison:
     general = np.array([stability(line, float(s), tolerance=1e-9).spectral_radius for s in SPEEDS])
 
     def share(version: str) -> str:
-        return f"{100 * np.mean(radius[version] > 1 + 1e-6):.0f} % of speeds unstable"
+        part = float(np.mean(radius[version] > 1 + 1e-6))
+        error = np.sqrt(part * (1 - part) / len(SPEEDS))
+        return f"{100 * part:.0f}{f' ± {100 * error:.0f}' if error else ''} % of speeds unstable"
 
     shift = float(np.max(np.abs(radius["second at input"] - radius["derived"])))
     agree = float(np.max(np.abs(radius["derived"] - general)))
@@ -36,9 +38,11 @@ def errata() -> Comparison:
                 "factors 2 on slopes, terms in η″ and signs are missing: everything would be unstable"),
             Row("η₂ taken at τ", "η₂(τ)", share("second at input"),
                 f"it belongs at ψ₁(τ), behind joint 1: spectral radii move by up to {shift:.2g}"),
+            Row("Figures 4 to 6, captions", "β₂ = 0.2, 0.2, 0.4 rad", "β₁",
+                "their axis is β₂; the text varies β₁ = 0.2, 0.4 (mended in the captions here)"),
             Row("derived", "η₂(ψ₁(τ))", share("derived"),
                 f"agrees with the general equations of this program to {agree:.0e}"),
         ),
-        f"β₁ = {ANGLES[0]}, β₂ = {ANGLES[1]} rad, γ₂ = 10, ζ = 0.001, {len(SPEEDS)} speeds from {SPEEDS[0]:g} to "
-        f"{SPEEDS[-1]:g}.",
+        f"β₁ = {ANGLES[0]}, β₂ = {ANGLES[1]} rad, γ₂ = 10, ζ = 0.001, {len(SPEEDS)} evenly spaced speeds from "
+        f"{SPEEDS[0]:g} to {SPEEDS[-1]:g}; with the standard error of so many independent samples.",
     )  # fmt: skip

@@ -24,6 +24,12 @@ TOP = 1.5
 """Largest joint angle drawn [rad]; the text does not state it."""
 LOW, HIGH = 0.04, 2.0
 
+CAPTIONS = {
+    "4": "Angle of the second joint and speed",
+    "5": "Inertia ratio: as Figure 4 with ten times the third disk",
+    "6": "Angle of the first joint: as Figure 4 with twice β₁",
+}
+
 TABLE_1: tuple[Printed, ...] = (
     ("subharmonic", (1,), 1, 0.178), ("subharmonic", (1,), 2, 0.059),
     ("subharmonic", (2,), 1, 1.025), ("subharmonic", (2,), 2, 0.342),
@@ -81,7 +87,7 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
             panel(worst[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, joints in phase", two, limits),
             panel(inline[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, forks in line", two, limits),
         )
-        figures.append(_figure(n, f"β₂–Ω for γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
+        figures.append(_figure(n, f"{CAPTIONS[n]}, γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
     modes = natural_frequencies(catalogue(NAME)).frequency
     rows = [resonance_row(p, (alone,), faint) for p in (*TABLE_1, *TABLE_2)]
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."

@@ -43,26 +43,34 @@ def printed_system(
     """One version of S1's equations (keys of ``VERSIONS``) at speed Ω [1] and joint angle β [rad]."""
     if version not in VERSIONS:
         raise KeyError(version)
-    zeta, alpha, mu, gamma = damping_ratio, damping_of_shaft_2, stiffness_of_shaft_2, inertia_of_disk_2
-    loss, square = 2 * zeta / speed, speed**2
+    groups = (damping_ratio, damping_of_shaft_2, stiffness_of_shaft_2, inertia_of_disk_2)
 
     def e(tau: Array) -> Array:
-        eta, eta1, _ = joint_ratio(tau, angle)
-        slopes = 2 if version == "derived" else 1
-        return _square(
-            [loss + 0 * tau, -alpha * loss * eta],
-            [slopes * eta1 - loss * eta, alpha * loss * (eta**2 + 1 / gamma)],
-        )
+        return matrices(version, tau, speed, angle, *groups)[0]
 
     def p(tau: Array) -> Array:
-        eta, _, eta2 = joint_ratio(tau, angle)
-        coupling = {"printed": eta / square, "sign": -eta / square}.get(version, eta2 - eta / square)
-        return _square([1 / square + 0 * tau, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)])
+        return matrices(version, tau, speed, angle, *groups)[1]
 
     return from_matrices(np.eye(2), e, p, period=np.pi, names=("twist of shaft 1", "twist of shaft 2"))
 
 
-def joint_ratio(tau: Array, beta: float) -> tuple[Array, Array, Array]:
+def matrices(
+    version: str, tau: Array, speed: float | Array, angle: float | Array, zeta: float, alpha: float, mu: float,
+    gamma: float,
+) -> tuple[Array, Array]:  # fmt: skip
+    """E and P over τ (or arrays that broadcast), their two matrix axes last."""
+    loss, square = 2 * zeta / speed, np.asarray(speed) ** 2
+    eta, eta1, eta2 = joint_ratio(tau, angle)
+    slopes = 2 if version == "derived" else 1
+    coupling = {"printed": eta / square, "sign": -eta / square}.get(version, eta2 - eta / square)
+    e = _square(
+        [loss + 0 * eta, -alpha * loss * eta], [slopes * eta1 - loss * eta, alpha * loss * (eta**2 + 1 / gamma)]
+    )
+    p = _square([1 / square + 0 * eta, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)])
+    return e, p
+
+
+def joint_ratio(tau: Array, beta: float | Array) -> tuple[Array, Array, Array]:
     """η, η′, η″ with the fork square to the joint plane at τ = 0."""
     s2 = np.sin(beta) ** 2
     d = 1 - s2 * np.sin(tau) ** 2
@@ -72,5 +80,5 @@ def joint_ratio(tau: Array, beta: float) -> tuple[Array, Array, Array]:
 
 
 def _square(first: list[Array], second: list[Array]) -> Array:
-    """A (time, 2, 2) array from its rows."""
+    """An array (…, 2, 2) from its rows."""
     return np.stack([np.stack(first, -1), np.stack(second, -1)], -2)

@@ -15,9 +15,10 @@ from trunnion.studies.drawing import Panel, panel, side_by_side
 from trunnion.studies.entries import catalogue
 from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_row
 from trunnion.studies.result import Comparison, PaperFigure, Reproduction
-from trunnion.studies.two_shaft_cardan.conclusions import conclusions
+from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, conclusions
 from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
 from trunnion.studies.two_shaft_cardan.published import DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2, group_parameters
+from trunnion.studies.two_shaft_cardan.twists import agreement, chart_in_twists
 
 NAME = "two-shaft-cardan"
 ANGLE = "HookeJoint 1.angle"
@@ -61,12 +62,20 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
     )
     tell(0.6)
     damping, stiffness = _over_group(DAMPING_OF_SHAFT_2, points), _over_group(STIFFNESS_OF_SHAFT_2, points)
-    tell(0.7)
+    tell(0.65)
+    twists = tuple(chart_in_twists(chart, 100.0) for chart in (slow, fast))
+    wide = tuple(_wide(mu, points) for mu in (1.0, 20.0))
+    tell(0.75)
     beta = "joint angle β [rad]"
     whole = (0.0, 2.0)
     from_zero = "Hatched: not computed, a turn there spans very many vibrations."
     figures = (
-        _figure("2", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001, at low and at high speed", from_zero,
+        _figure("2a", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001: the model checked against another",
+                "The paper prints the chart of its reference [17] (Bulut and Parlar 2011). In its place stand the "
+                f"paper's equations in twists, mended: {agreement(twists, (slow, fast))} " + from_zero,
+                panel(twists[0], "equations in twists, low speeds", beta, (0.0, 0.4)),
+                panel(twists[1], "equations in twists", beta, (0.25, 2.0))),
+        _figure("2b", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001, at low and at high speed", from_zero,
                 panel(slow, "γ = 100, low speeds", beta, (0.0, 0.4)), panel(fast, "γ = 100", beta, (0.25, 2.0))),
         _figure("3", "β–Ω, base case α = μ = γ = 1, ζ = 0.001", from_zero, panel(base, "base case", beta, whole)),
         _figure("4", "β–Ω with 20 times the damping of shaft 2, beside the base case", from_zero,
@@ -88,12 +97,18 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
     tables = (
         Comparison(
             "Natural frequencies",
-            frequency_rows("eq 26", (0.072, 1.422), modes, "the paper's own equation 25 gives the computed value"),
+            frequency_rows("eq 26", (0.072, 1.422), modes, "equation 25 gives the computed value, its bracket mended"),
         ),
         Comparison("Table 1, harmonic and subharmonic resonance", tuple(rows[: len(TABLE_1)]), note),
         Comparison("Table 2, combination resonance", tuple(rows[len(TABLE_1) :]), note),
     )
-    evidence = (versions_figure(),)
+    evidence = (
+        versions_figure(),
+        _figure("stiffness", "β–Ω with 1 and 20 times the stiffness of shaft 2, up to 30° and Ω = 12",
+                "α = γ = 1. The conclusion on stiffness is drawn over this box: the first-order tongues of μ = 20 lie "
+                "between Ω = 3 and 7, outside Figure 6.",
+                panel(wide[0], "μ = 1", beta, (0.0, WIDE[1])), panel(wide[1], "μ = 20", beta, (0.0, WIDE[1]))),
+    )  # fmt: skip
     found = Reproduction(
         NAME,
         "Two shafts and a Hooke's joint (S1)",
@@ -102,7 +117,7 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
         tables,
         errata(),
         evidence,
-        conclusions(base, damped, stiff, stiffness, fast),
+        conclusions(base, damped, wide[0], wide[1], fast),
     )
     tell(1.0)
     return found
@@ -114,6 +129,12 @@ def _over_group(label: str, points: int) -> StabilityChart:
     low = 0.0 if label == DAMPING_OF_SHAFT_2 else 0.05
     across, up = ("speed", 0.06, 2.0, points), (parameter, low, MOST, points)
     return stability_chart(line, across, up, tolerance=1e-9)
+
+
+def _wide(stiffness: float, points: int) -> StabilityChart:
+    """One stiffness ratio over the speeds and angles its conclusion is about."""
+    line = catalogue(NAME, stiffness_of_shaft_2=stiffness)
+    return stability_chart(line, ("speed", *WIDE, 3 * points), (ANGLE, 0.0, PRACTICAL, points // 2), tolerance=1e-9)
 
 
 def _figure(number: str, caption: str, assumed: str, *panels: Panel) -> PaperFigure:
