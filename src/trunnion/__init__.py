@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
     from trunnion.driveline import (
         ConstantSpeed,
+        Coupling,
         Disk,
         DoubleCardanJoint,
         Driveline,
@@ -110,6 +111,7 @@ _HOME = {
     "GearPair": "trunnion.driveline",
     "TransmissionError": "trunnion.driveline",
     "StiffnessVariation": "trunnion.driveline",
+    "Coupling": "trunnion.driveline",
     "PiecewiseShaft": "trunnion.driveline",
     "Excitation": "trunnion.driveline",
     "Driveline": "trunnion.driveline",

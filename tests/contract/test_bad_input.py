@@ -8,6 +8,7 @@ import pytest
 import trunnion as tn
 from trunnion.driveline import (
     ConstantSpeed,
+    Coupling,
     Disk,
     Driveline,
     HookeJoint,
@@ -39,6 +40,29 @@ PYTHON = [
         '"12 deg"',
     ),
     (lambda: Shaft(stiffness="2e4 N*m"), "Shaft.stiffness = '2e4 N*m': N*m is not", "write N*m/rad"),
+    (
+        lambda: Shaft(outer_diameter=0.1, length=1, material="stel"),
+        "Shaft.material = 'stel': is not a known",
+        '"steel"',
+    ),
+    (lambda: Shaft(stiffness=1e4, material="steel"), "Shaft.material = 'steel': stands beside stiffness", "leave out"),
+    (lambda: Shaft(material="steel"), "Shaft.outer_diameter: is missing beside material", "outer_diameter, length"),
+    (lambda: Disk(mass="2 t"), "Disk.radius: is missing beside mass", "mass, radius"),
+    (lambda: Disk(mass="2 t", radius=0.3, density=7850), "Disk.density = 7850: stands beside mass", "leave out"),
+    (lambda: Disk(mass="2 kg*m^2", radius=0.3), "Disk.mass = '2 kg*m^2': kg*m^2 is not", '"1800 kg"'),
+    (lambda: Coupling(relative_damping=1), "Coupling.stiffness: is missing", "relative_damping = 1.13"),
+    (
+        lambda: Coupling(stiffness=1, relative_damping=1, loss_factor=0.1),
+        "Coupling.relative_damping = 1: stands beside loss_factor",
+        "ψ/2π",
+    ),
+    (
+        lambda: Coupling(stiffness=1, relative_damping=1, damping=1),
+        "Coupling.damping = 1: stands beside relative_damping",
+        "leave one",
+    ),
+    (lambda: Coupling(stiffness=1, nominal_torque=0), "Coupling.nominal_torque = 0: must be positive", "N*m"),
+    (lambda: Coupling(stiffness=1, length=1), "Coupling.length", "unknown"),
     (lambda: Shaft(stiffness="2e4 Nm"), "Shaft.stiffness = '2e4 Nm': Nm is not", "write N*m/rad"),
     (lambda: Shaft(stiffness=1, damping="3 N*m*s"), "Shaft.damping = '3 N*m*s': ", "write N*m*s/rad"),
     (lambda: Operation(speed="1500 1/min"), "operation.speed = '1500 1/min': ", '"1500 rpm"'),

@@ -8,8 +8,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import trunnion as tn
 from trunnion.driveline import (
     ConstantSpeed,
+    Coupling,
     Disk,
     Driveline,
     GearPair,
@@ -25,7 +27,7 @@ from trunnion.driveline import (
 )
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.kinds import KINDS
-from trunnion.errors import InputRemark
+from trunnion.errors import InputError, InputRemark
 
 TUBE = {"outer_diameter": "110 mm", "inner_diameter": "100 mm", "length": 1.3, "shear_modulus": "79.3 GPa"}
 
@@ -39,6 +41,12 @@ ONE_OF_EACH = [
     IdealJoint(),
     Ratio(ratio=-4.1),
     Ratio(teeth_in=10, teeth_out=41),
+]
+PARTS = [
+    Shaft(outer_diameter="76 mm", inner_diameter="72 mm", length="1.4 m", material="C45", loss_factor=0.02),
+    Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="5 kN*m", heat_rating="350 W"),
+    Disk(mass="2.2 t", radius="0.35 m"),
+    Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
 ]
 WITH_STAGES = [
     GearPair(
@@ -65,7 +73,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH + WITH_STAGES, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element
@@ -228,3 +236,66 @@ def test_a_line_introduces_itself():
         "  Ratio 1       ratio -4.1",
         "  Ratio 2       teeth in 10, teeth out 41",
     ]
+    assert str(Driveline([ConstantSpeed(), *PARTS])).splitlines()[2:] == [
+        "  Shaft 1          tube 76 mm with bore 72 mm, 1.4 m long, 36.08 kN*m/rad, 0.007001 kg*m^2, loss factor 0.02, "
+        "material C45",
+        "  Coupling 1       stiffness 35 kN*m/rad, relative damping 1.13, nominal torque 5000 N*m, heat rating 350 W",
+        "  Disk 1           269.5 kg*m^2, mass 2200 kg, radius 350 mm",
+        "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg*m^2, material steel",
+    ]
+
+
+def test_a_material_gives_what_is_not_stated_and_is_all_that_is_written():
+    named = Shaft(outer_diameter="76 mm", inner_diameter="72 mm", length="1.4 m", material="steel")
+    spelt = Shaft(
+        outer_diameter=0.076, inner_diameter=0.072, length=1.4, shear_modulus=79.3e9, density=7850, young_modulus=206e9
+    )
+    assert named.torsional_stiffness == spelt.torsional_stiffness
+    assert named.moment_of_inertia == spelt.moment_of_inertia > 0
+    assert "shear_modulus" not in named.stated and named.stated["material"] == "steel"
+    light = Shaft(outer_diameter="76 mm", length="1.4 m", material="steel", density=0)
+    assert light.moment_of_inertia == 0 and light.stated["density"] == 0
+    assert Shaft(outer_diameter=0.05, length=1, material="42CrMo4").tensile_strength == 900e6
+    assert named.tensile_strength is None
+    wheel = Disk(outer_diameter=0.3, thickness=0.02, material="aluminium")
+    assert wheel.moment_of_inertia == disk_inertia(0.3, 0.0, 0.02, 2700.0)
+
+
+def test_mass_on_wheels_is_an_inertia():
+    assert Disk(mass="2.2 t", radius="0.35 m").moment_of_inertia == pytest.approx(2200 * 0.35**2)
+
+
+def test_a_coupling_damps_by_its_relative_damping():
+    """ψ = 2πη; at a frequency it is the coefficient ηk/ω."""
+    rubber = Coupling(stiffness=35e3, relative_damping=2 * math.pi * 0.15, loss_factor_frequency="20 Hz")
+    shaft = Shaft(stiffness=35e3, loss_factor=0.15, loss_factor_frequency="20 Hz")
+    assert rubber.damping_coefficient == pytest.approx(shaft.damping_coefficient, rel=1e-14)
+    assert Coupling(stiffness=35e3, relative_damping=1.0).loss == pytest.approx(1 / (2 * math.pi))
+
+
+def test_a_coupling_is_a_shaft_to_every_analysis():
+    def line(spring):
+        return Driveline(
+            [
+                ConstantSpeed(),
+                spring,
+                Disk(inertia=0.4),
+                HookeJoint(angle=0.3),
+                Shaft(stiffness=1e4, damping=1.0),
+                Disk(inertia=0.9),
+            ]
+        )
+
+    rubber = line(Coupling(stiffness=35e3, relative_damping=2 * math.pi * 0.15, loss_factor_frequency="20 Hz"))
+    shaft = line(Shaft(stiffness=35e3, loss_factor=0.15, loss_factor_frequency="20 Hz"))
+    here, there = (tn.stability(one, speed=90.0) for one in (rubber, shaft))
+    np.testing.assert_allclose(here.multipliers, there.multipliers, rtol=1e-12)
+    both = [tn.kinetostatics(one, speed=90.0, output_torque=30.0).data for one in (rubber, shaft)]
+    np.testing.assert_allclose(both[0].torque, both[1].torque, rtol=1e-12)
+    axis = ("Coupling 1.relative_damping", 0.1, 1.0, 3)
+    chart = tn.stability_chart(rubber, ("speed", 80.0, 100.0, 3), axis)
+    assert np.all(np.diff(chart.spectral_radius, axis=0) < 0), "more damping, smaller radius"
+    forever = line(Coupling(stiffness=35e3, relative_damping=0.9))
+    with pytest.raises(InputError, match="relative_damping.*holds at all frequencies"):
+        tn.stability(forever, speed=90.0)
+    assert np.isfinite(tn.order_response(forever, [90.0]).torque).all()

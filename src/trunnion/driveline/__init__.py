@@ -12,7 +12,6 @@ from trunnion.driveline.elements import (
     HookeJoint,
     IdealJoint,
     Ratio,
-    Shaft,
     TripodJoint,
 )
 from trunnion.driveline.excitation import Excitation
@@ -21,6 +20,7 @@ from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionE
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.schema import json_schema
+from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 
@@ -37,6 +37,7 @@ __all__ = [
     "IdealJoint",
     "LoadCase",
     "Operation",
+    "Coupling",
     "PiecewiseShaft",
     "Ratio",
     "Shaft",

@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Shaft
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint
 from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, Kind, parse
+from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
 
 Angles = Sequence[float | str]

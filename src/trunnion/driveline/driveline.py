@@ -10,11 +10,12 @@ from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, field_validator, model_validator
 
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Name, Ratio, Shaft
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Name, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.refusals import about, nearest, refuse
+from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.errors import InputError, InputRemark
@@ -202,7 +203,7 @@ def _wrong_ends(line: Driveline, parents: tuple[int | None, ...]) -> Iterator[In
             yield InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)
 
 
-_SPRINGS = (Shaft, PiecewiseShaft, GearPair)
+_SPRINGS = (Spring, PiecewiseShaft, GearPair)
 
 
 def _wrong_damping(line: Driveline) -> Iterator[InputError]:
@@ -216,8 +217,8 @@ def _wrong_damping(line: Driveline) -> Iterator[InputError]:
     for element, name in zip(line.elements, line.names, strict=True):
         keys = ("damping", "loss_factor", "mesh_damping") if isinstance(element, _SPRINGS) else ()
         key = next((k for k in keys if getattr(element, k, None)), None)
-        if key is None and isinstance(element, Shaft) and element.loss_factor is not None:
-            key = "loss_factor"
+        if key is None and isinstance(element, Spring) and element.loss is not None:
+            key = "loss_factor" if element.loss_factor is not None else "relative_damping"
         if key is not None:
             remedy = "leave out one of the two"
             yield InputError(

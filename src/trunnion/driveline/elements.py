@@ -24,7 +24,8 @@ from pydantic import (
 )
 
 from trunnion.driveline.excitation import Excitations
-from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.geometry import disk_inertia
+from trunnion.driveline.materials import MATERIALS, of_material, without_material
 from trunnion.driveline.quantities import (
     DEGREE,
     RATIO,
@@ -32,14 +33,12 @@ from trunnion.driveline.quantities import (
     Damping,
     Density,
     Dimensionless,
-    Frequency,
     Inertia,
     Kind,
     Length,
-    Pressure,
+    Mass,
     QuadraticLoad,
     Quantity,
-    Stiffness,
     Torque,
 )
 from trunnion.driveline.refusals import refuse
@@ -131,92 +130,6 @@ class ConstantSpeed(Element):
     """
 
 
-class Shaft(Element):
-    """A torsional spring and damper, optionally a tube with its own inertia (lumped half to each end).
-
-    Parameters
-    ----------
-    stiffness : torsional stiffness [N m/rad]; or else the tube's geometry.
-    damping : viscous damping [N m s/rad]; negative is allowed with a remark.
-    outer_diameter, inner_diameter, length : of the tube [m]; inner_diameter = 0 is a solid bar.
-    shear_modulus : G [Pa].
-    density : ρ [kg/m³]; 0 leaves the tube without inertia.
-    young_modulus : E [Pa], for bending.
-    loss_factor, loss_factor_frequency : instead of `damping`, η at a frequency ω [rad/s]: c = ηk/ω. Without the
-        frequency, η holds at all of them, as k(1 + iη): for ``order_response`` and natural frequencies; equations in
-        time refuse it. A relative damping ψ (loss per cycle over elastic energy) is η = ψ/2π.
-    fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
-        the angle of the fork from the joint plane.
-    """
-
-    example: ClassVar[str] = 'stiffness = "12 kN*m/rad"'
-
-    stiffness: Stiffness | None = Field(default=None, description="torsional stiffness; or give the tube")
-    damping: Damping = Field(default=0.0, description="viscous damping")
-    outer_diameter: Length | None = Field(default=None, description="of the tube")
-    inner_diameter: Length | None = Field(default=None, description="of the tube; 0 for a solid bar, as by default")
-    length: Length | None = Field(default=None, description="of the tube")
-    shear_modulus: Pressure | None = Field(default=None, description="of the tube's material; steel 79.3 GPa")
-    density: Density | None = Field(default=None, description="of the tube's material; 0: no inertia, as by default")
-    young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
-    loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
-    loss_factor_frequency: Frequency | None = Field(
-        default=None, description="at which the loss factor holds; by default at all"
-    )
-    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _tube_defaults(cls, data: Any) -> Any:
-        return _with_defaults(data, "outer_diameter", inner_diameter=0.0, density=0.0)
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Self:
-        tube = ("outer_diameter", "inner_diameter", "length", "shear_modulus", "density", "young_modulus")
-        _one_way(self, "stiffness", tube, ("outer_diameter", "length", "shear_modulus"))
-        _positive(self, "stiffness", "outer_diameter", "length", "shear_modulus", "young_modulus")
-        _not_negative(self, "inner_diameter", "density", "loss_factor")
-        _positive(self, "loss_factor_frequency")
-        _bore(self)
-        if self.loss_factor is None and self.loss_factor_frequency is not None:
-            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
-        if self.loss_factor is not None and self.damping != 0.0:
-            remedy = "leave one of the two out"
-            raise InputError("stands beside loss_factor", key="damping", value=self.damping, remedy=remedy)
-        return self
-
-    @property
-    def torsional_stiffness(self) -> float:
-        """k [N m/rad], as stated or from the tube."""
-        if self.stiffness is not None:
-            return self.stiffness
-        assert self.outer_diameter and self.length and self.shear_modulus and self.inner_diameter is not None
-        return tube_stiffness(self.outer_diameter, self.inner_diameter, self.length, self.shear_modulus)
-
-    @property
-    def damping_coefficient(self) -> float:
-        """c [N m s/rad], as stated or from the loss factor at its frequency; 0 where that holds at any frequency."""
-        if self.loss_factor is None or self.loss_factor_frequency is None:
-            return self.damping
-        return self.loss_factor * self.torsional_stiffness / self.loss_factor_frequency
-
-    @property
-    def moment_of_inertia(self) -> float:
-        """Polar moment of the whole tube [kg m²]; 0 where no density is stated."""
-        if not self.density:
-            return 0.0
-        assert self.outer_diameter and self.length and self.inner_diameter is not None
-        return tube_inertia(self.outer_diameter, self.inner_diameter, self.length, self.density)
-
-    def doubts(self) -> Iterator[Doubt]:
-        if self.damping < 0:
-            yield (
-                "damping",
-                "is negative and feeds energy into the line",
-                "write it positive unless that is meant",
-            )
-
-
 class Disk(Element):
     """A rigid inertia: flywheel, flange, gear, roll, wheel.
 
@@ -224,7 +137,8 @@ class Disk(Element):
     ----------
     inertia : polar moment of inertia [kg m²]; or else the geometry.
     outer_diameter, inner_diameter, thickness : [m]; inner_diameter = 0 has no bore.
-    density : ρ [kg/m³].
+    material, density : its material by name, or ρ [kg/m³].
+    mass, radius : or else a mass [kg] that a wheel of that rolling radius [m] moves, a vehicle: J = m r².
     load_torque : outer torque [N m]; positive resists rotation.
     viscous_load, quadratic_load : outer torques proportional to the speed [N m s/rad] and to its square
         [N m s²/rad²]; positive resists rotation.
@@ -239,7 +153,12 @@ class Disk(Element):
     outer_diameter: Length | None = Field(default=None, description="of the disk")
     inner_diameter: Length | None = Field(default=None, description="of its bore; 0 by default")
     thickness: Length | None = Field(default=None, description="of the disk")
+    material: str | None = Field(
+        default=None, json_schema_extra={"enum": list(MATERIALS)}, description='"steel", say, instead of the density'
+    )
     density: Density | None = Field(default=None, description="of its material; steel 7850 kg/m^3")
+    mass: Mass | None = Field(default=None, description="of a vehicle on wheels, instead of an inertia")
+    radius: Length | None = Field(default=None, description="rolling radius of the wheels that move the mass")
     load_torque: Torque = Field(default=0.0, description="outer torque; positive resists rotation")
     viscous_load: Damping = Field(default=0.0, description="outer torque per speed; positive resists rotation")
     quadratic_load: QuadraticLoad = Field(
@@ -253,22 +172,33 @@ class Disk(Element):
     @model_validator(mode="before")
     @classmethod
     def _bore_default(cls, data: Any) -> Any:
-        return _with_defaults(data, "outer_diameter", inner_diameter=0.0)
+        return with_defaults(of_material(data, ("density",)), "outer_diameter", inner_diameter=0.0)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        needed = ("outer_diameter", "thickness", "density")
-        _one_way(self, "inertia", ("inner_diameter", *needed), needed)
-        _positive(self, "inertia", *needed)
-        _not_negative(self, "inner_diameter", "drive_share")
-        _bore(self)
+        solid, rolling = ("outer_diameter", "thickness", "density"), ("mass", "radius")
+        if self.mass is not None or self.radius is not None:
+            one_way(self, "inertia", rolling, rolling)
+            _alone(self, "mass" if self.mass is not None else "radius", ("material", "inner_diameter", *solid))
+        else:
+            one_way(self, "inertia", ("material", "inner_diameter", *solid), solid)
+        positive(self, "inertia", *solid, *rolling)
+        not_negative(self, "inner_diameter", "drive_share")
+        bore(self)
         return self
 
     @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults and do not follow from the material."""
+        return without_material(super().stated)
+
+    @property
     def moment_of_inertia(self) -> float:
-        """Polar moment [kg m²], as stated or from the geometry."""
+        """Polar moment [kg m²], as stated or from the geometry or the mass."""
         if self.inertia is not None:
             return self.inertia
+        if self.mass is not None and self.radius is not None:
+            return self.mass * self.radius**2
         assert self.outer_diameter and self.thickness and self.density and self.inner_diameter is not None
         return disk_inertia(self.outer_diameter, self.inner_diameter, self.thickness, self.density)
 
@@ -353,7 +283,7 @@ class TripodJoint(_Joint):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        _positive(self, "radius", "length")
+        positive(self, "radius", "length")
         return self
 
 
@@ -381,7 +311,7 @@ class DoubleCardanJoint(_Joint):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        _positive(self, "distance_ratio", "yoke_length")
+        positive(self, "distance_ratio", "yoke_length")
         return self
 
 
@@ -417,7 +347,7 @@ class Ratio(Element):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        _one_way(self, "ratio", ("teeth_in", "teeth_out"), ("teeth_in", "teeth_out"))
+        one_way(self, "ratio", ("teeth_in", "teeth_out"), ("teeth_in", "teeth_out"))
         if self.ratio == 0:
             raise InputError("must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed")
         return self
@@ -435,14 +365,14 @@ class Ratio(Element):
         return float(self.fraction)
 
 
-def _with_defaults(data: Any, given: str, **defaults: float) -> Any:
+def with_defaults(data: Any, given: str, **defaults: float) -> Any:
     """Defaults that hold only where `given` is: elsewhere the keys stay unset and are no parameters."""
     if isinstance(data, dict) and data.get(given) is not None:
         return data | {k: v for k, v in defaults.items() if data.get(k) is None}
     return data
 
 
-def _one_way(element: Element, direct: str, other: tuple[str, ...], needed: tuple[str, ...]) -> None:
+def one_way(element: Element, direct: str, other: tuple[str, ...], needed: tuple[str, ...]) -> None:
     """Refuse unless exactly one of two descriptions is given, and the second in full."""
     stated = [key for key in other if getattr(element, key) is not None]
     if getattr(element, direct) is not None:
@@ -458,14 +388,21 @@ def _one_way(element: Element, direct: str, other: tuple[str, ...], needed: tupl
         raise InputError("is missing", key=direct, remedy=remedy)
 
 
-def _positive(element: Element, *keys: str) -> None:
+def _alone(element: Element, given: str, others: tuple[str, ...]) -> None:
+    for key in others:
+        value = getattr(element, key)
+        if value is not None:
+            raise InputError(f"stands beside {given}", key=key, value=value, remedy=f"leave out {key} or {given}")
+
+
+def positive(element: Element, *keys: str) -> None:
     for key in keys:
         value = getattr(element, key)
         if value is not None and not value > 0:
             raise InputError("must be positive", key=key, value=value, remedy=_advice(element, key))
 
 
-def _not_negative(element: Element, *keys: str) -> None:
+def not_negative(element: Element, *keys: str) -> None:
     for key in keys:
         value = getattr(element, key)
         if value is not None and value < 0:
@@ -477,7 +414,7 @@ def _advice(element: Element, key: str) -> str:
     return f'write for example "{kind.example}"' if kind is not RATIO else f"write for example {kind.example}"
 
 
-def _bore(element: Any) -> None:
+def bore(element: Any) -> None:
     outer, inner = element.outer_diameter, element.inner_diameter
     if outer is not None and inner is not None and inner >= outer:
         problem = f"must be smaller than outer_diameter = {outer:g} m"

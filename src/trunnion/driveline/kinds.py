@@ -10,10 +10,10 @@ from trunnion.driveline.elements import (
     HookeJoint,
     IdealJoint,
     Ratio,
-    Shaft,
     TripodJoint,
 )
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 
 KINDS: dict[str, type[Element]] = {
@@ -21,6 +21,7 @@ KINDS: dict[str, type[Element]] = {
     for kind in (
         ConstantSpeed,
         Shaft,
+        Coupling,
         PiecewiseShaft,
         Disk,
         HookeJoint,

@@ -32,6 +32,8 @@ UNITS = {
     "stiffness": "N*m/rad",
     "damping": "N*m*s/rad",
     "loss_factor": "1",
+    "relative_damping": "1",
+    "mass": "kg",
     "loss_factor_frequency": "rad/s",
     "outer_diameter": "m",
     "inner_diameter": "m",

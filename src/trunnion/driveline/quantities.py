@@ -78,6 +78,8 @@ TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)
 LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
 PRESSURE = Kind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0.0)))
 DENSITY = Kind("density", "kg/m^3", "7850 kg/m^3")
+MASS = Kind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
+POWER = Kind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
 RATIO = Kind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
@@ -93,6 +95,8 @@ KINDS = (
     LENGTH,
     PRESSURE,
     DENSITY,
+    MASS,
+    POWER,
     RATIO,
 )
 
@@ -278,6 +282,8 @@ Torque = Annotated[float, Quantity(TORQUE)]
 Length = Annotated[float, Quantity(LENGTH)]
 Pressure = Annotated[float, Quantity(PRESSURE)]
 Density = Annotated[float, Quantity(DENSITY)]
+Mass = Annotated[float, Quantity(MASS)]
+Power = Annotated[float, Quantity(POWER)]
 Dimensionless = Annotated[float, Quantity(RATIO)]
 
 

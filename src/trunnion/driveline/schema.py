@@ -13,21 +13,33 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
 
-_TUBE = ["outer_diameter", "length", "shear_modulus"]
+_TUBE = ["outer_diameter", "length"]
+_SOLID = ["outer_diameter", "thickness"]
+_ROLLING = ["mass", "radius"]
 _TOOTHED = ["teeth_in", "teeth_out", "module"]
 _BASE = ["base_radius_in", "base_radius_out"]
-_SOLID = ["outer_diameter", "thickness", "density"]
+
+
+def _geometry(sizes: list[str], property_: str) -> dict[str, Any]:
+    """All sizes, and the property of the material or its name."""
+    return {"required": sizes, "anyOf": [{"required": [property_]}, {"required": ["material"]}]}
+
+
 _RULES: dict[str, dict[str, Any]] = {
     "Shaft": {
-        "oneOf": [{"required": ["stiffness"]}, {"required": _TUBE}],
+        "oneOf": [{"required": ["stiffness"]}, _geometry(_TUBE, "shear_modulus")],
         "dependentRequired": {
             "loss_factor_frequency": ["loss_factor"],
-            **dict.fromkeys((*_TUBE, "inner_diameter", "density", "young_modulus"), _TUBE),
+            **dict.fromkeys((*_TUBE, "inner_diameter", "material", "shear_modulus", "density", "young_modulus"), _TUBE),
         },
     },
+    "Coupling": {"required": ["type", "stiffness"]},
     "Disk": {
-        "oneOf": [{"required": ["inertia"]}, {"required": _SOLID}],
-        "dependentRequired": dict.fromkeys((*_SOLID, "inner_diameter"), _SOLID),
+        "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
+        "dependentRequired": {
+            **dict.fromkeys((*_SOLID, "inner_diameter", "material", "density"), _SOLID),
+            **dict.fromkeys(_ROLLING, _ROLLING),
+        },
     },
     "Ratio": {
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth_in", "teeth_out"]}],

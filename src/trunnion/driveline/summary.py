@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trunnion.driveline.elements import Disk, Element, Shaft
+from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
+from trunnion.driveline.shafts import Shaft
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
@@ -35,7 +36,9 @@ def _numbers(element: Element) -> list[str]:
         parts += [_size("tube", element, "length"), shown(element.torsional_stiffness, STIFFNESS, digits=4)]
         if element.density:
             parts.append(shown(element.moment_of_inertia, INERTIA, digits=4))
-    if isinstance(element, Disk) and element.inertia is None:
+    if isinstance(element, Disk) and element.mass is not None:
+        parts.append(shown(element.moment_of_inertia, INERTIA, digits=4))
+    elif isinstance(element, Disk) and element.inertia is None:
         drawn = ("outer_diameter", "inner_diameter", "thickness", "density")
         parts += [_size("disk", element, "thickness"), shown(element.moment_of_inertia, INERTIA, digits=4)]
     for key, value in element.stated.items():

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, Shaft, TripodJoint
+from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, TripodJoint
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Mesh, Topology, topology
@@ -150,29 +151,38 @@ def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Ar
     column = assembly.packed.column
     if assembly.line.damping_ratio is not None:
         return assembly.common_damping(table, stiffness)
-    if column(element, "loss_factor") >= 0 and column(element, "loss_factor_frequency") < 0:
-        return np.zeros(len(table))
-    if column(element, "loss_factor") >= 0:
-        loss = table[:, column(element, "loss_factor")]
-        return loss * stiffness / table[:, column(element, "loss_factor_frequency")]
+    loss = _loss_factor(assembly, table, element)
+    if loss is not None:
+        frequency = column(element, "loss_factor_frequency")
+        return loss * stiffness / table[:, frequency] if frequency >= 0 else np.zeros(len(table))
     return spring_damping(assembly.line.elements[element], element, column, table)
 
 
 def _shaft_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
     """ηk [N m/rad] of a loss factor that holds at all frequencies."""
+    loss = _loss_factor(assembly, table, element)
+    everywhere = assembly.packed.column(element, "loss_factor_frequency") < 0
+    return loss * stiffness if loss is not None and everywhere else np.zeros(len(table))
+
+
+def _loss_factor(assembly: Assembly, table: Array, element: int) -> Array | None:
+    """η as stated, or from the relative damping ψ; None where damping is a coefficient."""
     column = assembly.packed.column
-    loss, frequency = column(element, "loss_factor"), column(element, "loss_factor_frequency")
-    return table[:, loss] * stiffness if loss >= 0 and frequency < 0 else np.zeros(len(table))
+    if column(element, "loss_factor") >= 0:
+        return table[:, column(element, "loss_factor")]
+    if column(element, "relative_damping") >= 0:
+        return table[:, column(element, "relative_damping")] / (2 * np.pi)
+    return None
 
 
 def _refuse_any_frequency(line: Driveline) -> None:
     for element, name in zip(line.elements, line.names, strict=True):
-        if isinstance(element, Shaft) and element.loss_factor and element.loss_factor_frequency is None:
+        if isinstance(element, Spring) and element.loss and element.loss_factor_frequency is None:
             raise InputError(
                 "holds at all frequencies, which equations in time do not have",
                 element=name,
-                key="loss_factor",
-                value=element.loss_factor,
+                key="loss_factor" if element.loss_factor is not None else "relative_damping",
+                value=element.loss_factor if element.loss_factor is not None else element.loss * 2 * np.pi,
                 remedy='write loss_factor_frequency = "50 Hz", where it is to hold, or use tn.order_response',
             )
 
@@ -195,6 +205,8 @@ def _station_inertia(assembly: Assembly, table: Array) -> Array:
     for station, element in topo.disks:
         if column(element, "inertia") >= 0:
             inertia[:, station] += table[:, column(element, "inertia")]
+        elif column(element, "mass") >= 0:
+            inertia[:, station] += table[:, column(element, "mass")] * table[:, column(element, "radius")] ** 2
         else:
             keys = ("outer_diameter", "inner_diameter", "thickness", "density")
             inertia[:, station] += disk_inertia(*(table[:, column(element, k)] for k in keys))

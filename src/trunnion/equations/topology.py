@@ -22,10 +22,10 @@ from trunnion.driveline.elements import (
     HookeJoint,
     IdealJoint,
     Ratio,
-    Shaft,
     TripodJoint,
 )
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 
@@ -244,11 +244,11 @@ def _walk(line: Driveline, tripods: bool) -> _Draft:
             draft.prescribed[draft.stations[here].group] = True
         elif isinstance(element, Disk):
             draft.disks.append((here, i))
-        elif isinstance(element, Shaft):
+        elif isinstance(element, Spring):
             near = here
             here = draft.add(near, Link.SHAFT, i, ratio)
             draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
-            if element.density:
+            if element.moment_of_inertia:
                 draft.tube_ends += [(near, i), (here, i)]
         elif isinstance(element, PiecewiseShaft):
             near, here = here, draft.add(here, Link.SHAFT, i, ratio)

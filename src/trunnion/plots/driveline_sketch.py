@@ -7,15 +7,16 @@ offsets are written. Branches get a row of their own.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio, Shaft
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import DEGREE
+from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL
 
@@ -28,9 +29,12 @@ SLANT = 38 * DEGREE
 """Slope of the names."""
 STEEPEST = 30 * DEGREE
 """Larger bends are drawn as this."""
-LENGTH = {"Shaft": 1.25, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9, "PiecewiseShaft": 1.25}
+LENGTH = {
+    "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
+    "PiecewiseShaft": 1.25,
+}  # fmt: skip
 JOINT_LENGTH = 0.9
-SHAFTS = (Shaft, PiecewiseShaft)
+SHAFTS = (Spring, PiecewiseShaft)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
@@ -144,6 +148,19 @@ def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
     _box(axes, place, 0.17 if tube else 0.08, fc=TUBE if tube else SOLID)
 
 
+def _coupling(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two flanges with an elastic element between them."""
+    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
+    middle, along = (place.start + place.end) / 2, _along(place.direction)
+    for begin, end, half, look in (
+        (-0.14, 0.14, 0.3, {"fc": "#d8c7a0", "hatch": "xxx"}),
+        (-0.24, -0.14, 0.36, {"fc": SOLID}),
+        (0.14, 0.24, 0.36, {"fc": SOLID}),
+    ):
+        part = replace(place, start=middle + begin * along, end=middle + end * along)
+        _box(axes, part, half, **look)
+
+
 def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
     """A shaft with a spring in a window, as a clutch disc has them."""
     axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
@@ -207,6 +224,7 @@ def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
 _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "ConstantSpeed": _drive,
     "Shaft": _shaft,
+    "Coupling": _coupling,
     "Disk": _disk,
     "Ratio": _ratio,
     "GearPair": _ratio,
@@ -256,7 +274,7 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
     angle, plane = (float(getattr(element, key, 0.0)) for key in ("angle", "plane"))
     if hasattr(element, "angle"):
         text = f"β {angle / DEGREE:.4g}°" + (f"\nplane {plane / DEGREE:.4g}°" if plane else "")
-    elif isinstance(element, Shaft | PiecewiseShaft) and (element.fork_offset or between):
+    elif isinstance(element, SHAFTS) and (element.fork_offset or between):
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
     elif isinstance(element, Ratio | GearPair):
         text = f"i {element.speed_ratio:.4g}"

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, Element, Shaft
+from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
+from trunnion.driveline.shafts import Shaft
 from trunnion.plots.speed_frequency import crossings
 from trunnion.reporting.contents import Contents
 from trunnion.results.speeds import speed_factor

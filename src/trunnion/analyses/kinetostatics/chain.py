@@ -25,11 +25,11 @@ from trunnion.driveline.elements import (
     HookeJoint,
     IdealJoint,
     Ratio,
-    Shaft,
     TripodJoint,
 )
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parameters import pack
+from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.errors import InputError
@@ -189,7 +189,7 @@ class _Draft:
         element, name, parent = self.line.elements[i], self.line.names[i], self.line.parents[i]
         here = 0 if parent is None else self.behind[parent]
         member = self.steps[here].member
-        if isinstance(element, Shaft):
+        if isinstance(element, Spring):
             half = element.moment_of_inertia / 2
             here = self._step(
                 Link.SHAFT, here, name, member,
@@ -197,7 +197,7 @@ class _Draft:
                 near_inertia=half, far_inertia=half,
             )  # fmt: skip
             self.members[member].shafts.append(name)
-            self.members[member].length += self.lengths.get(name, element.length or 0.0)
+            self.members[member].length += self.lengths.get(name, getattr(element, "length", None) or 0.0)
         elif isinstance(element, PiecewiseShaft):
             packed = pack(self.line)
             law = stage_law(self.line, i, packed.column, packed.table(1))

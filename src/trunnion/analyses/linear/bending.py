@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor

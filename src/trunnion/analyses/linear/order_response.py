@@ -21,8 +21,8 @@ from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.order_result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Shaft
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
 from trunnion.equations.steady_base import bent, refuse_own_motion, require_steady_base

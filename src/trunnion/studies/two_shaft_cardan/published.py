@@ -9,8 +9,9 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, HookeJoint, Shaft
+from trunnion.driveline.elements import ConstantSpeed, Disk, HookeJoint
 from trunnion.driveline.parameters import Parameter, Term
+from trunnion.driveline.shafts import Shaft
 
 
 def two_shaft_cardan(

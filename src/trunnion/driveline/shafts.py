@@ -1,0 +1,200 @@
+"""Torsional springs with one stiffness: shafts, which may be tubes with inertia, and elastic couplings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any, ClassVar, Self
+
+from pydantic import Field, model_validator
+
+from trunnion.driveline.elements import Doubt, Element, bore, not_negative, one_way, positive, with_defaults
+from trunnion.driveline.geometry import tube_inertia, tube_stiffness
+from trunnion.driveline.materials import MATERIALS, of_material, without_material
+from trunnion.driveline.quantities import (
+    Angle,
+    Damping,
+    Density,
+    Dimensionless,
+    Frequency,
+    Length,
+    Power,
+    Pressure,
+    Stiffness,
+    Torque,
+)
+from trunnion.errors import InputError
+
+
+class Spring(Element):
+    """What a shaft and a coupling share: one stiffness, and damping as a coefficient or as a loss factor."""
+
+    stiffness: Stiffness | None = Field(default=None, description="torsional stiffness")
+    damping: Damping = Field(default=0.0, description="viscous damping")
+    loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
+    loss_factor_frequency: Frequency | None = Field(
+        default=None, description="at which the loss factor holds; by default at all"
+    )
+    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+
+    @model_validator(mode="after")
+    def _damped_one_way(self) -> Self:
+        positive(self, "stiffness", "loss_factor_frequency")
+        not_negative(self, "loss_factor")
+        if self.loss is None and self.loss_factor_frequency is not None:
+            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
+        if self.loss is not None and self.damping != 0.0:
+            beside = "loss_factor" if self.loss_factor is not None else "relative_damping"
+            remedy = "leave one of the two out"
+            raise InputError(f"stands beside {beside}", key="damping", value=self.damping, remedy=remedy)
+        return self
+
+    @property
+    def loss(self) -> float | None:
+        """Loss factor η, however stated; None where damping is a coefficient."""
+        return self.loss_factor
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """k [N m/rad]."""
+        assert self.stiffness is not None
+        return self.stiffness
+
+    @property
+    def damping_coefficient(self) -> float:
+        """c [N m s/rad], as stated or from the loss factor at its frequency; 0 where that holds at any frequency."""
+        if self.loss is None or self.loss_factor_frequency is None:
+            return self.damping
+        return self.loss * self.torsional_stiffness / self.loss_factor_frequency
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment of inertia [kg m²] that it adds, half to each end."""
+        return 0.0
+
+    def doubts(self) -> Iterator[Doubt]:
+        if self.damping < 0:
+            yield (
+                "damping",
+                "is negative and feeds energy into the line",
+                "write it positive unless that is meant",
+            )
+
+
+class Shaft(Spring):
+    """A torsional spring and damper, optionally a tube with its own inertia (lumped half to each end).
+
+    Parameters
+    ----------
+    stiffness : torsional stiffness [N m/rad]; or else the tube's geometry.
+    damping : viscous damping [N m s/rad]; negative is allowed with a remark.
+    loss_factor, loss_factor_frequency : instead of `damping`, η at a frequency ω [rad/s]: c = ηk/ω. Without the
+        frequency, η holds at all of them, as k(1 + iη): for ``order_response`` and natural frequencies; equations in
+        time refuse it. A relative damping ψ (loss per cycle over elastic energy) is η = ψ/2π.
+    fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
+        the angle of the fork from the joint plane.
+    outer_diameter, inner_diameter, length : of the tube [m]; inner_diameter = 0 is a solid bar.
+    material : of the tube, by name: gives each of the next four that is not stated.
+    shear_modulus : G [Pa].
+    density : ρ [kg/m³]; 0 leaves the tube without inertia.
+    young_modulus : E [Pa], for bending.
+    tensile_strength : σ_B [Pa], for checks.
+    """
+
+    example: ClassVar[str] = 'stiffness = "12 kN*m/rad"'
+    idle: ClassVar[tuple[str, ...]] = ("tensile_strength",)
+
+    outer_diameter: Length | None = Field(default=None, description="of the tube")
+    inner_diameter: Length | None = Field(default=None, description="of the tube; 0 for a solid bar, as by default")
+    length: Length | None = Field(default=None, description="of the tube")
+    material: str | None = Field(
+        default=None,
+        json_schema_extra={"enum": list(MATERIALS)},
+        description='of the tube, "steel" say, instead of the next four',
+    )
+    shear_modulus: Pressure | None = Field(default=None, description="of the tube's material; steel 79.3 GPa")
+    density: Density | None = Field(default=None, description="of the tube's material; 0: no inertia, as by default")
+    young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
+    tensile_strength: Pressure | None = Field(default=None, description="of the tube's material, for checks")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _tube_defaults(cls, data: Any) -> Any:
+        data = of_material(data, ("shear_modulus", "density", "young_modulus", "tensile_strength"))
+        return with_defaults(data, "outer_diameter", inner_diameter=0.0, density=0.0)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        tube = ("material", "outer_diameter", "inner_diameter", "length", "shear_modulus", "density", "young_modulus")
+        one_way(self, "stiffness", tube, ("outer_diameter", "length", "shear_modulus"))
+        positive(self, "outer_diameter", "length", "shear_modulus", "young_modulus", "tensile_strength")
+        not_negative(self, "inner_diameter", "density")
+        bore(self)
+        return self
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults and do not follow from the material."""
+        return without_material(super().stated)
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """k [N m/rad], as stated or from the tube."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.outer_diameter and self.length and self.shear_modulus and self.inner_diameter is not None
+        return tube_stiffness(self.outer_diameter, self.inner_diameter, self.length, self.shear_modulus)
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment of the whole tube [kg m²]; 0 where no density is stated."""
+        if not self.density:
+            return 0.0
+        assert self.outer_diameter and self.length and self.inner_diameter is not None
+        return tube_inertia(self.outer_diameter, self.inner_diameter, self.length, self.density)
+
+
+class Coupling(Spring):
+    """An elastic coupling as its maker lists it: dynamic stiffness, relative damping, ratings; no inertia of its own.
+
+    Parameters
+    ----------
+    stiffness : dynamic torsional stiffness [N m/rad] at the load it runs at.
+    relative_damping : ψ, energy lost per cycle over the elastic energy at its largest twist; η = ψ/2π.
+    loss_factor_frequency : at which ψ holds; without it at all frequencies, as rubber's nearly does (see ``Shaft``).
+    damping, loss_factor : instead of ψ.
+    nominal_torque : T_KN [N m], carried continuously.
+    maximum_torque : T_Kmax [N m], carried briefly.
+    vibratory_torque : T_KW [N m], amplitude carried continuously at 10 Hz.
+    heat_rating : P_KV [W], damping heat carried continuously.
+    fork_offset : as of a ``Shaft``.
+
+    The ratings change no motion; checks compare with them.
+    """
+
+    example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'
+    idle: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
+
+    relative_damping: Dimensionless | None = Field(default=None, description="loss per cycle over elastic energy")
+    nominal_torque: Torque | None = Field(default=None, description="rating, carried continuously (T_KN)")
+    maximum_torque: Torque | None = Field(default=None, description="rating, carried briefly (T_Kmax)")
+    vibratory_torque: Torque | None = Field(
+        default=None, description="rating, amplitude carried continuously at 10 Hz (T_KW)"
+    )
+    heat_rating: Power | None = Field(default=None, description="rating, damping heat carried continuously (P_KV)")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.stiffness is None:
+            raise InputError("is missing", key="stiffness", remedy=f"write {self.example}")
+        not_negative(self, "relative_damping")
+        positive(self, *self.idle)
+        if self.relative_damping is not None and self.loss_factor is not None:
+            value, remedy = self.relative_damping, "leave one of the two out; the loss factor is ψ/2π"
+            raise InputError("stands beside loss_factor", key="relative_damping", value=value, remedy=remedy)
+        return self
+
+    @property
+    def loss(self) -> float | None:
+        """η = ψ/2π, or the loss factor as stated."""
+        return self.loss_factor if self.relative_damping is None else self.relative_damping / (2 * pi)
