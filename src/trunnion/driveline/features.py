@@ -72,23 +72,36 @@ def _prescribed_end(line: Driveline) -> list[str]:
 
 FEATURES = (
     Feature(
-        "inertia", ("Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density"),
+        "inertia",
+        (
+            "Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density",
+            "Disk.material", "Disk.mass", "Disk.radius",
+        ),
     ),
     Feature(
         "stiffness",
-        ("Shaft.stiffness", "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length", "Shaft.shear_modulus"),
+        (
+            "Shaft.stiffness", "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length", "Shaft.shear_modulus",
+            "Shaft.material", "Coupling.stiffness",
+        ),
     ),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
-    Feature("damping", ("Shaft.damping", "PiecewiseShaft.damping")),
-    Feature("loss factor", ("Shaft.loss_factor", "Shaft.loss_factor_frequency")),
+    Feature("damping", ("Shaft.damping", "Coupling.damping", "PiecewiseShaft.damping")),
+    Feature(
+        "loss factor",
+        (
+            "Shaft.loss_factor", "Shaft.loss_factor_frequency", "Coupling.loss_factor", "Coupling.relative_damping",
+            "Coupling.loss_factor_frequency",
+        ),
+    ),
     Feature(
         "damping ratio",
         ("Driveline.damping_ratio", "Driveline.damping_ratio_frequency"),
         lambda line: ["driveline.damping_ratio"] if line.damping_ratio else [],
     ),
     Feature("Hooke's joint", ("HookeJoint.angle",)),
-    Feature("fork offset", ("Shaft.fork_offset", "PiecewiseShaft.fork_offset")),
+    Feature("fork offset", ("Shaft.fork_offset", "Coupling.fork_offset", "PiecewiseShaft.fork_offset")),
     Feature(
         "joint plane", ("HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "DoubleCardanJoint.plane")
     ),
@@ -137,6 +150,11 @@ FEATURES = (
 
 NOT_FEATURES = {
     "Element.name": "a label",
+    "Shaft.tensile_strength": "a rating, which checks compare with",
+    **dict.fromkeys(
+        (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
+        "a rating, which checks compare with",
+    ),
     "Driveline.elements": "the elements themselves",
     "Driveline.name": "a label",
     "Driveline.description": "a label",
