@@ -51,6 +51,14 @@ class LineMatrices:
     wave: Array
 
 
+def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Array:
+    """Stiffness of every compliance over its mean at input angles ``tau`` [rad]; shape (case, time, compliance)."""
+    wave = np.ones((len(coefficients.speed), len(tau), len(topo.compliances)))
+    for mesh in coefficients.waves:
+        wave[..., mesh.compliance] = mesh.at(tau)
+    return wave
+
+
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
     motion = base_motion(topo, coefficients, tau, ratio_values(topo))
@@ -59,9 +67,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     mass, damping, stiffness = (np.zeros((cases, times, n, n)) for _ in range(3))
     forcing = np.zeros((cases, times, n))
     slope_seen = np.zeros((cases, times, len(topo.compliances)))
-    ratio_seen, wave = np.zeros_like(slope_seen), np.ones_like(slope_seen)
-    for mesh in coefficients.waves:
-        wave[..., mesh.compliance] = mesh.at(tau)
+    ratio_seen, wave = np.zeros_like(slope_seen), stiffness_waves(topo, coefficients, tau)
     for s in range(len(topo.stations)):
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]

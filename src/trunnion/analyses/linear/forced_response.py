@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.linear import line_matrices
+from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.topology import Topology
 from trunnion.numerics.chain.dense_monodromy import Propagation
 
@@ -110,8 +110,8 @@ class LinearResponse:
 def periodic_states(run: Propagation) -> Array:
     """States (time, 2n) of the periodic solution; least-norm where a multiplier is 1 (a free line)."""
     z = run.monodromy * run.scale[None, :] / run.scale[:, None]
-    start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular[-1] / run.scale, rcond=1e-13)[0] * run.scale
-    return np.asarray(run.matrix @ start + run.particular)
+    start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular / run.scale, rcond=1e-13)[0] * run.scale
+    return run.states(start)
 
 
 def linear_response(assembly: Assembly, coefficients: LineCoefficients, run: Propagation) -> LinearResponse:
@@ -143,7 +143,8 @@ def shaft_motion(
     topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array, rate: Array
 ) -> tuple[Array, Array]:
     """Twist [rad] and torque [N m], (case, time, shaft), of deviations x and their rates [1/s] (case, time, n)."""
-    matrices = line_matrices(topo, coefficients, tau)
+    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
+    wave = stiffness_waves(topo, coefficients, tau)
     speed = coefficients.speed[:, None]
     twist = np.empty((*x.shape[:2], len(topo.compliances)))
     torque = np.empty_like(twist)
@@ -153,11 +154,13 @@ def shaft_motion(
         if far >= 0:
             q, q_dot = q + x[..., far], q_dot + rate[..., far]
         if near >= 0:
-            r, slope = matrices.ratio[..., e], matrices.ratio_slope[..., e] * speed
+            reference = topo.reference[topo.group_of(compliance.near)]
+            r = motion.relative[..., compliance.near]
+            slope = motion.relative_slope[..., compliance.near] * motion.speed[..., reference] * speed
             q, q_dot = q - r * x[..., near], q_dot - r * rate[..., near] - slope * x[..., near]
         k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
         twist[..., e] = coefficients.twist[:, e, None] + q
-        torque[..., e] = matrices.wave[..., e] * (coefficients.torque[:, e, None] + k * q) + c * q_dot
+        torque[..., e] = wave[..., e] * (coefficients.torque[:, e, None] + k * q) + c * q_dot
     return twist, torque
 
 

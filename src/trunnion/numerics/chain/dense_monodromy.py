@@ -5,13 +5,15 @@
 is carried over one period in N equal steps of order 8, then in 2N, until both agree. Equal steps let the
 coefficients be evaluated for all stages in one vectorised call, which is what a user's own function can do.
 The integration runs in energy-like units (x scaled by √M, x′ by a typical frequency) so that one number
-measures the error of Z.
+measures the error of Z. Coefficients are evaluated for as many steps at a time as ``CHUNK`` bytes hold, and only the
+state is carried from step to step, so a long line needs little more memory than its matrices.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,34 +24,34 @@ from trunnion.numerics.jit import njit
 
 Array = NDArray[np.float64]
 MOST_STEPS = 1 << 15
+CHUNK = 32 * 2**20
+"""Bytes that the coefficients evaluated together may take, per array."""
+SMALL = 16
+"""Coordinates up to which a compiled loop is quicker than matrix products."""
 
 
 @dataclass(frozen=True)
 class Propagation:
     """Propagator over one period.
 
-    tau (steps + 1,); matrix (steps + 1, 2n, 2n): Φ(τ) with Φ(0) = I; particular (steps + 1, 2n): the motion
-    from rest under the forcing. State order: x, then x′. ``scale`` (2n,) are the units in which ``error``,
-    the estimated error of Z = Φ(period), holds: |δZ_ij| ≲ error · scale_i / scale_j. ``damping_trace`` is
-    ∫ tr(M⁻¹C) dτ, which Liouville's identity equates to −ln det Z.
+    monodromy (2n, 2n): Z = Φ(period); particular (2n,): where the motion from rest under the forcing ends. State
+    order: x, then x′. ``scale`` (2n,) are the units in which ``error``, the estimated error of Z, holds: |δZ_ij| ≲
+    error · scale_i / scale_j. ``damping_trace`` is ∫ tr(M⁻¹C) dτ, which Liouville's identity equates to −ln det Z.
+    ``states(start)`` follows one motion: states (steps + 1, 2n) at ``tau`` (steps + 1,) from ``start`` (2n,) on.
     """
 
     tau: Array
-    matrix: Array
+    monodromy: Array
     particular: Array
     scale: Array
     error: float
     damping_trace: float
-
-    @property
-    def monodromy(self) -> Array:
-        """Z, shape (2n, 2n)."""
-        return self.matrix[-1]
+    states: Callable[[Array], Array]
 
     @property
     def scaled_monodromy(self) -> Array:
         """Z in the units of the error estimate; similar to Z, so its eigenvalues are the multipliers."""
-        return self.matrix[-1] * self.scale[None, :] / self.scale[:, None]
+        return self.monodromy * self.scale[None, :] / self.scale[:, None]
 
 
 CoefficientFunction = Callable[[Array], tuple[Array, Array, Array, Array]]
@@ -74,18 +76,26 @@ def propagate(
             f"the fastest motion needs {steps} steps a period, more than {MOST_STEPS}: a stiffness is very large or an "
             "inertia very small beside the others; join the parts rigidly, or raise the speed"
         )
-    coarse = _run(coefficients, period, size, steps, scale)
+    problem = _Problem(coefficients, period, size, scale)
+    everything = np.concatenate([np.eye(2 * size), np.zeros((2 * size, 1))], axis=1)
+    coarse = problem.march(everything, steps)
     while steps < MOST_STEPS:
         steps *= 2
-        fine = _run(coefficients, period, size, steps, scale)
-        change = float(np.linalg.norm(fine[0][-1] - coarse[0][-1], 2))
-        rounding = 4e-16 * float(np.sqrt(steps)) * max(1.0, float(np.abs(fine[0]).max()))
+        fine = problem.march(everything, steps)
+        change = float(np.linalg.norm(fine.state[:, :-1] - coarse.state[:, :-1], 2)) if fine.finite else np.inf
+        rounding = 4e-16 * float(np.sqrt(steps)) * max(1.0, fine.largest)
         if not np.isfinite(change):
             break
         if change / 16 <= max(tolerance, rounding):
-            matrix = fine[0] * scale[None, :, None] / scale[None, None, :]
-            tau = np.linspace(0.0, period, steps + 1)
-            return Propagation(tau, matrix, fine[1] * scale, scale, change / 16 + rounding, fine[2])
+            return Propagation(
+                np.linspace(0.0, period, steps + 1),
+                fine.state[:, :-1] * scale[:, None] / scale[None, :],
+                fine.state[:, -1] * scale,
+                scale,
+                change / 16 + rounding,
+                fine.trace,
+                partial(problem.follow, steps=steps),
+            )
         coarse = fine
     raise ComputationError(
         f"the motion over one period did not settle in {steps} steps; "
@@ -113,45 +123,85 @@ def _scales(coefficients: CoefficientFunction, period: float, size: int) -> tupl
     return scale, 1 << max(4, int(np.ceil(np.log2(steps))))
 
 
-def _run(
-    coefficients: CoefficientFunction, period: float, size: int, steps: int, scale: Array
-) -> tuple[Array, Array, float]:
-    step = period / steps
-    tau = (np.arange(steps)[:, None] + C[None, :]) * step
-    mass, damping, stiffness, forcing = coefficients(tau.ravel())
-    right = np.concatenate([stiffness, damping, forcing[:, :, None]], axis=2)
-    solved = np.linalg.solve(mass, right)
-    trace = np.trace(solved[:, :, size : 2 * size], axis1=1, axis2=2).reshape(steps, STAGES)
-    unit, frequency = scale[:size], scale[size:] / scale[:size]
-    ratio = unit[None, :] / unit[:, None]
-    q = solved[:, :, :size] * ratio / frequency[:, None]
-    d = solved[:, :, size : 2 * size] * ratio
-    g = solved[:, :, 2 * size] / unit / frequency
-    shape = (steps, STAGES)
-    matrix, particular = _march(
-        np.ascontiguousarray(q).reshape(*shape, size, size),
-        np.ascontiguousarray(d).reshape(*shape, size, size),
-        np.ascontiguousarray(g).reshape(*shape, size),
-        frequency,
-        step,
-        A,
-        B,
-    )
-    return matrix, particular, float(step * np.sum(trace * B))
+@dataclass(frozen=True)
+class _March:
+    """Where a march ends, and the largest entry met on the way."""
+
+    state: Array
+    largest: float
+    trace: float
+
+    @property
+    def finite(self) -> bool:
+        return bool(np.isfinite(self.state).all())
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """The equations in energy-like units ``scale`` (2n,)."""
+
+    coefficients: CoefficientFunction
+    period: float
+    size: int
+    scale: Array
+
+    def march(self, start: Array, steps: int, kept: Array | None = None) -> _March:
+        """Carry ``start`` (2n, columns) over a period; the last column is forced, and kept in ``kept`` if given."""
+        state, largest, trace = start.copy(), 0.0, 0.0
+        record = np.empty((0, 2 * self.size)) if kept is None else kept
+        at_once = max(1, CHUNK // (8 * STAGES * self.size**2))
+        step = self.period / steps
+        frequency = self.scale[self.size :] / self.scale[: self.size]
+        for first in range(0, steps, at_once):
+            count = min(at_once, steps - first)
+            q, d, g, damping = self._slopes(first, count, step)
+            trace += float(step * np.sum(damping * B))
+            rows = record[first : first + count + 1]
+            run = _march if self.size <= SMALL else _march_by_products
+            largest = max(largest, run(q, d, g, frequency, step, A, B, state, rows))
+        return _March(state, largest, trace)
+
+    def follow(self, start: Array, steps: int) -> Array:
+        """States (steps + 1, 2n) of the forced motion from ``start`` (2n,), in the user's units."""
+        kept = np.empty((steps + 1, 2 * self.size))
+        kept[0] = start / self.scale
+        self.march(kept[0][:, None], steps, kept)
+        return kept * self.scale
+
+    def _slopes(self, first: int, count: int, step: float) -> tuple[Array, Array, Array, Array]:
+        """Q/ν, D, g and tr D at the stages of ``count`` steps, in the problem's units."""
+        n, unit = self.size, self.scale[: self.size]
+        frequency = self.scale[n:] / unit
+        tau = (first + np.arange(count)[:, None] + C[None, :]) * step
+        mass, damping, stiffness, forcing = self.coefficients(tau.ravel())
+        diagonal = np.einsum("tii->ti", mass)
+        if n > 1 and np.count_nonzero(mass) == np.count_nonzero(diagonal):
+            over = 1 / diagonal
+            q, d, g = stiffness * over[..., None], damping * over[..., None], forcing * over
+        else:
+            solved = np.linalg.solve(mass, np.concatenate([stiffness, damping, forcing[:, :, None]], axis=2))
+            q, d, g = solved[..., :n], solved[..., n : 2 * n], solved[..., 2 * n]
+        trace = np.trace(d, axis1=1, axis2=2).reshape(count, STAGES)
+        ratio = unit[None, :] / unit[:, None]
+        shape = (count, STAGES, n)
+        return (
+            np.ascontiguousarray(q * (ratio / frequency[:, None])).reshape(*shape, n),
+            np.ascontiguousarray(d * ratio).reshape(*shape, n),
+            np.ascontiguousarray(g / unit / frequency).reshape(shape),
+            trace,
+        )
 
 
 @njit(cache=True, nogil=True)
-def _march(q, d, g, frequency, step, a, b):  # type: ignore[no-untyped-def]
-    steps, stages, n = q.shape[0], q.shape[1], q.shape[2]
-    wide = 2 * n + 1  # the propagator's columns, and one for the forced motion
-    states = np.zeros((steps + 1, 2 * n, wide))
-    for i in range(2 * n):
-        states[0, i, i] = 1.0
+def _march(q, d, g, frequency, step, a, b, state, kept):  # type: ignore[no-untyped-def]
+    """Carry ``state`` (2n, columns) in place; the last column is forced, and kept (steps + 1, 2n) unless empty."""
+    steps, stages, n, wide = q.shape[0], q.shape[1], q.shape[2], state.shape[1]
     slopes = np.zeros((stages, 2 * n, wide))
     here = np.zeros((2 * n, wide))
+    largest = 0.0
     for s in range(steps):
         for m in range(stages):
-            here[:] = states[s]
+            here[:] = state
             for p in range(m):
                 if a[m, p] != 0.0:
                     here += (step * a[m, p]) * slopes[p]
@@ -162,8 +212,33 @@ def _march(q, d, g, frequency, step, a, b):  # type: ignore[no-untyped-def]
                 for j in range(n):
                     row -= q[s, m, i, j] * here[j] + d[s, m, i, j] * here[n + j]
                 row[wide - 1] += g[s, m, i]
-        states[s + 1] = states[s]
         for m in range(stages):
             if b[m] != 0.0:
-                states[s + 1] += (step * b[m]) * slopes[m]
-    return states[:, :, : wide - 1].copy(), states[:, :, wide - 1].copy()
+                state += (step * b[m]) * slopes[m]
+        largest = max(largest, np.abs(state).max())
+        if len(kept) > 0:
+            kept[s + 1] = state[:, wide - 1]
+    return largest
+
+
+def _march_by_products(
+    q: Array, d: Array, g: Array, frequency: Array, step: float, a: Array, b: Array, state: Array, kept: Array
+) -> float:
+    """``_march`` for many coordinates, where matrix products are all that counts."""
+    steps, stages, n = q.shape[:3]
+    slopes = np.zeros((stages, *state.shape))
+    largest = 0.0
+    for s in range(steps):
+        for m in range(stages):
+            here = state.copy()
+            for p in np.flatnonzero(a[m, :m]).tolist():
+                here += (step * a[m, p]) * slopes[p]
+            slopes[m, :n] = frequency[:, None] * here[n:]
+            slopes[m, n:] = -(q[s, m] @ here[:n] + d[s, m] @ here[n:])
+            slopes[m, n:, -1] += g[s, m]
+        for m in np.flatnonzero(b).tolist():
+            state += (step * b[m]) * slopes[m]
+        largest = max(largest, float(np.abs(state).max()))
+        if len(kept):
+            kept[s + 1] = state[:, -1]
+    return largest
