@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 HISTORY = 0.12
 """Time drawn [s]; the paper does not state its own."""
-DIES_OUT = 7.0
-"""Times 1/(ζΩ) after which a motion counts as settled: the start is then below a thousandth."""
+DIES_OUT = 12.0
+"""Times 1/(ζΩ) after which a motion counts as settled: the start is then below 1e-5 of itself."""
 SETTLED = 0.0102
 """Time [s] of the settled portrait: three periods of the motor's torque."""
 TRANSIENT = 4000
@@ -88,7 +88,8 @@ def motion_figure(motion: Simulation, title: str) -> Figure:
     axes["c"].plot(state[:, 0], state[:, 1], times, color="#0072b2", lw=0.3)
     axes["d"].plot(state[:, 0], state[:, 1], color="#0072b2", lw=0.3)
     axes["e"].plot(settled[:, 0], settled[:, 1], color="#c04f00", lw=1.0)
-    if np.all(np.ptp(settled, axis=0) < 1e-2 * np.ptp(state, axis=0)):
+    rests = bool(np.all(np.ptp(settled, axis=0) < 1e-3 * np.ptp(state, axis=0)))
+    if rests:
         axes["e"].plot(settled[-1:, 0], settled[-1:, 1], "o", color="#c04f00", ms=7)
         half = np.ptp(state, axis=0) / 20
         axes["e"].set(
@@ -100,7 +101,7 @@ def motion_figure(motion: Simulation, title: str) -> Figure:
     _in_space(axes["c"], phi, rate)
     for letter in "ab":
         axes[letter].set_xlim(0, HISTORY)
-    names = {"a": "(a)", "b": "(b)", "c": "(c)", "d": "(d)", "e": "settled"}
+    names = {"a": "(a)", "b": "(b)", "c": "(c)", "d": "(d)", "e": "settled: at rest" if rests else "settled"}
     for letter, name in names.items():
         axes[letter].set_title(name, fontsize=9.5, color="#4a4a4a", loc="left")
     _title(figure, title)
@@ -113,7 +114,7 @@ def _in_space(axes: Any, phi: str, rate: str) -> None:
         set_label(words, fontsize=8, labelpad=2)
     axes.tick_params(labelsize=7, pad=0)
     axes.locator_params(nbins=4)
-    axes.set_box_aspect(None, zoom=0.82)
+    axes.set_box_aspect(None, zoom=0.95)
 
 
 def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
