@@ -98,7 +98,9 @@ def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     topo = assembly.topology
     place = drive_places(topo, assembly.packed.column, row[None])[0]
     station, element = max(topo.disks, key=lambda pair: float(place[pair[0]]))
-    own = float(row[assembly.packed.column(element, "load_torque")])
-    needed = own - left / abs(float(topo.speed_ratio[station]))
     name = assembly.line.names[element]
-    return f'give the driving disk, "{name}" say, drive_share = 1, or load_torque = "{needed:.6g} N*m"'
+    remedy = f'give the driving disk, "{name}" say, drive_share = 1'
+    if any(row[assembly.packed.column(i, key)] for _, i in topo.disks for key in ("viscous_load", "quadratic_load")):
+        return remedy  # no constant torque balances at more than one speed
+    needed = float(row[assembly.packed.column(element, "load_torque")]) - left / abs(float(topo.speed_ratio[station]))
+    return f'{remedy}, or load_torque = "{needed:.10g} N*m"'

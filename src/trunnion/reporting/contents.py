@@ -62,7 +62,6 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     limit = _limit(seen, resonance_speeds(assembly)) if jointed else None
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
-    left_out += without
     assert turn is None or isinstance(turn, Kinetostatics)
     assert sweep is None or isinstance(sweep, SpeedSweep)
     more = [
@@ -71,6 +70,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         *(_torque_findings(sweep, seen) if sweep else []),
         *(_irregularity_findings(turn) if turn else []),
         *load_findings(loaded, seen.unit),
+        *(Finding(Gravity.CAUTION, f"{sentence.rstrip('.')}.") for sentence in without),
     ]
     findings = by_gravity([*seen.findings, *more])
     return Contents(seen, assembly, turn, sweep, limit, bending, loaded, findings, tuple(left_out))

@@ -23,8 +23,11 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.reporting.overview_findings import (
     chart_findings,
+    free_findings,
+    held_excitation,
     line_findings,
     resonance_findings,
+    response_findings,
     slow_findings,
     sweep_findings,
 )
@@ -47,7 +50,7 @@ class Overview:
     resonance_speeds: those in the range; turn: the joints over a turn at the operating speed (1 rad/s without
     one), None where the output is prescribed; stability: at the operating speed, None without one; sweep: a
     chart of one row over the range at the joints' own angles; chart: over the range and one angle common to
-    all joints. Both are None for a line without Hooke's joints.
+    all joints. Both are None for a line without Hooke's joints, and for one that starts free.
     """
 
     line: Driveline
@@ -97,12 +100,14 @@ def overview(
     low, high = speed_range(assembly)
     if speed is not None or (line.operation and line.operation.speed):
         speed = operating_speed(line, speed)
-    here = resonance_speeds(assembly).within(low, high)
+    every = resonance_speeds(assembly)
+    here = every.within(low, high)
     at_speed = None if speed is None else stability(assembly, speed)
     sweep = chart = None
     joints = hooke_joints(line)
     slowest = lowest_speed(assembly)
-    if joints and high > slowest:
+    drawn = bool(joints) and high > slowest and not assembly.topology.free
+    if drawn:
         name, angle = joints[0]
         sweep = stability_chart(assembly, ("speed", low, high, SWEEP_POINTS), (f"{name}.angle", angle, angle, 1))
         across, up = ("speed", low, high, points[0]), (ALL_ANGLES, *angle_range(line), points[1])
@@ -112,8 +117,11 @@ def overview(
         *line_findings(line, speed),
         *(sweep_findings(assembly, sweep, unit) if sweep else ()),
         *resonance_findings(here, (low, high), speed, unit),
+        *response_findings(assembly, every, (low, high), unit),
         *(chart_findings(chart, unit) if chart else ()),
         *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
+        *(free_findings(assembly, (low, high), unit) if joints and assembly.topology.free else ()),
+        *held_excitation(line),
     ]
     return Overview(
         line=line,

@@ -6,11 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.resonance_speeds import Resonance, ResonanceSpeeds
+from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint
+from trunnion.driveline.elements import LARGE_ANGLE, Disk, HookeJoint
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.steady_base import bent
+from trunnion.equations.topology import topology
+from trunnion.errors import ComputationError
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor
@@ -18,6 +23,12 @@ from trunnion.results.verdict import Verdict
 
 NEAR = 0.05
 """Relative distance from a resonance speed that deserves a word."""
+BEYOND = 0.2
+"""Share of the range's ends up to which a resonance outside it still raises torques inside."""
+RAISED = 2.0
+"""Times the usual torque of the range from which a resonance is grave enough to be named."""
+FREE_SPEEDS = 13
+"""Speeds at which a bent free line is judged: each takes its own motion."""
 
 
 def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
@@ -105,6 +116,83 @@ def resonance_findings(
         f"{count} lie{one} {within}; nearest to the operating speed is the {_named(nearest)} at "
         f"{_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
     )
+
+
+def response_findings(
+    assembly: Assembly, named: ResonanceSpeeds, limits: tuple[float, float], unit: str
+) -> Iterator[Finding]:
+    """The resonance of the joints' own forcing, 2|R|Ω = ω, that raises a torque most within the range.
+
+    Those outside are looked at too, up to ``BEYOND`` from its ends: their flank is what the range sees.
+    """
+    low, high = limits
+    forced = [r for r in named if r.kind == "harmonic" and r.order == 1]
+    forced = [r for r in forced if (1 - BEYOND) * low <= r.speed <= (1 + BEYOND) * high]
+    if not forced or not bent(assembly) or low <= 0:
+        return
+    places = np.clip([r.speed for r in forced], low, high)
+    usual = np.linspace(low, high, 2 * len(forced) + 9)
+    sweep = speed_sweep(assembly, np.concatenate([places, usual]))
+    torque = sweep.torque_amplitude[: len(places)]
+    raised = torque / np.maximum(np.median(sweep.torque_amplitude[len(places) :], axis=0), 1e-300)
+    grave = np.where(raised >= RAISED, torque, 0.0)
+    which, shaft = np.unravel_index(int(np.argmax(grave)), grave.shape)
+    if not grave[which, shaft] > 0:
+        return
+    r, at = forced[which], float(places[which])
+    how = f"±{torque[which, shaft]:.4g} N·m" if sweep.linear[which] else "beyond linear theory"
+    outside = max(r.speed / high, low / r.speed) - 1
+    side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
+    yield Finding(
+        Gravity.CAUTION,
+        f"Joints force {r.formula} at {_speed(r.speed, unit)}{side}: by linear theory the torque of "
+        f"{sweep.shafts[shaft]} rises to {how} at {_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual one.",
+    )
+
+
+def free_findings(assembly: Assembly, limits: tuple[float, float], unit: str) -> Iterator[Finding]:
+    """The verdict of a free line with joints at some speeds of the range, in place of a chart."""
+    low, high = max(limits[0], lowest_speed(assembly)), limits[1]
+    if not bent(assembly) or high <= low:
+        return
+    speeds = np.linspace(low, high, FREE_SPEEDS)
+    unstable, failed = [], []
+    for speed in speeds:
+        try:
+            found = stability(assembly, float(speed))
+        except ComputationError:
+            failed.append(_speed(float(speed), unit))
+            continue
+        if found.verdict is Verdict.UNSTABLE:
+            unstable.append(_speed(float(speed), unit))
+    checked = f"at {len(speeds)} speeds between {_plain(low, unit)} and {_speed(high, unit)}"
+    why = "It starts free, so that each speed is judged about its own periodic motion, and no chart is drawn"
+    if unstable:
+        yield Finding(
+            Gravity.DANGER, f"Of {len(speeds)} speeds judged, the line is unstable at {', '.join(unstable)}. {why}."
+        )
+    elif not failed:
+        yield Finding(
+            Gravity.NOTE, f"The line is not unstable {checked}; narrow bands between them are not seen. {why}."
+        )
+    if failed:
+        yield Finding(Gravity.CAUTION, f"No periodic motion was found to judge at {', '.join(failed)}. {why}.")
+
+
+def held_excitation(line: Driveline) -> Iterator[Finding]:
+    """Harmonic torques on a disk that a ConstantSpeed holds rigidly: whatever they are, nothing moves."""
+    topo = topology(line, tripods=True)
+    held = []
+    for station, i in topo.disks:
+        element = line.elements[i]
+        if isinstance(element, Disk) and element.excitation and topo.prescribed[topo.group_of(station)]:
+            held.append(line.names[i])
+    if held:
+        yield Finding(
+            Gravity.CAUTION,
+            f"A ConstantSpeed holds {', '.join(held)} rigidly, so that its excitation does nothing. Leave out the "
+            "ConstantSpeed and give the disk drive_share = 1, or put a Shaft between.",
+        )
 
 
 def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:

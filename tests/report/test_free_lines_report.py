@@ -1,0 +1,62 @@
+"""Lines as engineers first wrote them: a 4x4 and a ship's shaft that start free, an engine held by its drive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.linear.resonance_speeds import resonance_speeds
+from trunnion.equations.coefficients import assemble
+from trunnion.reporting.overview_findings import held_excitation, response_findings
+from trunnion.results.finding import Gravity
+
+LINES = Path(__file__).parents[1] / "data" / "lines"
+
+
+def test_a_4x4_under_load_has_a_verdict() -> None:
+    """1000 N m on two axles behind 41/10: the engine carries 10/41 of it, and every axle its own share."""
+    line = tn.load(LINES / "4x4-free.toml").with_load("hill")
+    found = tn.stability(line)
+    assert found.verdict.name == "STABLE" and found.speed_sentence and found.response is not None
+    assert found.response.torque_mean[0] == pytest.approx(-1000 * 10 / 41, rel=1e-4)
+    motion = tn.periodic_response(line)
+    assert motion.outcome.ok and motion.verdict.name == "STABLE"
+    assert motion.torque_mean[0] == pytest.approx(-1000 * 10 / 41, rel=1e-3)
+    with pytest.raises(tn.InputError, match=r"rear vehicle 146.34, front vehicle 97.561\) and nothing drives"):
+        tn.periodic_response(line.replace("engine", drive_share=None))
+
+
+def test_a_ship_line_has_a_verdict() -> None:
+    """The propeller takes 4.31 (Ω/3.5)² on average, and a little more for its fluctuation; nothing drifts."""
+    line = tn.load(LINES / "marine.toml")
+    found = tn.stability(line)
+    assert found.verdict.name == "STABLE" and not found.speed_sentence and found.response is not None
+    assert found.response.torque_mean[-1] == pytest.approx(-4.31 * (tn.rpm(1800) / 3.5) ** 2, rel=1e-4)
+    with pytest.raises(tn.InputError, match=r"3571.7 N m.*the drives to 3571 N m \(flywheel 3571\).*drive_share = 1"):
+        tn.stability(line.replace("flywheel", drive_share=None, load_torque="-3571 N*m"))
+
+
+def test_an_excitation_that_does_nothing_is_said() -> None:
+    line = tn.load(LINES / "engine-held.toml")
+    (finding,) = held_excitation(line)
+    assert finding.gravity is Gravity.CAUTION and "holds engine rigidly" in finding.sentence
+    louder = line.replace("engine", excitation=[{"order": 2, "amplitude": 2000.0}])
+    both = [tn.periodic_response(each, compare=False).torque_peak_to_peak for each in (line, louder)]
+    np.testing.assert_allclose(*both, rtol=1e-9)
+    assert not list(held_excitation(line.replace("engine", excitation=None)))
+
+
+def test_a_resonance_beyond_the_range_is_named_where_it_raises_torques_inside() -> None:
+    """The truck's joints force ω₃ at twice the speed above its range: the flank reaches in, and is named."""
+    line = tn.load(Path(tn.__file__).parent / "driveline" / "starters" / "truck.toml")
+    assembly = assemble(line)
+    (finding,) = response_findings(assembly, resonance_speeds(assembly), line.operation.speed_range, "rpm")
+    third = tn.natural_frequencies(line).frequency[2] / 2 / tn.rpm(1)
+    assert (
+        "ω₃/2" in finding.sentence and f"{third:.4g} rpm" in finding.sentence and "above the range" in finding.sentence
+    )
+    narrow = (tn.rpm(600), tn.rpm(800))
+    assert not any("ω₃" in f.sentence for f in response_findings(assembly, resonance_speeds(assembly), narrow, "rpm"))
