@@ -247,10 +247,10 @@ REFUSED = {
         "supports",
         "Ratio",
     ),
-    "bearings on branches": (
+    "branches that nothing holds": (
         supports(("Shaft 1", 0.1), line=BRANCHED, lengths={}),
         "drive.supports",
-        "branches",
+        "give it two bearings",
     ),
     # phasing and limits
     "nothing to phase": (

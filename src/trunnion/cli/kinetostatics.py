@@ -150,6 +150,8 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
         "equivalent_angle": result.equivalent_angle,
         "homokinetic_deviation": result.homokinetic_deviation,
         "peak_acceleration": result.peak_acceleration,
+        "branches": list(result.branches),
+        "output": result.branch,
         "drive_torque": {"smallest": result.drive_torque.min(), "largest": result.drive_torque.max()},
         "efficiency": result.efficiency,
         "shafts": result.table(),

@@ -8,7 +8,7 @@ a Ratio here, rigid and in contact; a PiecewiseShaft keeps its law of stages.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 from math import lcm
@@ -29,6 +29,7 @@ from trunnion.driveline.elements import (
 )
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parameters import pack
+from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
@@ -57,10 +58,11 @@ JOINTS = (Link.HOOKE, Link.IDEAL, Link.TRIPOD)
 class Step:
     """From station ``parent`` to the station behind this step; SI units.
 
-    ``fork_offset`` is what a shaft adds to the angle of the fork at its far end; ``amplitude`` is the
-    tripod's third harmonic [rad], negative where the spider drives; ``near_inertia`` and ``far_inertia``
-    [kg m²] sit at the two stations; ``ratio`` is input speed over output speed; ``load``, ``viscous_load`` and
-    ``quadratic_load`` are a Disk's. A Shaft has a ``stiffness`` [N m/rad], one with stages a ``law``.
+    ``reach`` [m] is how far along its member the station behind lies. ``fork_offset`` is what a shaft adds to the
+    angle of the fork at its far end; ``amplitude`` is the tripod's third harmonic [rad], negative where the spider
+    drives; ``near_inertia`` and ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output
+    speed; ``load``, ``viscous_load`` and ``quadratic_load`` are a Disk's. A Shaft has a ``stiffness`` [N m/rad], one
+    with stages a ``law``.
     """
 
     link: Link
@@ -70,6 +72,7 @@ class Step:
     angle: float = 0.0
     plane: float = 0.0
     amplitude: float = 0.0
+    reach: float = 0.0
     fork_offset: float = 0.0
     stiffness: float = np.inf
     law: StageLaw | None = None
@@ -85,7 +88,7 @@ class Step:
 class Member:
     """A rigid shaft between joints: the joint step at its beginning (−1 at the start of a train), its shafts.
 
-    ``length`` [m] between its joints, NaN where it is not known.
+    ``length`` [m] from the joint at its beginning to the farthest point described, NaN where it is not known.
     """
 
     joint: int
@@ -96,11 +99,15 @@ class Member:
 
 @dataclass(frozen=True)
 class Chain:
-    """Steps (``steps[0]`` is the drive), members and the line they come from."""
+    """Steps (``steps[0]`` is the drive), members and the line they come from.
+
+    ``output`` is the step at the end that is asked about: the last, or that of a branch.
+    """
 
     line: Driveline
     steps: tuple[Step, ...]
     members: tuple[Member, ...]
+    output: int
 
     def of(self, *links: Link) -> tuple[int, ...]:
         """Steps of these kinds, in order."""
@@ -119,6 +126,38 @@ class Chain:
     def children(self, station: int) -> tuple[int, ...]:
         """Steps that start at a station."""
         return tuple(i for i, step in enumerate(self.steps) if step.parent == station)
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """Steps that nothing hangs on: one for every branch, in order."""
+        parents = {step.parent for step in self.steps}
+        return tuple(i for i in range(len(self.steps)) if i not in parents)
+
+    def end_behind(self, name: str, key: str = "branch") -> int:
+        """The end of the branch that the element ``name`` lies on.
+
+        Raises
+        ------
+        InputError : no such element, or several branches leave behind it.
+        """
+        ends = {self.steps[i].name: i for i in self.ends}
+        if name in ends:
+            return ends[name]
+        if name not in self.line.names:
+            raise InputError("is not an element of this driveline", key=key, value=name, remedy=nearest(name, ends))
+        found = [end for end, i in ends.items() if name in {self.steps[k].name for k in self.path(i)}]
+        if len(found) != 1:
+            which = " or ".join(found) or " or ".join(ends)
+            raise InputError("names no single branch", key=key, value=name, remedy=f"write {which}, where one ends")
+        return ends[found[0]]
+
+    def path(self, end: int) -> tuple[int, ...]:
+        """Steps from the drive to step ``end``."""
+        found = []
+        while end > 0:
+            found.append(end)
+            end = self.steps[end].parent
+        return tuple(reversed(found))
 
     def mean_ratio(self, station: int) -> float:
         """Mean speed at a station over the input speed (only Ratios change it)."""
@@ -150,12 +189,13 @@ def period_turns(chain: Chain) -> int:
     return period
 
 
-def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:
+def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str | None = None) -> Chain:
     """Sort ``line`` into steps and members.
 
     Parameters
     ----------
     lengths : joint-to-joint distance [m] by Shaft name, where the Shaft is not a tube of known length.
+    branch : name of an element on the branch whose end is asked about; default the last.
 
     Raises
     ------
@@ -167,7 +207,8 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None) -> Chain:
     members = tuple(
         Member(m.joint, m.train, tuple(m.shafts), m.length if m.length > 0 else np.nan) for m in draft.members
     )
-    return Chain(line, tuple(draft.steps), members)
+    found = Chain(line, tuple(draft.steps), members, len(draft.steps) - 1)
+    return found if branch is None else replace(found, output=found.end_behind(branch))
 
 
 @dataclass
@@ -197,13 +238,13 @@ class _Draft:
                 near_inertia=half, far_inertia=half,
             )  # fmt: skip
             self.members[member].shafts.append(name)
-            self.members[member].length += self.lengths.get(name, getattr(element, "length", None) or 0.0)
+            self._extend(here, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         elif isinstance(element, PiecewiseShaft):
             packed = pack(self.line)
             law = stage_law(self.line, i, packed.column, packed.table(1))
             here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, law=law)
             self.members[member].shafts.append(name)
-            self.members[member].length += self.lengths.get(name, 0.0)
+            self._extend(here, self.lengths.get(name, 0.0))
         elif isinstance(element, Disk):
             here = self._step(
                 Link.RIGID, here, name, member, far_inertia=element.moment_of_inertia, load=element.load_torque,
@@ -221,7 +262,8 @@ class _Draft:
             first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
             here = self._joint(Link.HOOKE, here, f"{name}, first cross", angle=float(first), plane=element.plane)
             self.members[-1].shafts.append(f"{name}, yoke")
-            self.members[-1].length = element.yoke_length or 0.0
+            # the second cross hangs on the station behind the first, at the far end of the yoke
+            self._extend(here, element.yoke_length or 0.0)
             # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
             here = self._joint(Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
         elif isinstance(element, Ratio | GearPair):
@@ -244,6 +286,15 @@ class _Draft:
         self.members.append(_OpenMember(len(self.steps), train, [], 0.0))
         return self._step(link, parent, name, len(self.members) - 1, **numbers)
 
+    def _extend(self, step: int, length: float) -> None:
+        """Put the far end of a shaft ``length`` [m] behind its near end."""
+        here = self.steps[step]
+        reach = length + (self.steps[here.parent].reach if here.link is Link.SHAFT else 0.0)
+        self.steps[step] = replace(here, reach=reach)
+        self.members[here.member].length = max(self.members[here.member].length, reach)
+
     def _step(self, link: Link, parent: int, name: str, member: int, **more: Any) -> int:
+        if link is Link.RIGID:
+            more["reach"] = self.steps[parent].reach
         self.steps.append(Step(link, parent, name, member, **more))
         return len(self.steps) - 1

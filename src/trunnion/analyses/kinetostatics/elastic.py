@@ -15,6 +15,7 @@ rate is not; the rates given are those beside the step.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,12 +34,12 @@ MOTION_ORDER = 2
 
 @dataclass(frozen=True)
 class Drive:
-    """What is done to the line: input, outer torque, pin friction, and whether inertias count."""
+    """What is done to the line: input, torque [N m] by end step, pin friction, and whether inertias count."""
 
     input_angle: Array
     speed: float
     acceleration: float
-    output_torque: float
+    output_torque: Mapping[int, float]
     pin_moment: float
     inertia: bool
 

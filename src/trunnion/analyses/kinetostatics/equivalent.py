@@ -28,19 +28,10 @@ Array = NDArray[np.float64]
 Changes = Mapping[int, Array]
 
 
-def path(chain: Chain) -> tuple[int, ...]:
-    """Steps from the drive to the end of the line."""
-    found, i = [], len(chain.steps) - 1
-    while i > 0:
-        found.append(i)
-        i = chain.steps[i].parent
-    return tuple(reversed(found))
-
-
 def is_one_joint(chain: Chain) -> bool:
     """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio."""
     geared = False
-    for i in path(chain):
+    for i in chain.path(chain.output):
         link = chain.steps[i].link
         if link is Link.TRIPOD or (link is Link.HOOKE and geared):
             return False
@@ -55,7 +46,7 @@ def matrices(
     """M of the line for many variants, shape (case, 2, 2); changed numbers are arrays (case,) by step."""
     angle, plane, fork_offset = angle or {}, plane or {}, fork_offset or {}
     product = np.broadcast_to(np.eye(2), (cases, 2, 2))
-    for i in path(chain):
+    for i in chain.path(chain.output):
         step = chain.steps[i]
         if step.link is Link.SHAFT:
             product = _rotation(fork_offset.get(i, step.fork_offset), cases) @ product
@@ -82,7 +73,9 @@ def irregularity(product: Array) -> Array:
 
 def least_irregularity(chain: Chain) -> float:
     """What the best phasing of the forks can reach [1]."""
-    rapidities = [-np.log(np.cos(chain.steps[i].angle)) for i in path(chain) if chain.steps[i].link is Link.HOOKE]
+    rapidities = [
+        -np.log(np.cos(chain.steps[i].angle)) for i in chain.path(chain.output) if chain.steps[i].link is Link.HOOKE
+    ]
     rest = max(0.0, 2 * max(rapidities, default=0.0) - sum(rapidities))
     return float(2 * np.sinh(rest))
 
@@ -90,7 +83,7 @@ def least_irregularity(chain: Chain) -> float:
 def phasors(chain: Chain) -> tuple[Array, Array]:
     """Angles β_i and input angles χ_i [rad] of the joints on the way to the output, for small angles."""
     a, angles, phases = 0.0, [], []
-    for i in path(chain):
+    for i in chain.path(chain.output):
         step = chain.steps[i]
         if step.link is Link.SHAFT:
             a += step.fork_offset

@@ -28,7 +28,7 @@ def check_limits(
     secondary_couple: float | str | None = None,
     support_force: float | None = None,
 ) -> tuple[Finding, ...]:
-    """Whether ``result`` keeps each limit that is given; failures first.
+    """Whether ``result`` keeps each limit that is given, at the end of every branch; failures first.
 
     Parameters
     ----------
@@ -40,15 +40,19 @@ def check_limits(
     secondary_couple : on any fork [N m].
     support_force : on any bearing [N].
     """
-    checks: list[tuple[str, float, float | None, str]] = [
-        ("irregularity of the output", result.irregularity, _limit("irregularity", irregularity), ""),
-        (
-            "angular acceleration of the output",
-            result.peak_acceleration,
-            _limit("output_acceleration", output_acceleration),
-            " rad/s^2",
-        ),
-    ]
+    even, jerk = _limit("irregularity", irregularity), _limit("output_acceleration", output_acceleration)
+    lag = _limit("deviation", deviation, ANGLE)
+    checks: list[tuple[str, float, float | None, str]] = []
+    for name in result.branches:
+        end = result.on_branch(name)
+        output = "the output" if len(result.branches) == 1 else f"the output {name}"
+        checks += [
+            (f"irregularity of {output}", end.irregularity, even, ""),
+            (f"angular acceleration of {output}", end.peak_acceleration, jerk, " rad/s^2"),
+        ]
+        if lag is not None:
+            behind = end.homokinetic_deviation / DEGREE
+            checks.append((f"lead and lag of {output}", behind, lag / DEGREE, " deg"))
     if shaft_acceleration is not None:
         limit = _limit("shaft_acceleration", shaft_acceleration)
         checks += [
@@ -61,10 +65,6 @@ def check_limits(
             for s in range(len(result.shafts))
             if np.any(result.acceleration[s] != result.output_acceleration) and np.any(result.acceleration[s])
         ]
-    if deviation is not None:
-        limit = _limit("deviation", deviation, ANGLE)
-        assert limit is not None
-        checks.append(("lead and lag of the output", result.homokinetic_deviation / DEGREE, limit / DEGREE, " deg"))
     if secondary_couple is not None:
         sizes = largest(np.hypot(result.secondary_couple[:, 0], result.secondary_couple[:, 1]))
         limit = _limit("secondary_couple", secondary_couple, TORQUE)

@@ -79,19 +79,25 @@ class Phasing:
     __repr__ = __str__
 
 
-def phase_forks(line: Driveline, pitch: float | str | Mapping[str, float | str] | None = None) -> Phasing:
+def phase_forks(
+    line: Driveline,
+    pitch: float | str | Mapping[str, float | str] | None = None,
+    *,
+    branch: str | None = None,
+) -> Phasing:
     """Choose the fork offsets of the shafts between joints for the least irregular output.
 
     Parameters
     ----------
     line : with two joints or more that have an irregularity of their own.
     pitch : spline pitch [rad], for all shafts or by shaft name: those offsets are then whole multiples of it.
+    branch : name of an element on the branch whose output is to run evenly; default the one that ends the line.
 
     Raises
     ------
     InputError : no shaft between two such joints, or a pitch that does not divide a turn.
     """
-    train = chain(line)
+    train = chain(line, branch=branch)
     free = phased_shafts(train)
     if not free:
         raise InputError(
@@ -119,7 +125,7 @@ def phase_forks(line: Driveline, pitch: float | str | Mapping[str, float | str] 
         irregularity=float(irregularity_of(train, free, best[None])[0]),
         before=float(irregularity_of(train, free, own[None])[0]),
         bound=equivalent.least_irregularity(train) if equivalent.is_one_joint(train) else None,
-        phasor_angle=float(phasor_angle(*equivalent.phasors(chain(phased)))),
+        phasor_angle=float(phasor_angle(*equivalent.phasors(chain(phased, branch=branch)))),
         pitch=float(pitches[0]) if np.isfinite(pitches[0]) and np.ptp(pitches) == 0 else None,
         line=phased,
     )
@@ -129,7 +135,7 @@ def phased_shafts(train: Chain) -> tuple[int, ...]:
     """The first Shaft between each two neighbouring joints that are not ideal, on the way to the output."""
     found: list[int] = []
     shaft, seen = None, False
-    for i in equivalent.path(train):
+    for i in train.path(train.output):
         link = train.steps[i].link
         if link is Link.SHAFT and seen and shaft is None:
             shaft = i
@@ -162,9 +168,9 @@ def irregularity_of(
         return {i: x[:, None] for i, x in (values or {}).items()}
 
     motion = walk(train, drive, angle=column(angle), plane=column(plane), fork_offset=column(shafts))
-    speed = np.broadcast_to(motion.angle[-1][1], (len(offsets), drive.shape[-1]))
+    speed = np.broadcast_to(motion.angle[train.output][1], (len(offsets), drive.shape[-1]))
     low, high = extremes(speed)
-    return np.asarray((high - low) / abs(train.mean_ratio(len(train.steps) - 1)))
+    return np.asarray((high - low) / abs(train.mean_ratio(train.output)))
 
 
 def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:

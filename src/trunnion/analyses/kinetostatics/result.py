@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -54,16 +54,20 @@ class Kinetostatics:
     twist : (shaft, point) far end minus near end [rad]; zero where rigid.
     torque : (shaft, point) [N m], positive with the twist, hence *negative* where power flows from the drive
         to the load; ``transmitted`` is the same with the other sign.
-    output_angle, output_speed, output_acceleration : (point,) at the end of the line.
+    branches : name of the element that ends each branch; a line without branches has one. ``branch`` is the one
+        whose end is the output.
+    end_angle, end_speed, end_acceleration : (branch, point) there; end_ratio (branch,) mean speed over the input's.
+    end_torque : (branch,) [N m] asked for at each end, beside the Disks' own loads.
+    output_angle, output_speed, output_acceleration : (point,) at the end of ``branch``.
     drive_torque : (point,) torque the drive must supply [N m].
-    output_torque : torque [N m] asked for at the end of the line, beside the Disks' own.
+    output_torque : torque [N m] asked for at the end of ``branch``, beside the Disks' own.
     joint_angle : (joint, point) input angle χ of each joint from its own plane [rad].
     joint_torque_in, joint_torque_out : (joint, point) transmitted into and out of each joint [N m].
     secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane,
         toward the side the line bends to) and v (normal to it, axis × u).
     secondary_couple_rotating : (fork, 2, point) the same along the fork's arm and across it (axis × arm).
     supports : forces on bearings and joint centres, where bearings were given.
-    constant_twist : how good a constant twist would be, for elastic shafts.
+    constant_twists : how good a constant twist would be, for elastic shafts, by branch.
     power_loss : (point,) heat of the crosses' pins [W].
     power_residual : largest imbalance of power over the largest power [1]: rounding.
     findings : what a colleague would remark.
@@ -75,7 +79,13 @@ class Kinetostatics:
     turns: int
     rigid: bool
     inertia: bool
-    mean_ratio: float
+    branches: tuple[str, ...]
+    branch: str
+    end_ratio: Array
+    end_angle: Array
+    end_speed: Array
+    end_acceleration: Array
+    end_torque: Array
     input_angle: Array
     shafts: tuple[str, ...]
     shaft_ratio: Array
@@ -84,11 +94,7 @@ class Kinetostatics:
     acceleration: Array
     twist: Array
     torque: Array
-    output_angle: Array
-    output_speed: Array
-    output_acceleration: Array
     drive_torque: Array
-    output_torque: float
     joints: tuple[str, ...]
     joint_angle: Array
     joint_torque_in: Array
@@ -98,10 +104,48 @@ class Kinetostatics:
     secondary_couple: Array
     secondary_couple_rotating: Array
     supports: Supports | None
-    constant_twist: ConstantTwist | None
+    constant_twists: tuple[ConstantTwist, ...] | None
     findings: tuple[Finding, ...]
     power_loss: Array
     power_residual: float
+
+    @property
+    def _end(self) -> int:
+        return self.branches.index(self.branch)
+
+    @property
+    def mean_ratio(self) -> float:
+        """Mean speed of the output over the input's."""
+        return float(self.end_ratio[self._end])
+
+    @property
+    def output_angle(self) -> Array:
+        """Rotation of the output [rad] (point,)."""
+        return np.asarray(self.end_angle[self._end])
+
+    @property
+    def output_speed(self) -> Array:
+        """Speed of the output [rad/s] (point,)."""
+        return np.asarray(self.end_speed[self._end])
+
+    @property
+    def output_acceleration(self) -> Array:
+        """Angular acceleration of the output [rad/s²] (point,)."""
+        return np.asarray(self.end_acceleration[self._end])
+
+    @property
+    def output_torque(self) -> float:
+        """Torque asked for at the output [N m]."""
+        return float(self.end_torque[self._end])
+
+    @property
+    def constant_twist(self) -> ConstantTwist | None:
+        """How good a constant twist would be for the output, for elastic shafts."""
+        return self.constant_twists[self._end] if self.constant_twists else None
+
+    def on_branch(self, name: str) -> Kinetostatics:
+        """The same turn, its output the end of the branch that ``branches`` calls ``name``."""
+        return replace(self, branch=self.branches[_place(name, self.branches, "branch")])
 
     @property
     def transmitted(self) -> Array:
@@ -220,6 +264,11 @@ def _place(name: str, names: tuple[str, ...], what: str) -> int:
     return names.index(name)
 
 
+def _outputs(result: Kinetostatics) -> list[str]:
+    """What the ends are called: "output", with the branch's name where there are several."""
+    return ["output"] if len(result.branches) == 1 else [f"output {name}" for name in result.branches]
+
+
 def _columns(result: Kinetostatics) -> list[tuple[str, Array]]:
     columns = [("input angle [rad]", result.input_angle)]
     for s, name in enumerate(result.shafts):
@@ -231,9 +280,15 @@ def _columns(result: Kinetostatics) -> list[tuple[str, Array]]:
             (f"{name} torque [N*m]", result.torque[s]),
         ]
     columns += [
-        ("output angle [rad]", result.output_angle),
-        ("output speed [rad/s]", result.output_speed),
-        ("output acceleration [rad/s^2]", result.output_acceleration),
+        *(
+            (f"{one}{what}", values[k])
+            for k, one in enumerate(_outputs(result))
+            for what, values in (
+                (" angle [rad]", result.end_angle),
+                (" speed [rad/s]", result.end_speed),
+                (" acceleration [rad/s^2]", result.end_acceleration),
+            )
+        ),
         ("drive torque [N*m]", result.drive_torque),
     ]
     for f, name in enumerate(result.forks):

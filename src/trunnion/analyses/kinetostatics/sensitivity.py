@@ -56,7 +56,9 @@ class AssemblySensitivity:
     __repr__ = __str__
 
 
-def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> AssemblySensitivity:
+def assembly_sensitivity(
+    line: Driveline, error: float | str = DEGREE, *, branch: str | None = None
+) -> AssemblySensitivity:
     """Irregularity of the output under errors of joint angles, planes and fork offsets.
 
     The first joint's plane and the offset in front of it only turn the origin and are left out.
@@ -64,6 +66,7 @@ def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> Assemb
     Parameters
     ----------
     error : size of every error [rad].
+    branch : name of an element on the branch whose output is asked about; default the one that ends the line.
     """
     try:
         size = parse(error, ANGLE)
@@ -71,8 +74,8 @@ def assembly_sensitivity(line: Driveline, error: float | str = DEGREE) -> Assemb
         raise InputError(refused.problem, key="error", value=error, remedy=refused.remedy) from None
     if not size > 0:
         raise InputError("must be positive", key="error", value=error, remedy='write "1 deg", say')
-    train = chain(line)
-    hooke, shafts = train.of(Link.HOOKE), phased_shafts(train)
+    train = chain(line, branch=branch)
+    hooke, shafts = tuple(i for i in train.path(train.output) if i in train.of(Link.HOOKE)), phased_shafts(train)
     if not hooke:
         raise InputError("has no Hooke's joint", element="driveline", remedy="its output is as even as its input")
     _refuse_reaching_90(train, hooke, size, error)

@@ -20,7 +20,7 @@ def summary(result: Kinetostatics, unit: str) -> str:
     return "\n".join(
         [
             _title(result, unit),
-            *_output(result),
+            *(line for name in result.branches for line in _output(result.on_branch(name))),
             *_torques(result),
             *_couples(result),
             *_supports(result),
@@ -42,10 +42,11 @@ def _title(r: Kinetostatics, unit: str) -> str:
 
 def _output(r: Kinetostatics) -> list[str]:
     low, high = r.speed_ratio
+    output = "output" if len(r.branches) == 1 else f"output {r.branch}"
     return [
-        f"  output speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
+        f"  {output} speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
         f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",
-        f"  output leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
+        f"  {output} leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
         f"acceleration {r.peak_acceleration:.5g} rad/s^2",
     ]
 

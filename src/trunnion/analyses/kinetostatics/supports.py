@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.bearings import Bearings, place_bearings
-from trunnion.analyses.kinetostatics.chain import Chain, member_ratio
+from trunnion.analyses.kinetostatics.chain import Chain, Link, member_ratio
 from trunnion.analyses.kinetostatics.couples import Couples, turned
 from trunnion.analyses.kinetostatics.frames import member_frames
 from trunnion.errors import InputError
@@ -54,8 +54,8 @@ def support_forces(chain: Chain, couples: Couples, bearings: Bearings) -> Suppor
     Parameters
     ----------
     bearings : (shaft name, position, position) or (shaft name, position) each; positions [m] along the shaft
-        from the joint in front of it, away from the drive; on the first shaft from the joint behind it, so
-        that they are negative.
+        from the joint in front of it, away from the drive; on the first shaft from the (first) joint behind it,
+        so that they are negative.
 
     Raises
     ------
@@ -81,17 +81,6 @@ class _Statics:
         self.chain, self.members, self.placed = chain, members, placed
         self.frames = member_frames(chain)
         self.joints = [chain.members[m].joint for m in members if chain.members[m].joint >= 0]
-        self.behind: dict[int, int] = {}
-        for j in self.joints:
-            front = chain.steps[chain.steps[j].parent].member
-            if front in self.behind:
-                raise InputError(
-                    "branches to two joints; support forces are for a line without branches",
-                    element=chain.members[front].shafts[0] if chain.members[front].shafts else "drive",
-                    key="supports",
-                    remedy="describe one branch at a time",
-                )
-            self.behind[front] = j
         self.bearings = [(m, x) for m in members for x in placed.get(m, ())]
         self.thrusts = [m for m in members if len(placed.get(m, ())) == 2]
         self.idle = [j for j in self.joints if self._front(j) in self.thrusts and self._back(j) in self.thrusts]
@@ -108,12 +97,19 @@ class _Statics:
     def _back(self, joint: int) -> int:
         return self.chain.steps[joint].member
 
-    def _length(self, m: int) -> float:
-        member = self.chain.members[m]
-        if member.joint < 0 or m not in self.behind:
-            return 0.0
-        if np.isnan(member.length):
-            name = member.shafts[0] if member.shafts else self.chain.steps[member.joint].name
+    def _place(self, joint: int) -> float:
+        """Where a joint stands on the shaft in front of it [m], from where that shaft's positions count."""
+        steps, front = self.chain.steps, self._front(joint)
+        member = self.chain.members[front]
+        own = self._shafts_before(joint)
+        if member.joint < 0:
+            first = next(j for j in self.joints if self._front(j) == front)
+            apart = own.symmetric_difference(self._shafts_before(first))
+            self._require_lengths(apart)
+            return steps[steps[joint].parent].reach - steps[steps[first].parent].reach
+        if np.isnan(member.length) or steps[steps[joint].parent].reach == 0:
+            name = member.shafts[0] if member.shafts else steps[member.joint].name
+            name = steps[min(own)].name if own else name
             yoke = name.endswith(", yoke")
             raise InputError(
                 "is not known, but the support forces depend on it",
@@ -121,7 +117,25 @@ class _Statics:
                 key="yoke_length" if yoke else "length",
                 remedy='write yoke_length = "80 mm", say' if yoke else f'pass lengths={{"{name}": 0.8}} [m]',
             )
-        return member.length
+        return steps[steps[joint].parent].reach
+
+    def _shafts_before(self, joint: int) -> set[int]:
+        """Shafts between a joint and the beginning of the member it hangs on."""
+        steps, front = self.chain.steps, self._front(joint)
+        return {
+            i for i in self.chain.path(steps[joint].parent) if steps[i].link is Link.SHAFT and steps[i].member == front
+        }
+
+    def _require_lengths(self, shafts: set[int]) -> None:
+        steps = self.chain.steps
+        for i in sorted(shafts):
+            if steps[i].reach == steps[steps[i].parent].reach:
+                raise InputError(
+                    "is not known, but the support forces depend on it",
+                    element=steps[i].name,
+                    key="length",
+                    remedy=f'pass lengths={{"{steps[i].name}": 0.8}} [m]',
+                )
 
     def _build(self) -> None:
         for m in self.members:
@@ -134,7 +148,7 @@ class _Statics:
                     force[:, columns] += np.eye(3)
                 if self._front(j) == m:
                     force[:, columns] -= np.eye(3)
-                    moment[:, columns] -= self._length(m) * _cross_matrix(e)
+                    moment[:, columns] -= self._place(j) * _cross_matrix(e)
             for b, (owner, x) in enumerate(self.bearings):
                 if owner == m:
                     columns = slice(3 * len(self.joints) + 2 * b, 3 * len(self.joints) + 2 * b + 2)

@@ -13,6 +13,7 @@ minus the shaft's torque as the dynamics count it (positive with the twist).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,7 +44,7 @@ def torques(
     motion: Motion,
     order: int,
     *,
-    output_torque: float = 0.0,
+    output_torque: Mapping[int, float] | None = None,
     pin_moment: float = 0.0,
     speeds: list[Array] | None = None,
     inertial: list[Array] | None = None,
@@ -53,14 +54,15 @@ def torques(
     Parameters
     ----------
     order : of the jets of torque; those of ``motion`` must be at least as high.
-    output_torque : [N m] at the end of the line, beside the Disks' own loads; positive resists rotation.
+    output_torque : [N m] by step at the end of a branch, beside the Disks' own loads; positive resists rotation.
     pin_moment : κ′ of the crosses.
     speeds : jet of the speed of every station [rad/s], for the loads that grow with it.
     inertial : jet of the acceleration of every station [rad/s²].
     """
-    zero = np.zeros_like(motion.angle[-1][: order + 1])
+    zero = np.zeros_like(motion.angle[0][: order + 1])
     out: list[Array] = [zero.copy() for _ in chain.steps]
-    out[-1][0] += np.sign(chain.mean_ratio(len(chain.steps) - 1)) * output_torque
+    for end, asked in (output_torque or {}).items():
+        out[end][0] += np.sign(chain.mean_ratio(end)) * asked
     into, spring = [zero] * len(chain.steps), {}
     for i in range(len(chain.steps) - 1, -1, -1):
         step = chain.steps[i]

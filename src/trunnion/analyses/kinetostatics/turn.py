@@ -34,15 +34,18 @@ def kinetostatics(
     acceleration: float = 0.0,
     *,
     rigid: bool = True,
-    output_torque: float | str = 0.0,
+    output_torque: float | str | Mapping[str, float | str] = 0.0,
     inertia: bool = False,
     friction: CrossFriction | None = None,
     supports: Bearings | None = None,
     lengths: Mapping[str, float | str] | None = None,
     turns: int = 1,
     points: int = 720,
+    branch: str | None = None,
 ) -> Kinetostatics:
     """Motion, torques, secondary couples and support forces of ``line`` over a turn of its input.
+
+    All branches are computed together: the shafts in front of a fork carry what its branches ask for.
 
     >>> r = kinetostatics(line, speed=tn.rpm(1500), supports=[("Shaft 1", -0.3, -0.1)])  # doctest: +SKIP
 
@@ -51,12 +54,15 @@ def kinetostatics(
     line : the driveline; its first element is driven, whatever it is.
     speed, acceleration : of the input, the same at every angle [rad/s, rad/s²].
     rigid : shafts do not twist; False solves the twist under the torque at every angle.
-    output_torque : at the end of the line [N m], beside the Disks' own loads; positive resists rotation.
+    output_torque : at the end of the line [N m], beside the Disks' own loads; positive resists rotation. With
+        branches: at the end of ``branch``, or by name of an element on each branch.
     inertia : count the inertia torques of the rigid line.
     friction : in the bearings of every cross.
     supports : (shaft, position, position) or (shaft, position) each [m]; see ``supports.support_forces``.
     lengths : joint-to-joint lengths [m] by shaft, where the shaft is not a tube of known length.
     turns, points : turns of the input, and points per turn.
+    branch : name of an element on the branch that "the output" is the end of; default the last of the line.
+        ``result.on_branch(name)`` gives the same turn with the output of another.
 
     Raises
     ------
@@ -75,16 +81,17 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
-    train = chain(line, _lengths(line, lengths))
+    train = chain(line, _lengths(line, lengths), branch)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
-    torque = _number(output_torque, TORQUE, "output_torque")
+    torque = _output_torques(train, output_torque)
     drive = Drive(input_angle, drive_speed, _acceleration(acceleration), torque, pin_moment, inertia)
     motion, passed, twist = solve(train, drive, rigid=rigid)
     couples = secondary_couples(train, motion, passed, pin_moment)
     forces = support_forces(train, couples, supports) if supports is not None else None
     constant = None if rigid else _constant(train, drive, motion, twist)
+    ends = train.ends
     zero = np.array(assembled(train))
     steps, joints = train.steps, train.joints
 
@@ -96,7 +103,6 @@ def kinetostatics(
     def stack(values: list[Array]) -> Array:
         return np.reshape(values, (len(values), len(input_angle)))
 
-    last = len(steps) - 1
     return Kinetostatics(
         line=line,
         input_speed=drive_speed,
@@ -104,7 +110,13 @@ def kinetostatics(
         turns=turns,
         rigid=rigid,
         inertia=inertia,
-        mean_ratio=train.mean_ratio(last),
+        branches=tuple(steps[i].name for i in ends),
+        branch=steps[train.output].name,
+        end_ratio=np.array([train.mean_ratio(i) for i in ends]),
+        end_angle=derivative(ends, 0),
+        end_speed=derivative(ends, 1),
+        end_acceleration=derivative(ends, 2),
+        end_torque=np.array([torque.get(i, 0.0) for i in ends]),
         input_angle=input_angle,
         shafts=tuple(steps[i].name for i in train.shafts),
         shaft_ratio=np.array([train.mean_ratio(i) for i in train.shafts]),
@@ -113,11 +125,7 @@ def kinetostatics(
         acceleration=derivative(train.shafts, 2),
         twist=stack([twist[i][0] if i in twist else np.zeros_like(input_angle) for i in train.shafts]),
         torque=stack([-passed.spring[i][0] for i in train.shafts]),
-        output_angle=derivative([last], 0)[0],
-        output_speed=derivative([last], 1)[0],
-        output_acceleration=derivative([last], 2)[0],
         drive_torque=passed.out[0][0],
-        output_torque=torque,
         joints=tuple(steps[i].name for i in joints),
         joint_angle=stack([motion.chi[i][0] for i in joints]),
         joint_torque_in=stack([passed.into[i][0] for i in joints]),
@@ -127,21 +135,42 @@ def kinetostatics(
         secondary_couple=couples.standing,
         secondary_couple_rotating=couples.rotating,
         supports=forces,
-        constant_twist=constant,
+        constant_twists=constant,
         findings=remarks(train, drive, rigid, forces, turns, twist),
         power_loss=couples.friction_power,
         power_residual=_power_residual(train, drive, motion, passed, twist, couples.friction_power),
     )
 
 
-def _constant(train: Chain, drive: Drive, motion: Motion, twist: dict[int, Array]) -> ConstantTwist:
-    approximate = constant_twist(train, drive, twist).angle[-1] - motion.angle[-1]
+def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]) -> dict[int, float]:
+    """Torque [N m] by end step."""
+    if not isinstance(given, Mapping):
+        return {train.output: _number(given, TORQUE, "output_torque")}
+    found: dict[int, float] = {}
+    for name, value in given.items():
+        end = train.end_behind(name, "output_torque")
+        if end in found:
+            remedy = "give one torque a branch"
+            raise InputError(
+                "names a branch that has its torque already", key="output_torque", value=name, remedy=remedy
+            )
+        found[end] = _number(value, TORQUE, f"output_torque[{name!r}]")
+    return found
+
+
+def _constant(train: Chain, drive: Drive, motion: Motion, twist: dict[int, Array]) -> tuple[ConstantTwist, ...]:
+    """One for every end."""
+    approximate = constant_twist(train, drive, twist).angle
     variation = []
     for i in train.shafts:
         mean, swing = float(np.mean(twist[i][0])), float(np.ptp(twist[i][0]))
         variation.append(swing / (2 * abs(mean)) if mean else np.nan)
-    angle, speed, half = (float(largest(np.abs(approximate[k]))) for k in range(3))
-    return ConstantTwist(np.array(variation), angle, speed, 2 * half)
+    found = []
+    for end in train.ends:
+        error = approximate[end] - motion.angle[end]
+        angle, speed, half = (float(largest(np.abs(error[k]))) for k in range(3))
+        found.append(ConstantTwist(np.array(variation), angle, speed, 2 * half))
+    return tuple(found)
 
 
 def _power_residual(
@@ -167,7 +196,8 @@ def _power_residual(
         else:
             continue
         balance, size = balance - taken, np.maximum(size, np.abs(taken))
-    balance = balance - passed.out[-1][0] * motion.angle[-1][1]
+    for end in train.ends:
+        balance = balance - passed.out[end][0] * motion.angle[end][1]
     scale = float(np.max(size))
     return float(np.max(np.abs(balance))) / scale if scale else 0.0
 
