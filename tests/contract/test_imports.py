@@ -122,9 +122,11 @@ def test_nothing_imports_the_command_line() -> None:
 def test_plots_load_late() -> None:
     """matplotlib, and plots where something draws itself, are imported inside functions only."""
     for path in FILES:
+        if path.name == "literal_figure.py":  # a kind of matplotlib's figure, which others import inside functions
+            continue
         top = ast.parse(path.read_text(encoding="utf-8")).body
         names = {a.name for n in top if isinstance(n, ast.Import) for a in n.names}
         names |= {n.module or "" for n in top if isinstance(n, ast.ImportFrom)}
-        assert not any(name.startswith("matplotlib") for name in names), path
+        assert not any(name.startswith(("matplotlib", "trunnion.plots.literal_figure")) for name in names), path
         if part_of(path) in ("driveline", "results", "analyses"):
             assert not any(name.startswith("trunnion.plots") for name in names), path

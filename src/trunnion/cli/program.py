@@ -182,4 +182,7 @@ app.command("schema")(describe.schema)
 
 def main(args: list[str] | None = None) -> None:
     """Entry point of the ``trunnion`` script."""
-    app(args)
+    try:
+        app(args)
+    except KeyboardInterrupt:  # before a command was reached, or after it
+        sys.exit(_answer(_Interrupted(), []))

@@ -129,9 +129,10 @@ def draw_lyapunov_map(result: LyapunovMap, axes: Axes | None = None) -> Axes:
 def draw_certificate(result: ChaosCertificate) -> Figure:
     """Portrait; exponents over the swept parameter, or their convergence; the map at two numbers of points."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.4, 7.6), layout="constrained")
+    from trunnion.plots.literal_figure import LiteralFigure
+
+    figure = LiteralFigure(figsize=(9.4, 7.6), layout="constrained")
     FigureCanvasAgg(figure)
     grid: Any = figure.subplots(2, 2)
     what = str(result.verdict) + (f", {result.kind}" if result.kind else "")

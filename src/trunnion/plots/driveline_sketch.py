@@ -54,7 +54,8 @@ class _Place:
 def draw(line: Driveline) -> Figure:
     """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+
+    from trunnion.plots.literal_figure import LiteralFigure
 
     places = _places(line)
     floor = _floors(places)
@@ -68,7 +69,7 @@ def draw(line: Driveline) -> Figure:
     high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
     scale = WIDTH / max(high[0] - low[0], 9.0)
-    figure = Figure(figsize=(WIDTH, scale * (high[1] - low[1])))
+    figure = LiteralFigure(figsize=(WIDTH, scale * (high[1] - low[1])))
     FigureCanvasAgg(figure)
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()

@@ -146,9 +146,10 @@ _LEGEND: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handlelength": 
 
 def _figure(width: float, height: float) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    from trunnion.plots.literal_figure import LiteralFigure
+
+    figure = LiteralFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 

@@ -122,9 +122,10 @@ def sketch(
 
 def _figure() -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.6, 5.2))
+    from trunnion.plots.literal_figure import LiteralFigure
+
+    figure = LiteralFigure(figsize=(8.6, 5.2))
     figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=TOP)
     FigureCanvasAgg(figure)
     return figure
@@ -250,7 +251,7 @@ def _write_labels(figure: Figure, axes: Any, scene: _Scene, size: float, labels:
     placed: list[_Place] = []
     for label in labels:
         text = figure.text(0, 0, label.text, color=label.colour, fontsize=SMALL, ha="center", va="center")
-        text.set(linespacing=1.1, path_effects=halo)
+        text.set(linespacing=1.1, path_effects=halo, parse_math=False)  # measured before it is drawn
         extent = text.get_window_extent()
         anchor = _pixels(axes, label.anchor[None])[0]
         choices = _choices(anchor, np.array([extent.width, extent.height]), reach, label.side)

@@ -30,13 +30,14 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
     drive : name of the prescribed rotation in front of the line, drawn at rest; None leaves it out.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+
+    from trunnion.plots.literal_figure import LiteralFigure
 
     names = [*([drive] if drive else []), *modes.names]
     count, columns = len(modes.frequency), min(PER_ROW, len(modes.frequency))
     rows = -(-count // columns)
     height = rows * (ROW_HEIGHT * len(names) + 0.65) + 0.35
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = LiteralFigure(figsize=(WIDTH, height), layout="constrained")
     FigureCanvasAgg(figure)
     grid: Any = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     place = np.arange(len(names))

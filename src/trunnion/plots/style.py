@@ -30,9 +30,10 @@ DPI = 200
 def new_axes(width: float = WIDTH, height: float = HEIGHT) -> Axes:
     """Axes on a figure of their own [inches], drawn by Agg: no window, no pyplot, safe in threads."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    from trunnion.plots.literal_figure import LiteralFigure
+
+    figure = LiteralFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure.add_subplot()
 

@@ -39,11 +39,11 @@ def panel(chart: StabilityChart, caption: str, y_label: str, limits: tuple[float
 def side_by_side(panels: Sequence[Panel]) -> Figure:
     """One or two panels, dark = unstable."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
+    from trunnion.plots.literal_figure import LiteralFigure
     from trunnion.plots.paper_chart import draw
 
-    figure = Figure(figsize=(5.0 * len(panels) + 0.4, 4.6), layout="constrained")
+    figure = LiteralFigure(figsize=(5.0 * len(panels) + 0.4, 4.6), layout="constrained")
     FigureCanvasAgg(figure)
     grid: Any = figure.subplots(1, len(panels), squeeze=False)
     for axes, p in zip(grid[0], panels, strict=True):
@@ -59,11 +59,11 @@ def curves(
 ) -> Figure:
     """Spectral radii over speed, one small panel each under a common speed axis; marks are named speeds."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
+    from trunnion.plots.literal_figure import LiteralFigure
     from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
 
-    figure = Figure(figsize=(7.2, 1.55 * len(rows) + 0.8), layout="constrained")
+    figure = LiteralFigure(figsize=(7.2, 1.55 * len(rows) + 0.8), layout="constrained")
     FigureCanvasAgg(figure)
     grid: Any = figure.subplots(len(rows), 1, sharex=True, squeeze=False)
     for k, (axes, (name, values)) in enumerate(zip(grid[:, 0], rows, strict=True)):

@@ -1,0 +1,57 @@
+"""Names with dollars, braces and backslashes appear as they are written, in every picture."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.plots.layout import sketch
+from trunnion.plots.style import new_axes
+from trunnion.reporting.pictures import picture, pixels
+
+NAMES = ["load $a_$", "$x$", "$", "a$b$c$", r"$\frac{1}{$", "{", r"\alpha $\undefined$", "^$_^$"]
+
+
+def line(name: str) -> tn.Driveline:
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=1e4, name=f"s{name}"),
+            tn.Disk(inertia=1.0),
+            tn.HookeJoint(angle=0.2, name=f"j{name}"),
+            tn.Shaft(stiffness=1e4),
+            tn.Disk(inertia=1.0, name=name),
+        ],
+        name=name,
+    )
+
+
+@pytest.mark.parametrize(("name", "ending"), zip(NAMES, ["svg", "png", "pdf"] * 3, strict=False))
+def test_text_of_every_kind_is_shown_as_written(name, ending):
+    axes = new_axes()
+    axes.plot([1, 1e6], [1, 1e6], label=name)
+    axes.set(xlabel=name, ylabel=name, title=name, xscale="log")
+    axes.set_yticks([1, 2], [name, "b"])
+    axes.annotate(name, (1, 1))
+    axes.legend(title=name)
+    stream = io.BytesIO()
+    axes.figure.savefig(stream, format=ending, bbox_inches="tight")
+    assert stream.tell() > 1000
+
+
+def test_powers_at_the_axes_stay_powers():
+    axes = new_axes()
+    axes.set(xscale="log", xlim=(1, 1e6), title="$x$")
+    axes.figure.draw_without_rendering()
+    assert all(text.get_parse_math() for text in axes.get_xticklabels()) and not axes.title.get_parse_math()
+
+
+def test_drawings_of_a_line():
+    for name in NAMES[::3]:
+        for drawn in (sketch(line(name)), natural_frequencies(line(name)).plot()):
+            figure = getattr(drawn, "figure", None) or drawn
+            assert picture(figure, "alt").address.startswith("data:image/svg")
+    assert pixels(figure, "alt").address.startswith("data:image/png")
