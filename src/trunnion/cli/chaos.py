@@ -65,10 +65,10 @@ def lyapunov_spectrum(
 
     system = _subject(file, parameters, speed, unit, load_case)
     _check_endings(to)
-    with output.compile_notice():
+    with output.progress("exponents") as advance:
         result = compute(
             system, periods, duration=duration, start=_state(start), starts=starts, transient=transient,
-            tolerance=tolerance,
+            tolerance=tolerance, progress=advance,
         )  # fmt: skip
     written = _files(to, _stem(file), "exponents", result.data, lambda: result.plot())
     if not as_json:
@@ -167,10 +167,10 @@ def certify_chaos(
 
     system = _subject(file, parameters, speed, unit, load_case)
     _check_endings(to)
-    with output.compile_notice():
+    with output.progress("exponents, map and sweep") as advance:
         result = compute(
             system, periods, duration=duration, section=_section(section), start=_state(start), starts=starts,
-            transient=transient, sweep=_sweep(sweep), tolerance=tolerance,
+            transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,
         )  # fmt: skip
     written = _files(to, _stem(file), "certificate", result.data, lambda: result.plot())
     if not as_json:

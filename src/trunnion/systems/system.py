@@ -32,6 +32,12 @@ MOST_AT_ONCE = 8
 """Surfaces that a motion may start on together."""
 ON_SURFACE = 1e-14
 """Relative to the terms of a guard, what counts as zero."""
+LOOKS = 5
+"""States and times at which a Jacobian is compared with differences."""
+DIFFERENCE = 1e-6
+"""Step of those differences over the scale of the state."""
+WRONG_ENTRY = 1e-3
+"""Share of an entry, and of a thousandth of the largest, by which it may differ from them."""
 MOST_SHOWN = 8
 """Parameters that ``print`` shows."""
 Period = float | Callable[[Mapping[str, float]], float | None] | None
@@ -150,7 +156,45 @@ class System:
         rate = rate_function(function, jacobian, size, tuple(values), weight, compiled=compiled)
         made = replace(draft, rate=rate)
         made.require_period()
+        if jacobian is not None:
+            made.require_jacobian()
         return made
+
+    def require_jacobian(self) -> None:
+        """Refuse a Jacobian that differences of the right-hand side contradict at some state near the start."""
+        assert self.scale is not None
+        first = np.zeros(self.size) if self.start is None else self.start
+        rng, period = np.random.default_rng(0), self.forcing_period or 1.0
+        for k in range(LOOKS):
+            # Off symmetric places, at which a wrong entry may vanish.
+            state = first + 0.1 * rng.uniform(0.5, 1.0, self.size) * np.maximum(self.scale, np.abs(first))
+            time = period * (0.123 + np.sqrt(2) * k) % period
+            regime = self.regimes.at(self, time, state) if self.regimes is not None else 0
+            matrix, differences = self.jacobian(time, state, regime), self._differences(time, state, regime)
+            if not (np.isfinite(matrix).all() and np.isfinite(differences).all()):
+                continue
+            # Each entry in the units of its states: what a change of one unit does to one unit.
+            off = np.abs(matrix - differences) * self.scale[None, :] / self.scale[:, None]
+            size = np.abs(differences) * self.scale[None, :] / self.scale[:, None]
+            wrong = off > WRONG_ENTRY * (size + 1e-3 * size.max(initial=0.0) + 1e-300)
+            if wrong.any():
+                i, j = np.unravel_index(int(np.argmax(np.where(wrong, off, 0.0))), off.shape)
+                raise InputError(
+                    f"says ∂({self.states[i]}')/∂{self.states[j]} = {matrix[i, j]:.6g} where differences give "
+                    f"{differences[i, j]:.6g}",
+                    element=self.name, key="jacobian", remedy=f"correct row {i + 1}, column {j + 1}, or leave it out",
+                )  # fmt: skip
+
+    def _differences(self, time: float, state: Array, regime: int) -> Array:
+        """∂f/∂x (n, n) by central differences."""
+        assert self.scale is not None
+        out, steps = np.empty((self.size, self.size)), DIFFERENCE * np.maximum(self.scale, np.abs(state))
+        for j, step in enumerate(steps):
+            ahead, behind = state.copy(), state.copy()
+            ahead[j], behind[j] = state[j] + step, state[j] - step
+            rise = self.rate_at(time, ahead, regime) - self.rate_at(time, behind, regime)
+            out[:, j] = rise / (ahead[j] - behind[j])
+        return out
 
     def require_period(self) -> None:
         """Refuse a forcing period after which the right-hand side is another one."""

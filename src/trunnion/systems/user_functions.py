@@ -195,12 +195,13 @@ def rate_function(
 ) -> CFunction:
     """Right-hand side with tangents: exact by ``jacobian`` (t, x, p) → (n, n), else by differences."""
     regimes = takes(function, (3, 4), "rate") == 4
+    sloped_by_regime = jacobian is not None and takes(jacobian, (3, 4), "jacobian") == 4
     count, step = len(names), STEP
     weight = tuple(map(float, scale))
 
     def with_jacobian(uniform: Any) -> Any:
-        regimes_too = takes(jacobian, (3, 4), "jacobian") == 4 if jacobian else False
-        matrix = _uniform(jacobian, parameter_tuple(names), count, size, regimes_too, False) if jacobian else None
+        assert jacobian is not None
+        matrix = _uniform(jacobian, parameter_tuple(names), count, size, sloped_by_regime, False)
 
         def rate(t, y_, p_, k, regime, out_):
             y, p = carray(y_, ((1 + k) * size,)), carray(p_, (count,))
@@ -266,7 +267,8 @@ def rate_function(
             try:
                 failed = store(out[0], plain(t, y[0], p, regime))
                 if k and not failed and jacobian is not None:
-                    slopes = jacobian(t, y[0].copy(), parameter_tuple(names)(*map(float, p)))
+                    arguments = (t, y[0].copy(), parameter_tuple(names)(*map(float, p)))
+                    slopes = jacobian(*arguments, regime) if sloped_by_regime else jacobian(*arguments)
                     out[1:] = y[1:] @ np.asarray(slopes, dtype=float).T
                 elif k and not failed:
                     for v, slope in zip(y[1:], out[1:], strict=True):

@@ -17,7 +17,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,7 +28,7 @@ from trunnion.analyses.chaos.chaos_subject import angles, as_system, clocks, fir
 from trunnion.analyses.chaos.chaos_zero_one import FEWEST as FEWEST_FOR_TEST
 from trunnion.analyses.chaos.chaos_zero_one import ZeroOne, zero_one_test
 from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
-from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
+from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, shear_bound
 from trunnion.analyses.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.analyses.motion.long_motion import motion_size, wrapped
@@ -52,6 +53,8 @@ UNSTABLE = "at rest on an unstable equilibrium"
 AT_REST = 1e-7
 """Size of a motion over its scale that counts as rest."""
 SWEPT, SWEEP_POINTS, SWEEP_PERIODS = 0.1, 25, 400
+SPECTRUM_SHARE = 0.6
+"""Of the time, where the exponents are also swept."""
 SWEPT_NAMES = ("excitation", "frequency", "speed")
 
 
@@ -162,10 +165,13 @@ def certify_chaos(
     """
     system = as_system(subject, speed)
     request = _sweep_request(system, sweep)
+    tell = progress or (lambda share: None)
+    last = SPECTRUM_SHARE if request is not None else 1.0
     spectrum = lyapunov_spectrum(
         system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
-        progress=progress,
+        progress=lambda share: tell(last * share),
     )  # fmt: skip
+    tell(last)
     states = np.concatenate([run.states[-8:] for run in spectrum.runs])
     running = clocks(system, states) if len(states) and np.all(np.isfinite(states)) else {}
     witnesses = [_witness(system, spectrum, i, section, points, running) for i in range(len(spectrum.runs))]
@@ -190,7 +196,7 @@ def certify_chaos(
     if request is not None and verdict is not Verdict.UNBOUNDED:
         swept = lyapunov_sweep(
             system, request[0], request[1:], periods=SWEEP_PERIODS, start=first_starts(system, start, 1)[0],
-            tolerance=max(tolerance, 1e-9),
+            tolerance=max(tolerance, 1e-9), progress=lambda share: tell(last + (1 - last) * share),
         )  # fmt: skip
     return ChaosCertificate(
         system, verdict, kind, repeat, _period(first.map, repeat), reasons, judged, spectrum, first.map, first.test,
@@ -257,9 +263,8 @@ def _witness(
 def _judge(
     spectrum: LyapunovSpectrum, i: int, mapped: PoincareMap, test: ZeroOne | None, exponent: float, width: float
 ) -> Witness:
-    time = len(spectrum.runs[i].growth) * spectrum.interval
-    shear = 2 * np.log(max(len(spectrum.runs[i].growth), 2)) / time
-    parts = bool(exponent - width > 0 and exponent > shear)
+    shear = shear_bound(len(spectrum.runs[i].growth), spectrum.interval)
+    parts = bool(exponent > max(width, shear))
     told = f"largest exponent {exponent:+.4g} ± {width:.2g} 1/s"
     if mapped.repeat and not parts:
         times = "point" if mapped.repeat == 1 else "points"
@@ -340,14 +345,30 @@ def _map(
             system, points, every=every, start=run.states[-1], transient=0, tolerance=spectrum.tolerance
         )
     if section is None:
-        j = int(np.argmax(np.ptp(run.states, axis=0) / np.asarray(system.scale)))
-        middle = float(np.mean(run.states[:, j]))
-        section = Event(system.states[j], middle, direction=1)
+        section = _usual_section(system, run.states, turning)
     longest = max(len(run.growth) * spectrum.interval, 100 * spectrum.interval)
     return poincare_map(
         system, min(points, max(len(run.growth) // 2, 1)), section=section, start=run.states[-1], transient=0,
         longest=longest, tolerance=spectrum.tolerance,
     )  # fmt: skip
+
+
+def _usual_section(system: System, states: Array, turning: tuple[int, ...]) -> Event:
+    """The mean of the state that moves most, rising; where all are angles, the first of them passing whole turns."""
+    free = [j for j in range(system.size) if j not in turning]
+    if not free:
+        # An angle that wanders away from its mean for ever passes a multiple of 2π again and again.
+        return Event(_sine_of(0), direction=1, name=f"sin({system.states[0]}) = 0")
+    j = max(free, key=lambda j: float(np.ptp(states[:, j])) / float(np.asarray(system.scale)[j]))
+    return Event(system.states[j], float(np.mean(states[:, j])), direction=1)
+
+
+@cache
+def _sine_of(place: int) -> Callable[..., Any]:
+    def sine(t: float, x: Any, p: Any) -> Any:
+        return np.sin(x[place])
+
+    return sine
 
 
 def _test(system: System, mapped: PoincareMap, free: list[int], turning: tuple[int, ...]) -> ZeroOne | None:

@@ -24,6 +24,7 @@ FEWEST = 200
 """Points below which the test says little."""
 STILL = 1e-7
 """Spread over size below which a series counts as constant."""
+LIMIT = "alone it proves no chaos: a strange attractor without chaos gives K near 1 too, see the exponents"
 REGULAR, CHAOTIC = 0.3, 0.7
 """K below which the test says regular, and above which it says chaotic."""
 
@@ -42,13 +43,16 @@ class ZeroOne:
         return "regular" if self.k < REGULAR else "chaotic" if self.k > CHAOTIC else "undecided"
 
     def __str__(self) -> str:
-        return f"0–1 test on {self.points} points: K = {self.k:.3f} ({self.says})"
+        told = f"0–1 test on {self.points} points: K = {self.k:.3f} ({self.says})"
+        return f"{told}; {LIMIT}" if self.says == "chaotic" else told
 
 
 def zero_one_test(series: ArrayLike, *, scale: float = 0.0) -> ZeroOne:
     """The test on a series (points,) sampled once per period or per crossing of a section.
 
-    ``scale``: a spread below 1e-7 of it counts as none. A series sampled too finely looks regular whatever it is.
+    ``scale``: a spread below 1e-7 of it counts as none. A series sampled too finely looks regular whatever it is. A
+    strange attractor without chaos (two incommensurate forcings of a strongly damped system, say) diffuses as well, K
+    near 1, while its exponents are not positive: only the exponents tell, and ``certify_chaos`` asks both.
 
     Raises
     ------

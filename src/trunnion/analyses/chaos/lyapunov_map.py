@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
+from trunnion.analyses.chaos.lyapunov_result import shear_bound
 from trunnion.analyses.motion.long_motion import usual_time
 from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
@@ -223,8 +224,10 @@ def _all(
         if found.end is not End.REACHED:
             told.append(str(points[place]))
             return
-        result = average(found.growth / length)
+        result, bound = average(found.growth / length), shear_bound(periods, length)
         mean[place], width[place] = result.mean, result.half_width
+        # What lies within the bound may be 0 and only seem not to be.
+        width[place] = np.where(np.abs(result.mean) <= bound, np.fmax(width[place], bound), width[place])
 
     with ThreadPoolExecutor(threads if system.compiled else 1) as pool:
         for done, _ in enumerate(pool.map(one, range(len(points))), start=1):

@@ -24,6 +24,12 @@ HISTORY = 400
 """Points of a history of convergence."""
 
 
+def shear_bound(samples: int, interval: float) -> float:
+    """Twice ln N / T [1/s], N samples in time T: neighbours of a regular motion part in proportion to time where their
+    frequencies differ, so that for so long they seem to part at the rate ln t / t."""
+    return 2 * float(np.log(max(samples, 2))) / (max(samples, 1) * interval)
+
+
 @dataclass(frozen=True)
 class Run:
     """One motion: growth (samples, k) of its frame, ∫ tr ∂f/∂x dt (samples,) where it was needed, states
@@ -41,9 +47,9 @@ class LyapunovSpectrum(Result):
     """Exponents of a system's motion, the largest first.
 
     exponents, half_width (k,) [1/s]: means over all starts and half of their intervals of confidence (95 %), never
-    less than the error of the sum. by_start, by_start_half_width (starts, k). divergence [1/s]: what the sum must
-    be, NaN where not all exponents were asked for or the motion jumps. interval [s] of a sample; windowed:
-    averaged with a smooth window (see ``numerics.averages``).
+    less than the error of the sum, nor than ``shear`` where exponents lie together at 0. by_start,
+    by_start_half_width (starts, k). divergence [1/s]: what the sum must be, NaN where not all exponents were asked for
+    or the motion jumps. interval [s] of a sample; windowed: averaged with a smooth window (see ``numerics.averages``).
     """
 
     system: System
@@ -82,8 +88,13 @@ class LyapunovSpectrum(Result):
 
     @property
     def positive(self) -> bool:
-        """Whether the largest exponent is above 0 by more than its interval."""
-        return bool(self.exponents[0] - self.half_width[0] > 0)
+        """Whether the largest exponent is above 0 by more than its interval, and above what shear alone may show."""
+        return bool(self.exponents[0] > max(self.half_width[0], self.shear))
+
+    @property
+    def shear(self) -> float:
+        """What the largest exponent of a regular motion may seem to be [1/s] after so long; see ``shear_bound``."""
+        return shear_bound(self.samples, self.interval)
 
     @property
     def agree(self) -> bool:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.chaos.chaos_subject import as_system, clocks, first_starts, whole_number
-from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, Run
+from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, Run, shear_bound
 from trunnion.analyses.motion.long_motion import failure, usual_time
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
@@ -47,6 +47,8 @@ SLOW = 1e-3
 """Growth per sample below which all exponents count as this large when widths are compared to them."""
 LEFT_OUT = 10
 """The default effort leaves out one in so many samples at the beginning, besides the transient."""
+TOLD = 2048
+"""Samples after which the share done is told."""
 MOST = 10_000_000
 """Samples that fit into memory."""
 DWARFED, MISSED = 10.0, 0.01
@@ -114,8 +116,9 @@ def lyapunov_spectrum(
         total = asked or FIRST
         while True:
             more = total - runs[0].wanted
-            found = list(pool.map(_carry_on, motions, runs, repeat(more), repeat(traced)))
-            runs = [replace(r, wanted=total) for r in found]
+            for part in _parts(more):
+                runs = list(pool.map(_carry_on, motions, runs, repeat(part), repeat(traced)))
+                tell(runs[0].wanted / (asked or LAST))
             whole = all(r.end is End.REACHED for r in runs)
             late = 0 if asked or not whole else total // LEFT_OUT
             result = _result(
@@ -123,7 +126,6 @@ def lyapunov_spectrum(
             )
             if asked or not whole or total >= LAST or _known(result, precision):
                 break
-            tell(total / LAST)
             total = min(LAST, int(total * _more(result, precision)))
     outcome = _outcome(system, motions, result, runs, precision if asked is None else None)
     return replace(result, outcome=outcome)
@@ -189,6 +191,11 @@ def _carry_on(motion: Motion, run: Run, samples: int, traced: bool) -> Run:
     )  # fmt: skip
 
 
+def _parts(samples: int) -> list[int]:
+    """Samples in parts, between which the share done is told."""
+    return [min(TOLD, samples - i) for i in range(0, samples, TOLD)]
+
+
 def _later(run: Run, first: int) -> Run:
     return replace(run, growth=run.growth[first:], divergence=run.divergence[first:], states=run.states[first:])
 
@@ -209,6 +216,8 @@ def _result(
     width = np.fmax(whole.half_width, error) if whole else blank
     # The frame's order is that of growth only in the limit; equal exponents may come out exchanged.
     order = np.argsort(-mean, kind="stable")
+    bound = shear_bound(min(len(r.growth) for r in runs), interval)
+    width[order] = np.fmax(width[order], _sheared(mean[order], bound))
     return LyapunovSpectrum(
         system=system,
         exponents=mean[order],
@@ -216,7 +225,10 @@ def _result(
         starts=states,
         by_start=np.array([a.mean[order] if len(b) else blank for a, b in zip(each, batches, strict=True)]),
         by_start_half_width=np.array(
-            [a.half_width[order] if len(b) else blank for a, b in zip(each, batches, strict=True)]
+            [
+                np.fmax(a.half_width[order], _sheared(a.mean[order], bound)) if len(b) else blank
+                for a, b in zip(each, batches, strict=True)
+            ]
         ),
         divergence=divergence,
         interval=interval,
@@ -226,6 +238,15 @@ def _result(
         windowed=windowed,
         outcome=Outcome(True, "running", ""),
     )
+
+
+def _sheared(exponents: Array, bound: float) -> Array:
+    """Half-widths (k,) of exponents that may all be 0 and only seem to part: pairs within the bound of each other."""
+    near = np.abs(exponents) <= bound
+    apart = np.abs(exponents[:, None] - exponents[None, :]) <= 2 * bound
+    np.fill_diagonal(apart, False)
+    paired = near & (apart & near[None, :]).any(axis=1)
+    return np.where(paired, bound, 0.0)
 
 
 def _divergence(system: System, runs: list[Run], interval: float, windowed: bool) -> float:
@@ -246,7 +267,8 @@ def _size(result: LyapunovSpectrum) -> float:
 def _known(result: LyapunovSpectrum, precision: float, regular: float = REGULAR) -> bool:
     """Whether a positive exponent is known to ``precision``, or one that is not is well resolved."""
     width, widest = 2 * result.half_width[0], 2 * float(np.max(result.half_width))
-    resolved = width <= regular * _size(result) and widest <= OTHERS * regular * _size(result)
+    floor = 2 * result.shear if regular >= RESOLVED else 0.0  # in the end: no average knows more of shear
+    resolved = width <= max(regular * _size(result), floor) and widest <= max(OTHERS * regular * _size(result), floor)
     return bool((result.positive and width <= precision * result.largest) or resolved)
 
 

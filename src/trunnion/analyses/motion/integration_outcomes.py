@@ -12,6 +12,9 @@ from trunnion.systems.user_functions import WRONG_SHAPE, parameter_tuple, store
 GROWN = 1e6
 """Growth of the state over a run beyond which a vanishing step is called a blow-up."""
 
+TINY = 1e-5
+"""Size of all states over their scale below which the scale is what to change."""
+
 
 def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[str, ...]) -> Outcome:
     """The outcome of ``run``; ``guards`` name the system's guards and then the caller's events."""
@@ -28,7 +31,7 @@ def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[
             False,
             "step limit",
             f"stopped {at} after {run.steps} steps; raise most_steps, ask for a shorter time, or loosen "
-            f"tolerance = {tolerance:g}",
+            f"tolerance = {tolerance:g}{_scaled(system, run)}",
         )
     if run.end is End.CHATTER:
         name = guards[int(run.event_which[-1])]
@@ -58,8 +61,18 @@ def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[
         False,
         "step too small",
         f"no step {at} is small enough for tolerance = {tolerance:g} ({value}); loosen the tolerance, or describe a "
-        "jump in the right-hand side by regimes",
+        f"jump in the right-hand side by regimes{_scaled(system, run)}",
     )
+
+
+def _scaled(system: System, run: Trajectory) -> str:
+    """Advice where the states move in other sizes than their scale, in which errors are measured."""
+    moved = np.abs(run.state[np.isfinite(run.state).all(axis=1)]).max(axis=0, initial=0.0)
+    share = moved / np.asarray(system.scale)
+    if not share.any() or TINY < share.max() < 1 / TINY:
+        return ""
+    given = ", ".join(f"{size:.1g}" for size in np.maximum(moved, moved.max() * TINY))
+    return f"; its states are about {moved.max():.1g} where their scale says 1 is usual: give scale = ({given})"
 
 
 def _pass_on_interrupt(system: System) -> None:

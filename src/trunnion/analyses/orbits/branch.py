@@ -13,16 +13,17 @@ Bifurcation and Chaos 1, 1991):
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
+from trunnion.numerics.continuation.newton import solve
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.verdict import Verdict
+from trunnion.results.verdict import Verdict, verdicts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,8 +36,6 @@ CLOSE = 1e-9
 """Size of the last correction of a point, in units of the scales."""
 STEP, LEAST_STEP = 0.1, 1e-8
 """Largest and smallest step along the branch, in units of the scales."""
-UNTOLD = 1e-6
-"""A spectral radius nearer to 1 than this is not told from it."""
 NOISE = 1e-8
 """A test function below this on both sides changes sign by rounding, as Π(σ_i σ_j − 1) does without damping."""
 FOLLOWING = 0.15
@@ -87,6 +86,9 @@ class Problem(Protocol):
     def multipliers(self, point: CurvePoint) -> Complex:
         """Floquet multipliers by falling modulus; NaN where the motion cannot be computed."""
 
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """What the spectral radius may be off by; any bound will do that decides on which side of 1 it lies."""
+
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""
 
@@ -134,6 +136,8 @@ class PeriodicBranch:
     curve_unit: str
     special: tuple[SpecialPoint, ...]
     outcome: Outcome
+    problem: Problem = field(repr=False)
+    unknowns: Array = field(repr=False)
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -146,12 +150,19 @@ class PeriodicBranch:
         return tuple(p for p in self.special if p.kind == "fold")
 
     def at(self, value: float) -> list[tuple[Array, Verdict]]:
-        """Starts and verdicts of all motions of the branch at a value of the parameter, interpolated linearly."""
+        """Starts and verdicts of all motions of the branch at a value of the parameter.
+
+        Each is computed there, from a guess between its neighbours, as exactly as the points of the branch; where that
+        does not converge, as beside a grazing, the guess itself is given with the verdict "undecided".
+        """
         side = self.parameter - value
         found = []
-        for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
-            share = 0.0 if side[i] == side[i + 1] else side[i] / (side[i] - side[i + 1])
-            found.append((self.start[i] + share * (self.start[i + 1] - self.start[i]), Verdict(int(self.verdict[i]))))
+        for i in np.flatnonzero((side[:-1] * side[1:] < 0) | (side[:-1] == 0)):
+            share = side[i] / (side[i] - side[i + 1]) if side[i] else 0.0
+            guess = self.unknowns[i] + share * (self.unknowns[i + 1] - self.unknowns[i])
+            found.append(_motion_at(self.problem, guess, value))
+        if len(side) and side[-1] == 0:
+            found.append((self.start[-1], Verdict(int(self.verdict[-1]))))
         return found
 
     @property
@@ -358,9 +369,7 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
     observed = [problem.observed(p) for p in points]
     multipliers = np.array([problem.multipliers(p) for p in points]).reshape(-1, n)
     radius = np.abs(multipliers).max(axis=1) if len(points) else np.zeros(0)
-    codes = np.where(
-        radius < 1 - UNTOLD, Verdict.STABLE, np.where(radius > 1 + UNTOLD, Verdict.UNSTABLE, Verdict.UNDECIDED)
-    )
+    errors = np.array([problem.radius_error(p, float(r)) for p, r in zip(points, radius, strict=True)])
     special = tuple(
         SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])
         for point, kind, values, seen in zip(points, kinds, multipliers, observed, strict=True)
@@ -373,7 +382,7 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         parameter=np.array([p.parameter for p in points]),
         start=np.array([problem.start(p) for p in points]).reshape(-1, n),
         multipliers=multipliers,
-        verdict=codes.astype(np.int8),
+        verdict=verdicts(radius, errors),
         peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.over.curves)),
         largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.over.curves)),
         amplitude=np.array([o[2] for o in observed]).reshape(-1, n),
@@ -381,4 +390,24 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         curve_unit=problem.over.curve_unit,
         special=special,
         outcome=outcome,
+        problem=problem,
+        unknowns=np.array([p.z for p in points]).reshape(len(points), -1),
     )
+
+
+def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[Array, Verdict]:
+    """Start and verdict of the motion near ``guess`` (unknowns and parameter) at a value of the parameter."""
+    n = len(guess) - 1
+    scale = problem.scale[:n]
+
+    def residual(x: Array) -> tuple[Array, Array]:
+        left, slope = problem.equations(np.append(x * scale, value))
+        return left, slope[:, :n] * scale
+
+    root = solve(residual, guess[:n] / scale, np.ones(n), tolerance=CLOSE)
+    z = np.append(root.x * scale if root.converged else guess[:n], value)
+    point = CurvePoint(z, np.zeros_like(z), root.iterations)
+    if not root.converged:
+        return problem.start(point), Verdict.UNDECIDED
+    radius = float(np.abs(problem.multipliers(point)).max())
+    return problem.start(point), Verdict(int(verdicts(radius, problem.radius_error(point, radius))))

@@ -6,24 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.errors import InputError
-from trunnion.results.verdict import Verdict
+from trunnion.results.verdict import Verdict, verdicts
 
 CLOSED = 1e-11
 """How well an orbit must close, in units of its size."""
-UNTOLD = 1e-9
-"""A spectral radius nearer to 1 than this is not told from it."""
+RADIUS_ERROR = 1e-9
+"""What the spectral radius of an exact orbit may be off by; nearer to 1 it is undecided."""
 SETTLING = (0, 50, 500)
 """Periods that pass before each attempt at shooting."""
 
 
 def verdict_of(multipliers: NDArray[np.complex128]) -> Verdict:
-    """The verdict on multipliers known to rounding."""
-    radius = float(np.abs(multipliers).max())
-    if not np.isfinite(radius):
-        return Verdict.FAILED
-    if abs(radius - 1) <= UNTOLD:
-        return Verdict.UNDECIDED
-    return Verdict.STABLE if radius < 1 else Verdict.UNSTABLE
+    """The verdict on multipliers of an exact orbit."""
+    return Verdict(int(verdicts(np.abs(multipliers).max(), RADIUS_ERROR)))
 
 
 def checked_periods(periods: int) -> int:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
+from trunnion.analyses.orbits.closing import RADIUS_ERROR
 from trunnion.analyses.orbits.exact_orbit import ExactOrbit, Shooting, by_modulus, orbit_near, refuse_found_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
@@ -129,6 +130,9 @@ class _Exact:
     def multipliers(self, point: CurvePoint) -> Complex:
         kept = self.shooting.kept
         return by_modulus(self.passage(point).tangents[np.ix_(kept, kept)])
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        return RADIUS_ERROR
 
     def changes(self, point: CurvePoint) -> int:
         return len(self.passage(point).events)

@@ -46,6 +46,8 @@ TAIL, KINKED_TAIL = 1e-6, 1e-4
 SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
 """Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
 MOST_STEPS = 200_000
+RADIUS_ERROR = 1e-6
+"""What the spectral radius may be off by; nearer to 1 it is undecided."""
 
 
 @dataclass(frozen=True)
@@ -313,6 +315,10 @@ class _Balance:
             return np.full(self.size, np.nan, dtype=complex)
         values = np.linalg.eigvals(run.final[1:]).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values))])
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """A series closes to its tail, not to rounding."""
+        return RADIUS_ERROR
 
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""

@@ -33,6 +33,8 @@ from trunnion.systems.second_order import SecondOrder, Spring
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 STEP = 0.1
+RADIUS_ERROR = 1e-6
+"""What the spectral radius may be off by; nearer to 1 it is undecided."""
 PER_HARMONIC, FEWEST_SAMPLES = 8, 256
 """Samples per harmonic, for smooth forces and to find the crossings of kinks."""
 MAGNUS = 64
@@ -373,6 +375,10 @@ class _Balance:
 
     def multipliers(self, point: CurvePoint) -> Complex:
         return self.judged(point)[0]
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """A series closes to its tail, not to rounding."""
+        return RADIUS_ERROR
 
     def changes(self, point: CurvePoint) -> int:
         return self.judged(point)[1]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
-from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
+from trunnion.analyses.orbits.periodic_orbit import COARSER, multipliers_of, periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
@@ -22,6 +22,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
+from trunnion.numerics.spectrum import spectral_radius
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
@@ -29,6 +30,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TOLERANCE = 1e-11
 MOST_POINTS = 2000
+CLEAR = 1e-6
+"""Distance of a spectral radius from 1 at which no error of the integration matters."""
 MOST_INTEGRATION_STEPS = 200_000
 
 
@@ -100,7 +103,7 @@ class _Shooting:
     def start(self, point: CurvePoint) -> Array:
         return point.z[:-1]
 
-    def shoot(self, z: Array, tangents: bool = True) -> Trajectory | None:
+    def shoot(self, z: Array, tangents: bool = True, looser: float = 1.0) -> Trajectory | None:
         """One period from x at λ, with Φ in its tangents; None where there is no such motion."""
         n = len(z) - 1
         try:
@@ -112,7 +115,7 @@ class _Shooting:
         block = np.vstack([z[:n], np.eye(n)]) if tangents else z[None, :n]
         run = integrate(
             system.equations, 0.0, self.periods * system.forcing_period, block,
-            regime=system.regime_at(0.0, z[:n]), tolerance=self.tolerance, dense=False,
+            regime=system.regime_at(0.0, z[:n]), tolerance=looser * self.tolerance, dense=False,
             most_steps=MOST_INTEGRATION_STEPS,
         )  # fmt: skip
         return run if run.end is End.REACHED else None
@@ -149,6 +152,17 @@ class _Shooting:
             return np.full(len(point.z) - 1, np.nan, dtype=complex)
         values = np.linalg.eigvals(run.final[1:]).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values))])
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """Near 1 estimated as that of a single orbit is; farther away it does not matter."""
+        run = self.closed(point)
+        if abs(radius - 1) > CLEAR or run is None:
+            return CLEAR
+        coarse, system = self.shoot(point.z, looser=COARSER), self.over.at(point.parameter)
+        if coarse is None:
+            return CLEAR
+        missed = float(np.abs((run.final[0] - point.z[:-1]) / np.asarray(system.scale)).max())
+        return float(spectral_radius(*multipliers_of(system, run, coarse, missed))[1])
 
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""

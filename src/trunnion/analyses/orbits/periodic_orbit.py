@@ -38,6 +38,10 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TOLERANCE = 1e-11
 SAMPLES = 512
+AT_REST = 1e-7
+"""Movement over a period, in units of the states' scale and size, that counts as none: what shooting leaves is less."""
+COARSER = 30.0
+"""How much larger than its own the tolerance is against which a motion's error is measured."""
 RUNAWAY = 1e-4
 """Residual, in units of the states' scale, that no motion leaves which really closes."""
 MOST_SHARES = 12
@@ -54,10 +58,10 @@ class PeriodicOrbit:
 
     start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
     (n,) by falling modulus with multiplier_error (n,); spectral_radius and error_estimate leave out the
-    trivial multiplier of an autonomous system, and the ``speed_multiplier`` of a free line none of whose torques
-    depends on the speed (NaN elsewhere); monodromy (n, n); liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|,
-    NaN where a jump takes part; residual: of the period, in units of the states' scale; regime_changes: how
-    often the motion changes its regime in a period.
+    trivial multiplier of an autonomous system that moves (one at rest has none: outcome "at rest"), and the
+    ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); monodromy (n, n);
+    liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the
+    states' scale; regime_changes: how often the motion changes its regime in a period.
     """
 
     system: System
@@ -154,6 +158,7 @@ class PeriodicOrbit:
             return f"no periodic motion of {self.system.name}: {self.outcome}"
         changes = f", {self.regime_changes} changes of regime" if self.system.regimes else ""
         tangents = "" if self.system.exact_tangents else "; tangents differenced"
+        what = "equilibrium" if self.outcome.kind == "at rest" else "periodic motion"
         rows = [
             with_unit(f"  {name}: {mean:.6g} ± {peak / 2:.6g}", unit)
             for name, mean, peak, unit in zip(
@@ -162,7 +167,7 @@ class PeriodicOrbit:
         ]
         return "\n".join(
             [
-                f"{self.verdict} periodic motion of {self.system.name}, period {self.period:.8g} s{changes}: "
+                f"{self.verdict} {what} of {self.system.name}, period {self.period:.8g} s{changes}: "
                 f"{MEANING[self.verdict]}",
                 f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
                 f"{self._growth}{tangents}",
@@ -275,7 +280,7 @@ def torque_driven_orbit(
     def shots_at(omega: float) -> Shots:
         system = at_speed(omega)
         assert system.forcing_period is not None
-        return Shots(system, phase, system.forcing_period, False, tolerance, neutral=neutral(omega))
+        return Shots(system, phase, system.forcing_period, False, tolerance, turns=True, neutral=neutral(omega))
 
     root = solve(residual, np.append(start, speed), scale, tolerance=200 * tolerance)
     found = float(root.x[n])
@@ -316,8 +321,15 @@ class Shots:
     length: float
     forced: bool
     tolerance: float
+    turns: bool = False
     last: Trajectory | None = None
     neutral: Callable[[System, Array], Neutral] | None = None
+
+    def rests(self, run: Trajectory) -> bool:
+        """Whether an autonomous motion stands still: it then has no phase, and so no multiplier 1 of its own. A line
+        that turns has one, from its rotation."""
+        size = np.asarray(self.system.scale) + np.abs(run.state).max(axis=0)
+        return not (self.forced or self.turns) and bool(np.all(np.ptp(run.state, axis=0) <= AT_REST * size))
 
     def run(self, x: Array, length: float, tolerance: float, dense: bool = False) -> Trajectory:
         block = np.vstack([x, np.eye(self.system.size)])
@@ -365,28 +377,21 @@ def judged(shots: Shots, root: Root) -> PeriodicOrbit:
         return _failed(shots, root)
     x, length = root.x[:n], shots.length if shots.forced else float(root.x[n])
     run = shots.run(x, length, shots.tolerance, dense=True)
-    coarse = shots.run(x, length, 30 * shots.tolerance)
+    coarse = shots.run(x, length, COARSER * shots.tolerance)
     matrix, scale = run.final[1:].T, np.asarray(system.scale)
-    scaled = matrix * scale[None, :] / scale[:, None]
-    rough = coarse.final[1:].T * scale[None, :] / scale[:, None]
-    # What thirty times the tolerance changes bounds what is left; the orbit's own error moves Φ as well.
-    error = float(np.linalg.norm(scaled - rough, 2)) / 3 + root.size * float(np.linalg.norm(scaled, 2))
-    if not system.exact_tangents:
-        error += 1e-10 * float(np.linalg.norm(scaled, 2))
-    values, bound = multipliers(scaled, np.array(error))
-    order = np.argsort(-np.abs(values))
-    values, bound = values[order], bound[order]
+    values, bound = multipliers_of(system, run, coarse, root.size)
     kept, off = values, bound
-    speed = np.nan
+    speed, rests = np.nan, shots.rests(run)
     if shots.neutral is not None:
+        scaled, error = _scaled_matrix(system, run, coarse, root.size)
         kept, off, speed = _beside_neutral(scaled, error, shots.neutral(system, x), scale)
-    elif not shots.forced:
+    elif not (shots.forced or rests):
         others = np.delete(np.arange(n), int(np.argmin(np.abs(values - 1))))
         kept, off = values[others], bound[others]
     radius, radius_error = spectral_radius(kept, off) if len(kept) else (np.array(0.0), np.array(0.0))
     divergence = _divergence(system, run)
     undamped = bool(abs(divergence) < 1e-10 * n)
-    sign, log_det = np.linalg.slogdet(scaled)
+    sign, log_det = np.linalg.slogdet(matrix * scale[None, :] / scale[:, None])
     jumps = system.regimes is not None and system.regimes.jump is not None and len(run.event_time) > 0
     defect = float("nan") if jumps else float(abs(log_det - divergence)) if sign > 0 else float("inf")
     time = shots.phase + length * np.arange(SAMPLES + 1) / SAMPLES
@@ -396,7 +401,9 @@ def judged(shots: Shots, root: Root) -> PeriodicOrbit:
         # Relative to a motion that ran away, what is left is small.
         return _failed(shots, root, _unbounded(system, x))
     words = f"closes to {root.size:.1e} after {root.iterations} iterations"
-    if (shares := _shares(shots, run, x, length)) > 1:
+    if rests:
+        words = f"the motion is at rest: an equilibrium, of which every multiplier counts; {words}"
+    elif (shares := _shares(shots, run, x, length)) > 1:
         words += f"; it closes {shares} times in this period: the least period is {length / shares:.8g} s"
     return PeriodicOrbit(
         system=system,
@@ -413,7 +420,7 @@ def judged(shots: Shots, root: Root) -> PeriodicOrbit:
         liouville_defect=defect,
         residual=root.size,
         iterations=root.iterations,
-        outcome=Outcome(True, "found", words),
+        outcome=Outcome(True, "at rest" if rests else "found", words),
         trajectory=run,
         speed_multiplier=speed,
     )
@@ -431,6 +438,27 @@ def _beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array)
         return values, bound, np.nan
     place = along(rest, (neutral.drifts / scale) @ basis)
     return np.delete(values, place), np.delete(bound, place), float(values[place].real)
+def multipliers_of(system: System, run: Trajectory, coarse: Trajectory, residual: float) -> tuple[Complex, Array]:
+    """Multipliers (n,) of a closed motion by falling modulus, and what each may be off by (n,).
+
+    run, coarse : the motion with its tangents, and again at ``COARSER`` times the tolerance; residual : how far it
+    misses closing, in units of the states' scale.
+    """
+    scaled, error = _scaled_matrix(system, run, coarse, residual)
+    values, bound = multipliers(scaled, np.array(error))
+    order = np.argsort(-np.abs(values))
+    return values[order], bound[order]
+
+
+def _scaled_matrix(system: System, run: Trajectory, coarse: Trajectory, residual: float) -> tuple[Array, float]:
+    """Φ (n, n) in units of the states' scales, and what it may be off by in the 2-norm."""
+    scale = np.asarray(system.scale)
+    scaled, rough = (r.final[1:].T * scale[None, :] / scale[:, None] for r in (run, coarse))
+    # What a coarser tolerance changes bounds what is left; the orbit's own error moves Φ as well.
+    error = float(np.linalg.norm(scaled - rough, 2)) / 3 + residual * float(np.linalg.norm(scaled, 2))
+    if not system.exact_tangents:
+        error += 1e-10 * float(np.linalg.norm(scaled, 2))
+    return scaled, error
 
 
 def _unbounded(system: System, x: Array) -> Outcome:

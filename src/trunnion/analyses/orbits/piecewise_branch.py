@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
-from trunnion.analyses.orbits.closing import refuse_speed
+from trunnion.analyses.orbits.closing import RADIUS_ERROR, refuse_speed
 from trunnion.analyses.orbits.exact_branch import exact_branch
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.driveline.driveline import Driveline
@@ -145,6 +145,9 @@ class _Exact:
     def multipliers(self, point: CurvePoint) -> Complex:
         values = np.linalg.eigvals(self.passage(point.z).tangents[:, :2]).astype(complex)
         return np.asarray(values[np.argsort(-np.abs(values))])
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        return RADIUS_ERROR
 
     def changes(self, point: CurvePoint) -> int:
         return len(self.passage(point.z).crossings)
