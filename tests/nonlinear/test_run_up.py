@@ -20,7 +20,8 @@ def test_a_slow_passage_reaches_the_steady_amplitude_and_a_fast_one_does_not() -
     # The envelope follows the steady response away from the peak too.
     steady = np.interp(31.0, slow.steady.speed, slow.steady.largest[:, 0])
     assert np.interp(31.0, slow.speed, slow.largest[:, 0]) == pytest.approx(steady, rel=0.05)
-    assert "times the largest steady torque" in slow.describe("rpm")
+    assert "times the largest steady vibration found" in slow.describe("rpm")
+    np.testing.assert_allclose(slow.peak_vibration, slow.steady_vibration, rtol=0.05)
     assert slow.data.sizes["shaft"] == 2 and np.isnan(quick.steady_peak).all()
 
 
@@ -90,6 +91,34 @@ def test_an_accelerated_rigid_line_carries_its_inertia() -> None:
     passage = tn.run_up(geared, 10.0, 30.0, acceleration=20.0, steady=0)
     np.testing.assert_allclose(passage.inertia_torque, [2 * 20 + 4 * 20 / 4, 4 * 20 / 2])
     np.testing.assert_allclose(-passage.simulation.torque[-1], passage.inertia_torque, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("ramp", "low", "high"), [(None, 1.0, 1.04), (0.0, 1.85, 2.0)], ids=["ramped", "at once"])
+def test_an_acceleration_that_sets_in_smoothly_does_not_ring(ramp: float | None, low: float, high: float) -> None:
+    """Without joints the torque is that of the inertia; set in at once it rises to twice that and rings."""
+    line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=2000.0, damping=0.4), tn.Disk(inertia=2.0)])
+    for first, last in ((10.0, 60.0), (60.0, 10.0)):
+        run = tn.run_up(line, first, last, acceleration=20.0, ramp=ramp, steady=0)
+        assert run.inertia_torque[0] == pytest.approx(40.0)
+        assert low < run.peak_torque[0] / 40.0 < high
+        assert run.peak_vibration[0] == pytest.approx(run.peak_torque[0] - 40.0, abs=0.03 * 40.0)
+        assert run.simulation.input_speed[[0, -1]] == pytest.approx([first, last])
+    assert run.ramp == (0.0 if ramp == 0 else pytest.approx(3 * 2 * np.pi / np.sqrt(1000.0)))
+    with pytest.raises(tn.InputError, match="does not fit"):
+        tn.run_up(line, 10.0, 60.0, acceleration=20.0, ramp=6.0)
+
+
+def test_the_quasi_static_torque_holds_loads_by_speed_and_inertia() -> None:
+    """A stiff geared line with loads by speed, far below its resonance: what vibrates is next to nothing."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e6, damping=2000.0), tn.Disk(inertia=2.0, load_torque=30.0),
+            tn.Ratio(ratio=2.0), tn.Shaft(stiffness=1e6, damping=600.0), tn.Disk(inertia=4.0, viscous_load=0.5),
+        ]
+    )  # fmt: skip
+    run = tn.run_up(line, 10.0, 30.0, acceleration=20.0, steady=0)
+    np.testing.assert_allclose(run.peak_torque, [30 + 40 + 47.5 / 2, 40 + 0.5 * 15], rtol=1e-4)
+    assert np.all(run.peak_vibration < run.inertia_torque / 35)
 
 
 REFUSED = [

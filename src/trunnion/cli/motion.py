@@ -154,13 +154,17 @@ def run_up(
     acceleration: Annotated[
         str, typer.Option("--acceleration", "-a", help="Per second, as a speed: 100rpm.")
     ] = "100 rpm",
+    ramp: Annotated[
+        float | None,
+        typer.Option("--ramp", help="Seconds over which it sets in; default: three periods of the slowest mode."),
+    ] = None,
     limit: Annotated[str | None, typer.Option("--limit", help='Torque to be kept by every shaft: "2 kN*m".')] = None,
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
     as_json: Json = False,
 ) -> None:
-    """Passage through resonance at constant acceleration, against the steady response.
+    """Passage through resonance at an acceleration that sets in smoothly, against the steady response.
 
     Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
     """
@@ -181,11 +185,11 @@ def run_up(
             raise InputError(error.problem, key="--limit", value=limit, remedy=error.remedy) from None
     _check(to)
     with output.compile_notice():
-        result = compute(line, low, high, acceleration=rate)
+        result = compute(line, low, high, acceleration=rate, ramp=ramp)
         safe = None
         if torque is not None:
             tried = (rate / 4, rate * 4)
-            safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9)
+            safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
     written = _written(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
     if as_json:
         content = _run_up_json(result, written)
@@ -391,11 +395,19 @@ def _run_up_json(result: RunUp, written: list[Path]) -> dict[str, Any]:
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
         "acceleration": result.acceleration,
+        "ramp": result.ramp,
         "shafts": [
-            {"name": name, "peak_torque": peak, "peak_speed": at, "largest_steady_torque": steady}
-            for name, peak, at, steady in zip(
-                result.shafts, result.peak_torque, result.peak_speed, result.steady_peak, strict=True
-            )
+            {
+                "name": name,
+                "peak_torque": result.peak_torque[i],
+                "peak_speed": result.peak_speed[i],
+                "inertia_torque": result.inertia_torque[i],
+                "peak_vibration": result.peak_vibration[i],
+                "vibration_speed": result.vibration_speed[i],
+                "largest_steady_torque": result.steady_peak[i],
+                "largest_steady_vibration": result.steady_vibration[i],
+            }
+            for i, name in enumerate(result.shafts)
         ],
         "written": [str(path) for path in written],
     }

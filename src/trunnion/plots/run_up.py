@@ -40,7 +40,7 @@ def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str 
     axes.set_ylabel(f"largest torque of {result.shafts[i]} [N·m]", fontsize=TEXT, color=INK)
     axes.set_ylim(bottom=0)
     axes.grid(which="major", color="#dddddd", lw=0.6)
-    low, high = result.simulation.profile.speed
+    low, high = result.simulation.profile.speed[0], result.simulation.profile.speed[-1]
     words = f"{show_speed(low, unit)} to {show_speed(high, unit)} at {show_speed(result.acceleration, unit)}/s"
     axes.set_title(words, fontsize=SMALL, color=FAINT, loc="left")
     plain(axes)

@@ -1,13 +1,19 @@
 """``run_up``: passage through resonance at constant acceleration, against the steady response.
 
 A line that passes a resonance quickly never reaches its steady amplitude; one that passes slowly does, and one
-that starts too briskly is twisted by its own inertia. ``safe_accelerations`` finds how fast and how slowly a line
-may be run up for a torque that must not be exceeded.
+that is accelerated briskly is twisted by its own inertia. The torque is therefore told apart: what the loads and the
+inertia behind a shaft ask for at each speed and acceleration (quasi-static), and what vibrates about that.
+
+The acceleration sets in smoothly, as ½A(1 − cos πt/T) over a ramp of T seconds: set in at once it would twist the line
+by twice its inertia torque and leave the slowest mode ringing. Over three of its periods that ringing is at most 1/35
+of the inertia torque, cos(ωT/2)/((ωT/π)² − 1) without damping.
+
+``safe_accelerations`` finds how fast and how slowly a line may be run up for a torque that must not be exceeded.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.motion.order_map import times_at_angles
 from trunnion.analyses.motion.simulate import LineSimulation, simulate
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
@@ -36,6 +43,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 STEADY_SPEEDS = 81
+RAMP_PERIODS = 3.0
+"""Of the slowest mode, over which the acceleration sets in."""
+RAMP_PIECES = 48
+"""Straight pieces of the speed over the ramp; each changes the acceleration by 1/15 of its end value at most."""
+STATIC_SPEEDS = 65
+"""Speeds at which the static torque is computed; between them it is interpolated."""
 MOST_TURNS = 20_000
 """Turns of one run, about a minute of computing."""
 
@@ -43,10 +56,12 @@ MOST_TURNS = 20_000
 @dataclass(frozen=True)
 class SteadyResponse:
     """Steady torque over speed: speed (points,) [rad/s]; largest (points, shaft), the largest |torque| [N m] of the
-    periodic motion; verdict (points,) codes. In order along the branch, which may fold back."""
+    periodic motion; swing (points, shaft): half of its peak-to-peak; verdict (points,) codes. In order along the
+    branch, which may fold back."""
 
     speed: Array
     largest: Array
+    swing: Array
     verdict: NDArray[np.int8]
 
 
@@ -55,15 +70,18 @@ class RunUp:
     """A passage at constant acceleration.
 
     speed (turns,) [rad/s] in the middle of each turn, or of the little more that leaves none over; upper and lower
-    (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; steady: the steady
-    response in the same range (None if not asked for).
+    (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; vibration (turns,
+    shaft): the largest distance of the torque from the quasi-static one, which loads and inertia ask for; ramp [s]:
+    over which the acceleration sets in; steady: the steady response in the same range (None if not asked for).
     """
 
     simulation: LineSimulation
     acceleration: float
+    ramp: float
     speed: Array
     upper: Array
     lower: Array
+    vibration: Array
     steady: SteadyResponse | None
 
     @property
@@ -98,14 +116,28 @@ class RunUp:
             return np.full(len(self.shafts), np.nan)
         return np.asarray(np.nanmax(self.steady.largest, axis=0))
 
+    @property
+    def peak_vibration(self) -> Array:
+        """Largest distance of every shaft's torque (shaft,) [N m] from the quasi-static one."""
+        return np.asarray(self.vibration.max(axis=0))
+
+    @property
+    def vibration_speed(self) -> Array:
+        """Input speed [rad/s] at which each shaft has it."""
+        return self.speed[self.vibration.argmax(axis=0)]
+
+    @cached_property
+    def steady_vibration(self) -> Array:
+        """Half of the largest peak-to-peak torque of every shaft among the steady motions found [N m]; NaN without."""
+        if self.steady is None or not np.isfinite(self.steady.swing).any():
+            return np.full(len(self.shafts), np.nan)
+        return np.asarray(np.nanmax(self.steady.swing, axis=0))
+
     @cached_property
     def inertia_torque(self) -> Array:
-        """What accelerates the inertia behind each shaft (shaft,) [N m], were it rigid and its joints straight."""
-        line = self.simulation.line
-        topo = line.assembly.topology
-        coefficients = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False)
-        ratios = np.abs(np.array([float(q) for q in topo.speed_ratio]))
-        return np.abs(static_torque(topo, coefficients.inertia * ratios * self.acceleration)[0])
+        """What accelerates the inertia behind each shaft (shaft,) [N m] at the full acceleration, were it rigid and its
+        joints straight."""
+        return np.abs(_inertia_torque(self.simulation.line.assembly)) * self.acceleration
 
     @property
     def data(self) -> xr.Dataset:
@@ -119,14 +151,19 @@ class RunUp:
             "peak_torque": ("shaft", self.peak_torque, {"units": "N*m"}),
             "peak_speed": ("shaft", self.peak_speed, {"units": "rad/s"}),
             "inertia_torque": ("shaft", self.inertia_torque, {"units": "N*m"}),
+            "vibration": (("turn", "shaft"), self.vibration, {"units": "N*m"}),
+            "peak_vibration": ("shaft", self.peak_vibration, {"units": "N*m"}),
+            "vibration_speed": ("shaft", self.vibration_speed, {"units": "rad/s"}),
         }
         coords: dict[str, Any] = {"shaft": list(self.shafts)}
         if self.steady is not None:
             parts["steady_torque"] = (("steady_speed", "shaft"), self.steady.largest, {"units": "N*m"})
+            parts["steady_swing"] = (("steady_speed", "shaft"), self.steady.swing, {"units": "N*m"})
             parts["steady_verdict"] = ("steady_speed", self.steady.verdict)
             coords["steady_speed"] = ("steady_speed", self.steady.speed, {"units": "rad/s"})
         attrs = {
             "acceleration": self.acceleration,
+            "ramp": self.ramp,
             "outcome": self.outcome.kind,
             "outcome_sentence": self.outcome.sentence,
         }
@@ -138,22 +175,33 @@ class RunUp:
 
     def describe(self, unit: str = "rad/s") -> str:
         """The result in a few lines, speeds in ``unit``."""
-        low, high = self.simulation.profile.speed
+        low, high = self.simulation.profile.speed[0], self.simulation.profile.speed[-1]
         rows = []
         for i, name in enumerate(self.shafts):
-            against = ""
-            if np.isfinite(self.steady_peak[i]):
-                share = self.peak_torque[i] / self.steady_peak[i]
-                against = f"; {share:.3g} times the largest steady torque found, {self.steady_peak[i]:.5g} N m"
+            against = self._against(i)
             rows.append(
-                f"  {name}: at most {self.peak_torque[i]:.5g} N m, at {show_speed(self.peak_speed[i], unit)}{against}; "
-                f"{self.inertia_torque[i]:.5g} N m accelerate what is behind it"
+                f"  {name}: at most {self.peak_torque[i]:.5g} N m, at {show_speed(self.peak_speed[i], unit)}; "
+                f"{self.inertia_torque[i]:.5g} N m accelerate what is behind it, ± {self.peak_vibration[i]:.5g} N m "
+                f"vibrate at {show_speed(self.vibration_speed[i], unit)}{against}"
             )
         head = (
             f"run from {show_speed(low, unit)} to {show_speed(high, unit)} at "
-            f"{show_speed(self.acceleration, unit)}/s: {len(self.speed)} turns in {self.simulation.end:.5g} s"
+            f"{show_speed(self.acceleration, unit)}/s, set in over {self.ramp:.3g} s: {len(self.speed)} turns in "
+            f"{self.simulation.end:.5g} s"
         )
         return "\n".join([head, *rows, f"  {self.outcome}"])
+
+    def _against(self, i: int) -> str:
+        """When the vibration of a shaft is largest, where that tells, and the steady one beside it."""
+        profile = self.simulation.profile
+        gained, passed = profile.at(self.ramp) - profile.speed[0], self.vibration_speed[i] - profile.speed[0]
+        setting_in = abs(passed) < abs(gained)
+        words = " while the acceleration sets in" if setting_in else ""
+        if not np.isfinite(self.steady_vibration[i]):
+            return words
+        share = self.peak_vibration[i] / max(self.steady_vibration[i], 1e-300)
+        times = "against" if setting_in else f"{share:.3g} times"
+        return f"{words}, {times} the largest steady vibration found, ± {self.steady_vibration[i]:.5g} N m"
 
     def __str__(self) -> str:
         return self.describe()
@@ -167,15 +215,18 @@ def run_up(
     last: float,
     *,
     acceleration: float,
+    ramp: float | None = None,
     steady: int = STEADY_SPEEDS,
     tolerance: float = 1e-9,
 ) -> RunUp:
-    """Run a line from speed ``first`` to ``last`` at constant acceleration.
+    """Run a line from speed ``first`` to ``last`` at an acceleration that sets in smoothly and then stays.
 
     Parameters
     ----------
     first, last : input speeds [rad/s]; a lower ``last`` runs down.
     acceleration : its magnitude [rad/s²].
+    ramp : time [s] over which the acceleration sets in; by default three periods of the slowest mode, at most until
+        half of the speed range is passed; 0 for at once.
     steady : number of speeds, at least, at which the steady periodic motion is computed for comparison; 0 leaves
         it out.
 
@@ -183,15 +234,18 @@ def run_up(
 
     Raises
     ------
-    InputError : speeds or acceleration not positive; a free line; more than 20 000 turns.
+    InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a free line; more
+        than 20 000 turns.
     """
-    profile = _profile(first, last, acceleration)
+    _check(first, last, acceleration)
     prepared = line_system(line, first)
     if prepared.assembly.topology.free:
         raise InputError(
             "starts free, so its speed cannot be prescribed", element="driveline",
             remedy="put a ConstantSpeed in front",
         )  # fmt: skip
+    length = _ramp(prepared.assembly, first, last, acceleration, ramp)
+    profile = _profile(first, last, acceleration, length)
     begun = prepared.rest()
     if prepared.system.forcing_period is not None:
         orbit = periodic_orbit(prepared.system, start=begun, settle=False)
@@ -201,13 +255,21 @@ def run_up(
     angle = float(profile.angle(run.end))
     windows = max(int(angle / (2 * np.pi)), 1)
     edges = np.append(times_at_angles(run, angle * np.arange(windows) / windows), run.end)
-    seen = extremes_in(lambda times: run.motion_at(times).torque, run.cuts, edges)
+    quasi_static, count = _quasi_static(prepared.assembly, profile, length, first, last), len(run.shafts)
+
+    def curves(times: Array) -> Array:
+        torque = run.motion_at(times).torque
+        return np.hstack([torque, torque - quasi_static(times)])
+
+    seen = extremes_in(curves, run.cuts, edges)
     return RunUp(
         simulation=run,
         acceleration=float(acceleration),
+        ramp=length,
         speed=profile.at(times_at_angles(run, angle * (np.arange(windows) + 0.5) / windows)),
-        upper=seen.high,
-        lower=seen.low,
+        upper=seen.high[:, :count],
+        lower=seen.low[:, :count],
+        vibration=seen.largest[:, count:],
         steady=_steady(prepared.assembly, first, last, steady) if steady else None,
     )
 
@@ -238,6 +300,7 @@ def safe_accelerations(
     limit: float | Mapping[str, float],
     accelerations: tuple[float, float],
     points: int = 13,
+    ramp: float | None = None,
     tolerance: float = 1e-7,
 ) -> SafeAccelerations:
     """Slowest and fastest acceleration whose passage keeps |torque| below ``limit``.
@@ -247,6 +310,7 @@ def safe_accelerations(
     limit : [N m] for every shaft, or by the name of the shaft.
     accelerations : smallest and largest to try [rad/s²]; ``points`` of them evenly in the logarithm, and then
         the edges of the quietest safe range by bisection to 1 %.
+    ramp : as in ``run_up``.
 
     Raises
     ------
@@ -259,7 +323,7 @@ def safe_accelerations(
         raise InputError("must be a rising pair", key="accelerations", value=list(accelerations))
 
     def share(rate: float) -> float:
-        run = run_up(prepared.assembly, first, last, acceleration=rate, steady=0, tolerance=tolerance)
+        run = run_up(prepared.assembly, first, last, acceleration=rate, ramp=ramp, steady=0, tolerance=tolerance)
         return float(np.max(run.peak_torque / limits)) if run.outcome.ok else np.inf
 
     tried = np.geomspace(low, high, points)
@@ -305,7 +369,7 @@ def _limits(limit: float | Mapping[str, float], shafts: tuple[str, ...]) -> Arra
     return np.array([limit.get(name, np.inf) for name in shafts])
 
 
-def _profile(first: float, last: float, acceleration: float) -> SpeedProfile:
+def _check(first: float, last: float, acceleration: float) -> None:
     for key, value in (("first", first), ("last", last), ("acceleration", acceleration)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(
@@ -320,7 +384,56 @@ def _profile(first: float, last: float, acceleration: float) -> SpeedProfile:
             element="run_up", key="acceleration", value=float(acceleration),
             remedy="accelerate faster, or ask periodic_response for the steady motion",
         )  # fmt: skip
-    return SpeedProfile([0.0, duration], [first, last])
+
+
+def _ramp(assembly: Assembly, first: float, last: float, acceleration: float, asked: float | None) -> float:
+    """Seconds over which the acceleration sets in."""
+    longest = abs(last - first) / acceleration
+    if asked is None:
+        slow = [w for w in natural_frequencies(assembly).frequency if w > 0]
+        return min(RAMP_PERIODS * 2 * np.pi / float(min(slow)), longest) if slow else 0.0
+    if not 0 <= asked < 2 * longest:
+        raise InputError(
+            "does not fit in the run", element="run_up", key="ramp", value=float(asked),
+            remedy=f"give 0 to {2 * longest:.4g} s, or leave it out",
+        )  # fmt: skip
+    return float(asked)
+
+
+def _profile(first: float, last: float, acceleration: float, ramp: float) -> SpeedProfile:
+    """Speed whose slope rises as ½A(1 − cos πt/T) over the ramp T, in straight pieces, and then stays A."""
+    sense, duration = float(np.sign(last - first)), abs(last - first) / acceleration + ramp / 2
+    t = ramp * np.arange(RAMP_PIECES + 1) / RAMP_PIECES if ramp > 0 else np.zeros(1)
+    gained = acceleration * (t / 2 - ramp / (2 * np.pi) * np.sin(np.pi * t / ramp)) if ramp > 0 else np.zeros(1)
+    return SpeedProfile([*t, duration], [*(first + sense * gained), last])
+
+
+def _inertia_torque(assembly: Assembly) -> Array:
+    """Torque of every compliance (shaft,) [N m] per acceleration of the input [rad/s²], in the sense of its twist."""
+    topo = assembly.topology
+    coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False)
+    ratios = np.abs(np.array([float(q) for q in topo.speed_ratio]))
+    return np.asarray(static_torque(topo, coefficients.inertia * ratios)[0])
+
+
+def _quasi_static(
+    assembly: Assembly, profile: SpeedProfile, ramp: float, first: float, last: float
+) -> Callable[[Array], Array]:
+    """Times → torque (times, shaft) [N m] that loads and inertia ask for at their speed and acceleration."""
+    speeds = np.linspace(min(first, last), max(first, last), STATIC_SPEEDS)
+    table = np.repeat(assembly.table(1), STATIC_SPEEDS, axis=0)
+    table[:, 0] = speeds
+    static = assembly.coefficients(table).torque
+    inertia = _inertia_torque(assembly) * (profile.speed[-1] - profile.speed[-2])
+    inertia = inertia / (profile.time[-1] - profile.time[-2])
+
+    def torque(times: Array) -> Array:
+        at = profile.at(times)
+        rise = np.where(times < ramp, (1 - np.cos(np.pi * times / ramp)) / 2, 1.0) if ramp > 0 else np.ones(len(times))
+        held = np.stack([np.interp(at, speeds, column) for column in static.T], axis=1)
+        return held + rise[:, None] * inertia
+
+    return torque
 
 
 def _steady(assembly: Assembly, first: float, last: float, points: int) -> SteadyResponse | None:
@@ -330,4 +443,4 @@ def _steady(assembly: Assembly, first: float, last: float, points: int) -> Stead
     branch = periodic_branch(
         assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10
     )
-    return SteadyResponse(branch.parameter, branch.largest, branch.verdict)
+    return SteadyResponse(branch.parameter, branch.largest, branch.peak_to_peak / 2, branch.verdict)
