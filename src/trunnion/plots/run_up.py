@@ -31,6 +31,7 @@ def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str 
         if unstable.any():
             hollow: dict[str, Any] = {"color": COLOURS[0], "ms": 3, "mfc": "none"}
             axes.plot(x, np.where(unstable, y, np.nan), "o", label="steady motion, unstable", **hollow)
+    axes.axhline(result.inertia_torque[i], color=FAINT, lw=1, ls="--", label="accelerates what is behind it")
     axes.plot(result.speed * factor, result.largest[:, i], color=COLOURS[1], lw=1.3, label="largest in each turn")
     axes.plot(
         result.peak_speed[i] * factor, result.peak_torque[i], "D", color=COLOURS[1], ms=6,
