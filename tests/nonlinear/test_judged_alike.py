@@ -98,3 +98,11 @@ def test_states_far_below_their_scale_point_to_the_scale() -> None:
     assert not run.outcome.ok and "give scale = (" in str(run.outcome)
     usual = tn.simulate(system, 100.0, start=(1.0, 0.0), most_steps=3)
     assert not usual.outcome.ok and "scale" not in str(usual.outcome)
+
+
+def test_a_response_is_computed_where_it_is_asked_for() -> None:
+    o = tn.PiecewiseOscillator.gap(half_gap=0.1, damping=0.1, mean_force=0.3, force=0.2, frequency=0.7)
+    coarse, fine = (tn.frequency_response(o, 0.6, 0.9, longest_step=step) for step in (0.1, 0.01))
+    np.testing.assert_allclose(coarse.at(0.8), fine.at(0.8), rtol=1e-9)
+    orbit = tn.piecewise_orbit(o.but(frequency=0.8), coarse.detail.at(0.8)[0][0])
+    assert coarse.at(0.8)[0] == (pytest.approx(orbit.peak_to_peak / 2, rel=1e-9), True)

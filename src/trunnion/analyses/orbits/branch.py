@@ -155,14 +155,20 @@ class PeriodicBranch:
         Each is computed there, from a guess between its neighbours, as exactly as the points of the branch; where that
         does not converge, as beside a grazing, the guess itself is given with the verdict "undecided".
         """
-        side = self.parameter - value
-        found = []
+        return [(self.problem.start(point), verdict) for point, verdict in self._points_at(value)]
+
+    def swings_at(self, value: float) -> list[tuple[Array, Verdict]]:
+        """Peak-to-peak (curves,) and verdict of all motions of the branch at a value of the parameter, as ``at``."""
+        return [(self.problem.observed(point)[0], verdict) for point, verdict in self._points_at(value)]
+
+    def _points_at(self, value: float) -> list[tuple[CurvePoint, Verdict]]:
+        side, found = self.parameter - value, []
         for i in np.flatnonzero((side[:-1] * side[1:] < 0) | (side[:-1] == 0)):
             share = side[i] / (side[i] - side[i + 1]) if side[i] else 0.0
             guess = self.unknowns[i] + share * (self.unknowns[i + 1] - self.unknowns[i])
             found.append(_motion_at(self.problem, guess, value))
         if len(side) and side[-1] == 0:
-            found.append((self.start[-1], Verdict(int(self.verdict[-1]))))
+            found.append(_motion_at(self.problem, self.unknowns[-1], value))
         return found
 
     @property
@@ -391,12 +397,12 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         special=special,
         outcome=outcome,
         problem=problem,
-        unknowns=np.array([p.z for p in points]).reshape(len(points), -1),
+        unknowns=np.array([p.z for p in points]).reshape(len(points), len(problem.scale)),
     )
 
 
-def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[Array, Verdict]:
-    """Start and verdict of the motion near ``guess`` (unknowns and parameter) at a value of the parameter."""
+def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[CurvePoint, Verdict]:
+    """Point and verdict of the motion near ``guess`` (unknowns and parameter) at a value of the parameter."""
     n = len(guess) - 1
     scale = problem.scale[:n]
 
@@ -408,6 +414,6 @@ def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[Array, Ver
     z = np.append(root.x * scale if root.converged else guess[:n], value)
     point = CurvePoint(z, np.zeros_like(z), root.iterations)
     if not root.converged:
-        return problem.start(point), Verdict.UNDECIDED
+        return point, Verdict.UNDECIDED
     radius = float(np.abs(problem.multipliers(point)).max())
-    return problem.start(point), Verdict(int(verdicts(radius, problem.radius_error(point, radius))))
+    return point, Verdict(int(verdicts(radius, problem.radius_error(point, radius))))

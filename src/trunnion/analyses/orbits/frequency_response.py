@@ -98,7 +98,15 @@ class FrequencyResponse:
         return tuple(sorted((f for kind, f, _ in self.marks if kind in ("fold", "jump")), reverse=True))
 
     def at(self, frequency: float) -> list[tuple[float, bool]]:
-        """Half peak-to-peak and stability of every motion at a frequency, interpolated linearly, by falling size."""
+        """Half peak-to-peak and stability of every motion at a frequency, by falling size.
+
+        Computed there where the method follows a branch; approximations and sweeps are interpolated linearly.
+        """
+        branch = getattr(self.detail, "branch", self.detail)
+        if isinstance(branch, PeriodicBranch):
+            i = _place(branch.curves, self.curve)
+            seen = branch.swings_at(frequency)
+            return sorted(((float(swing[i]) / 2, verdict is Verdict.STABLE) for swing, verdict in seen), reverse=True)
         side, size = self.frequency - frequency, self.half_peak_to_peak
         found = []
         for i in range(len(side) - 1):
