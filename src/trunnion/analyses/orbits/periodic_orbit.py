@@ -280,7 +280,7 @@ def torque_driven_orbit(
     def shots_at(omega: float) -> Shots:
         system = at_speed(omega)
         assert system.forcing_period is not None
-        return Shots(system, phase, system.forcing_period, False, tolerance, turns=True, neutral=neutral(omega))
+        return Shots(system, phase, system.forcing_period, False, tolerance, neutral=neutral(omega))
 
     root = solve(residual, np.append(start, speed), scale, tolerance=200 * tolerance)
     found = float(root.x[n])
@@ -321,7 +321,6 @@ class Shots:
     length: float
     forced: bool
     tolerance: float
-    turns: bool = False
     last: Trajectory | None = None
     neutral: Callable[[System, Array], Neutral] | None = None
 
@@ -329,7 +328,7 @@ class Shots:
         """Whether an autonomous motion stands still: it then has no phase, and so no multiplier 1 of its own. A line
         that turns has one, from its rotation."""
         size = np.asarray(self.system.scale) + np.abs(run.state).max(axis=0)
-        return not (self.forced or self.turns) and bool(np.all(np.ptp(run.state, axis=0) <= AT_REST * size))
+        return not self.forced and self.neutral is None and bool(np.all(np.ptp(run.state, axis=0) <= AT_REST * size))
 
     def run(self, x: Array, length: float, tolerance: float, dense: bool = False) -> Trajectory:
         block = np.vstack([x, np.eye(self.system.size)])
@@ -438,6 +437,8 @@ def _beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array)
         return values, bound, np.nan
     place = along(rest, (neutral.drifts / scale) @ basis)
     return np.delete(values, place), np.delete(bound, place), float(values[place].real)
+
+
 def multipliers_of(system: System, run: Trajectory, coarse: Trajectory, residual: float) -> tuple[Complex, Array]:
     """Multipliers (n,) of a closed motion by falling modulus, and what each may be off by (n,).
 
