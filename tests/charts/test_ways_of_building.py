@@ -117,11 +117,6 @@ def test_a_chart_that_fails_in_every_way_is_refused(monkeypatch: pytest.MonkeyPa
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_that_names_no_way_is_refused(tmp_path: Path) -> None:
-    tn.stability_chart(line(), (*X, 5), (*Y, 4)).save(tmp_path / "c.nc")
-    import h5py
-
-    with h5py.File(tmp_path / "c.nc", "a") as file:
-        file.attrs["way"] = "by guesswork"
+def test_a_way_that_is_none_is_refused() -> None:
     with pytest.raises(tn.InputError, match="is not a way of building charts"):
-        tn.load_chart(tmp_path / "c.nc")
+        building.way_named("by guesswork")
