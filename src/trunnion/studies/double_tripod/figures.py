@@ -114,7 +114,7 @@ def _in_space(axes: Any, phi: str, rate: str) -> None:
         set_label(words, fontsize=8, labelpad=2)
     axes.tick_params(labelsize=7, pad=0)
     axes.locator_params(nbins=4)
-    axes.set_box_aspect(None, zoom=0.95)
+    axes.set_box_aspect(None, zoom=0.82)
 
 
 def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
