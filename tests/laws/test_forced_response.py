@@ -10,6 +10,9 @@ from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.analyses.linear.forced_response import LinearResponse, periodic_states
+from trunnion.analyses.orbits.periodic_response import PeriodicResponse
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.linear import periodic_linear_system
 from trunnion.numerics.chain.dense_monodromy import propagate
 from trunnion.systems.periodic_linear import from_matrices
 
@@ -102,3 +105,43 @@ def test_forced_oscillator_of_your_own() -> None:
     assert np.ptp(states[:, 0]) / 2 == pytest.approx(amplitude, rel=1e-3)
     assert states[0, 0] == pytest.approx(amplitude**2 * (1 - nu**2), rel=1e-9)
     assert states[0, 1] == pytest.approx(amplitude**2 * 2 * zeta * nu**2, rel=1e-9)
+
+
+def excited_beside_a_joint() -> tn.Driveline:
+    engine = [{"order": 2, "amplitude": 20.0, "phase": 0.4}]
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=2e4, damping=4.0), tn.Disk(inertia=0.5, excitation=engine),
+            tn.HookeJoint(angle=0.01), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.3, load_torque=40.0),
+        ]
+    )  # fmt: skip
+
+
+def test_everything_that_excites_is_in_the_response() -> None:
+    """Excitation of a disk beside a bent joint, against the nonlinear periodic motion; in the sweep as well."""
+    line, speed = excited_beside_a_joint(), 40.0
+    response = tn.stability(line, speed).response
+    assert response is not None
+    true = tn.periodic_response(line, speed)
+    assert isinstance(true, PeriodicResponse) and true.comparison is not None
+    assert response.torque_amplitude == pytest.approx(true.torque_peak_to_peak / 2, rel=2e-3)
+    assert response.torque_amplitude.min() > 3
+    assert true.comparison.linear_torque_peak_to_peak == pytest.approx(2 * response.torque_amplitude)
+    assert tn.speed_sweep(line, [speed]).torque_amplitude[0] == pytest.approx(response.torque_amplitude, rel=1e-9)
+
+
+def test_wave_of_a_line_without_excitation_is_that_of_the_propagator() -> None:
+    """What joints alone force, by the motion from rest and the monodromy matrix: x₀ = (I − Z)⁻¹ x_p(T)."""
+    case = two_shafts(0.3, load=0.05)
+    response = tn.stability(case.line(), case.speed).response
+    assert response is not None
+    assembly = assemble(case.line())
+    system = periodic_linear_system(assembly, assembly.table(1, case.speed))
+
+    def arrays(tau: np.ndarray) -> tuple[np.ndarray, ...]:
+        m = system.coefficients(tau)
+        return m.mass, m.damping, m.stiffness, m.forcing
+
+    run = propagate(arrays, system.period, 2, 1e-13, len(response.tau) - 1)  # type: ignore[arg-type]
+    x = periodic_states(run)[:: (len(run.tau) - 1) // (len(response.tau) - 1), :2]
+    assert np.abs(response.rotation - x).max() < 1e-9 * np.abs(x).max()

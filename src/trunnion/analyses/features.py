@@ -151,15 +151,7 @@ TABLE: dict[str, Row] = {
             ),
         },
     ),
-    "stability": _row(
-        refused={**_NO_LAW, **_FAR_END},
-        said={
-            "excitation by order": "the forced response is that of joints and meshes alone; ask periodic_response()",
-            "excitation in time": "the forced response is that of joints and meshes alone; ask periodic_response()",
-            "transmission error": "the forced response is that of joints and meshes alone; ask periodic_response()",
-        },
-        inert=_PASSIVE,
-    ),
+    "stability": _row(refused={**_NO_LAW, **_FAR_END}, inert=_PASSIVE),
     "stability_chart": _row(
         refused={**_NO_LAW, **_BASE},
         inert={**_TORSION, **_EVEN, **_FORCING},
@@ -168,18 +160,9 @@ TABLE: dict[str, Row] = {
         refused={**_NO_LAW, **_BASE},
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
-    "speed_sweep": _row(
-        refused={**_NO_LAW, **_FAR_END},
-        said={
-            "excitation by order": "amplitudes are those that joints and meshes force; ask periodic_response()",
-            "excitation in time": "amplitudes are those that joints and meshes force; ask periodic_response()",
-            "transmission error": "amplitudes are those that joints and meshes force; ask periodic_response()",
-        },
-        inert=_PASSIVE,
-    ),
+    "speed_sweep": _row(refused={**_NO_LAW, **_FAR_END}, inert=_PASSIVE),
     "order_response": _row(
         refused={**_NO_LAW, **_BASE},
-        said={"mesh-stiffness variation": "amplitudes are those of the mean stiffness; ask periodic_response()"},
         inert=_PASSIVE,
     ),
     "bending_speeds": _row(

@@ -1,8 +1,8 @@
-"""The periodic motion that the joints themselves force on a line, to first order in the twist.
+"""The steady motion of a line at one speed, to first order in the twist: everything that excites it.
 
-x(τ) = Φ(τ) x₀ + x_p(τ) with x₀ = (I − Z)⁻¹ x_p(T), from the same integration as the multipliers. The
-linear response says nothing about stability, and beyond small rotation at the joints' inputs it is only an
-indication: joint phases then move with the motion.
+Joints, excitations of disks and transmission errors together, as ``order_response`` finds them, over the period they
+have in common. The linear response says nothing about stability, and beyond small rotation at the joints' inputs it
+is only an indication: joint phases then move with the motion.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.linear.order_spectrum import order_spectrum
+from trunnion.analyses.linear.order_totals import common_turns, extremes, wave
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import stiffness_waves
@@ -27,15 +29,21 @@ Array = NDArray[np.float64]
 LINEAR_RANGE = 0.1
 """Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the
 joint's law by 0.2 rad, an error of the order of 20 % in the excitation."""
+TIMES, PER_CYCLE = 128, 16
+"""Points of the wave form: at least, and per cycle of the highest order."""
+TURNS = 10
+"""Length of the wave form where nothing is common."""
 
 
 @dataclass(frozen=True)
 class LinearResponse:
-    """Linear periodic response of a line over one period.
+    """Linear steady response of a line over one period of everything (ten turns where there is none).
 
     tau (time,) input angle [rad]; twist (time, shaft) [rad] and torque (time, shaft) [N m], positive with the
     twist, static part included; rotation (time, coordinate) deviation from the base motion [rad];
-    joint_rotation (joint,): largest deviation at each joint's input [rad].
+    joint_rotation (joint,): largest deviation at each joint's input [rad]; twist_amplitude [rad] and torque_amplitude
+    [N m] (shaft,): half peak to peak, without a common period a bound; torque_mean (shaft,) [N m], negative when power
+    flows from input to output. NaN where no steady state exists: an undamped resonance.
     """
 
     tau: Array
@@ -43,24 +51,28 @@ class LinearResponse:
     torque: Array
     rotation: Array
     joint_rotation: Array
+    twist_amplitude: Array
+    torque_amplitude: Array
+    torque_mean: Array
     shafts: tuple[str, ...]
     joints: tuple[str, ...]
     names: tuple[str, ...]
 
-    @property
-    def twist_amplitude(self) -> Array:
-        """Half peak to peak of each shaft's twist [rad]."""
-        return np.asarray(np.ptp(self.twist, axis=0) / 2)
-
-    @property
-    def torque_amplitude(self) -> Array:
-        """Half peak to peak of each shaft's torque [N m]."""
-        return np.asarray(np.ptp(self.torque, axis=0) / 2)
-
-    @property
-    def torque_mean(self) -> Array:
-        """Mean torque of each shaft [N m]; negative when power flows from input to output."""
-        return np.asarray(self.torque[:-1].mean(axis=0))
+    @classmethod
+    def sampled(
+        cls,
+        tau: Array,
+        twist: Array,
+        torque: Array,
+        rotation: Array,
+        joint_rotation: Array,
+        shafts: tuple[str, ...],
+        joints: tuple[str, ...],
+        names: tuple[str, ...],
+    ) -> LinearResponse:
+        """From samples over one period, its end included; amplitudes are those of the samples."""
+        sizes = np.ptp(twist, axis=0) / 2, np.ptp(torque, axis=0) / 2, torque[:-1].mean(axis=0)
+        return cls(tau, twist, torque, rotation, joint_rotation, *sizes, shafts, joints, names)
 
     @property
     def largest_joint_rotation(self) -> float:
@@ -114,22 +126,28 @@ def periodic_states(run: Propagation) -> Array:
     return run.states(start)
 
 
-def linear_response(assembly: Assembly, coefficients: LineCoefficients, run: Propagation) -> LinearResponse:
-    """Twists and torques of every shaft in the periodic solution of a propagated line."""
+def linear_response(assembly: Assembly, speed: float, *, statically_twisted: bool = True) -> LinearResponse:
+    """The steady response at input ``speed`` [rad/s]."""
     topo = assembly.topology
-    states = periodic_states(run)
-    n, speed = topo.size, float(coefficients.speed[0])
-    x, rate = states[:, :n], states[:, n:] * speed
-    twist, torque = shaft_motion(topo, coefficients, run.tau, x[None], rate[None])
+    spectrum = order_spectrum(assembly, np.array([speed]), statically_twisted=statically_twisted)
+    places = spectrum.channels
+    low, high = (part[0] for part in extremes(spectrum, spectrum.amplitude, spectrum.mean))
+    turns = float(common_turns(spectrum) or (TURNS if spectrum.order else 1))
+    cycles = max(np.abs(spectrum.angular_frequency).max(initial=speed) / speed * turns, 1.0)
+    tau = np.linspace(0.0, 2 * np.pi * turns, int(np.ceil(max(TIMES, PER_CYCLE * cycles))) + 1)
+    seen = wave(spectrum, 0, spectrum.amplitude[0], spectrum.mean[0], tau / speed)
     return LinearResponse(
-        run.tau,
-        twist[0],
-        torque[0],
-        x,
-        joint_rotation(topo, coefficients, run.tau, x[None])[0],
-        shaft_names(assembly),
-        tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
-        topo.names,
+        tau=tau,
+        twist=seen[:, places.twist],
+        torque=seen[:, places.torque],
+        rotation=seen[:, places.deviation],
+        joint_rotation=np.maximum(np.abs(low), np.abs(high))[places.joint_input],
+        twist_amplitude=((high - low) / 2)[places.twist],
+        torque_amplitude=((high - low) / 2)[places.torque],
+        torque_mean=spectrum.mean[0, places.torque],
+        shafts=shaft_names(assembly),
+        joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
+        names=topo.names,
     )
 
 

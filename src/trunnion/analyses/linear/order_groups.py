@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from trunnion.equations.exciters import Exciter
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -30,22 +32,34 @@ class Group:
     members: tuple[tuple[Exciter, int], ...]
     own: bool = False
 
-    @property
-    def lowest(self) -> int:
-        """Smallest m."""
-        return min((m for _, m in self.members), default=0)
+    def harmonics(self, layers: dict[int, int], reach: int) -> tuple[Integers, Flags]:
+        """Harmonics h (h,) about the members and which of them are the outermost (h,); ``layers`` as of ``offsets``."""
+        centres = {m for _, m in self.members} or {0}
+        depth: dict[int, int] = {}
+        for centre in centres:
+            for offset, layer in layers.items():
+                depth[centre + offset] = min(layer, depth.get(centre + offset, layer))
+        h = np.array(sorted(depth), dtype=np.int64)
+        return h, np.array([depth[int(j)] == reach for j in h])
 
-    @property
-    def highest(self) -> int:
-        """Largest m."""
-        return max((m for _, m in self.members), default=0)
+
+def offsets(rates: set[int], reach: int) -> dict[int, int]:
+    """Sums Σ m_j rate_j with Σ |m_j| ≤ reach, each with the least Σ |m_j| it takes."""
+    found = {0: 0}
+    for layer in range(1, reach + 1):
+        last = [offset for offset, depth in found.items() if depth == layer - 1]
+        for offset in last:
+            for rate in rates:
+                found.setdefault(offset + rate, layer)
+                found.setdefault(offset - rate, layer)
+    return found
 
 
 OWN = Group(Fraction(0), 0.0, (), own=True)
 
 
-def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, reach: int) -> list[Group]:
-    """Groups of the exciters that have an amplitude in the packed numbers ``row``; orders with more than 2·``reach``
+def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, width: int) -> list[Group]:
+    """Groups of the exciters that have an amplitude in the packed numbers ``row``; orders with more than 2·``width``
     harmonics between them are apart."""
     by_carrier: dict[Fraction, list[tuple[Exciter, int]]] = {}
     in_time: dict[float, list[tuple[Exciter, int]]] = {}
@@ -61,7 +75,7 @@ def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, reach: 
         members.sort(key=lambda member: member[1])
         near = [members[0]]
         for member in members[1:]:
-            if member[1] - near[-1][1] > 2 * reach:
+            if member[1] - near[-1][1] > 2 * width:
                 found.append(Group(carrier, 0.0, tuple(near)))
                 near = []
             near.append(member)

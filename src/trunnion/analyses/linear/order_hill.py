@@ -21,6 +21,7 @@ from trunnion.equations.topology import Topology
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
@@ -38,36 +39,39 @@ class HillBlocks:
             for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
         )
         parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
-        kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
-        self.width = int(np.abs(_signed(np.flatnonzero(kept), self.times)).max())
+        self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
 
-    def solve(self, carrier: Array, harmonics: Integers, right: Complex) -> Complex:
-        """X (case, h, n) at ``harmonics`` (h,), consecutive, of G (case, h, n); ``carrier`` (case,) is ω₀ [rad/s].
+    def solve(self, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
+        """X (case, h, n) at ``harmonics`` (h,) of G (case, h, n); ``carrier`` (case,) is ω₀ [rad/s].
 
-        The first and the last harmonic are found from the others, by their own diagonal blocks: their size tells what
+        Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
         cases, count, n = right.shape
         frequency = carrier[:, None] + harmonics * self.step[:, None]
         matrix = np.zeros((cases, count, n, count, n), dtype=complex)
-        for d in range(-min(self.width, count - 1), min(self.width, count - 1) + 1):
-            rows = np.arange(max(0, d), count + min(0, d))
-            v = frequency.T[rows - d][:, :, None, None]
+        apart = (harmonics[:, None] - harmonics[None, :]) % self.times
+        for d in np.intersect1d(apart, np.flatnonzero(self.kept)):
+            rows, columns = np.nonzero(apart == d)
+            v = frequency.T[columns][:, :, None, None]
             block = -(v**2) * self.mass[:, d] + (1j * v) * self.damping[:, d] + self.stiffness[:, d]
-            matrix[:, rows, :, rows - d, :] = block
+            matrix[:, rows, :, columns, :] = block
         if self.loss.any():
-            self._add_loss(matrix, harmonics, np.sign(frequency))
-        inside = matrix[:, 1:-1, :, 1:-1].reshape(cases, (count - 2) * n, (count - 2) * n)
+            self._add_loss(matrix, apart, np.sign(frequency))
+        inner = np.flatnonzero(~rim)
+        inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
+        size = len(inner) * n
         x = np.zeros((cases, count, n), dtype=complex)
-        x[:, 1:-1] = _solve(inside, right[:, 1:-1].reshape(cases, -1)).reshape(cases, count - 2, n)
-        for end in (0, -1):
+        x[:, inner] = _solve(inside.reshape(cases, size, size), right[:, inner].reshape(cases, size)).reshape(
+            cases, len(inner), n
+        )
+        for end in np.flatnonzero(rim):
             known = (matrix[:, end].reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
             x[:, end] = _solve(matrix[:, end, :, end], right[:, end] - known, bounded=False)
         return x
 
-    def _add_loss(self, matrix: Complex, harmonics: Integers, sign: Array) -> None:
-        place = (harmonics[:, None] - harmonics[None, :]) % self.times
-        every = np.arange(len(harmonics))
+    def _add_loss(self, matrix: Complex, place: Integers, sign: Array) -> None:
+        every = np.arange(sign.shape[1])
         for e, compliance in enumerate(self.topo.compliances):
             if not self.loss[:, e].any():
                 continue
@@ -82,11 +86,6 @@ class HillBlocks:
             if far >= 0 and near >= 0:
                 matrix[:, :, far, :, near] -= loss[:, :, None] * ratio
                 matrix[:, :, near, :, far] -= ratio * loss[:, None, :]
-
-
-def _signed(place: Integers, times: int) -> Integers:
-    """Harmonic numbers of places in a Fourier transform."""
-    return np.asarray((place + times // 2) % times - times // 2)
 
 
 def _solve(matrix: Complex, right: Complex, *, bounded: bool = True) -> Complex:

@@ -79,6 +79,22 @@ def order_response(
     return _result(assembly, spectrum, wanted)
 
 
+def without_excitation(assembly: Assembly, *, errors_counted: bool = False) -> tuple[Finding, ...]:
+    """What to say where joints and meshes are counted, transmission ``errors_counted`` too: what else excites it."""
+    row = assembly.table(1)[0]
+    active = [e for e in exciters(assembly) if row[e.amplitude] and not (errors_counted and e.compliance >= 0)]
+    names = dict.fromkeys(e.element for e in active if not e.held)
+    if not names:
+        return ()
+    return (
+        Finding(
+            Gravity.CAUTION,
+            "The line starts free and is bent: amplitudes are those that joints and meshes force, without what "
+            f"{', '.join(names)} excite{'' if len(names) > 1 else 's'}; ask periodic_response().",
+        ),
+    )
+
+
 def _assembled(line: Driveline | Assembly, load_case: str | None) -> Assembly:
     if load_case is not None:
         description = line.line if isinstance(line, Assembly) else line

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.order_channels import Channels, channels_of, motion_channels
-from trunnion.analyses.linear.order_groups import OWN, Group, groups_of
+from trunnion.analyses.linear.order_groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.linear.order_hill import HillBlocks
 from trunnion.analyses.linear.order_straight import straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
@@ -153,29 +153,37 @@ class _Case:
         self.twisted = statically_twisted
         one = self.coefficients(np.array([1.0]))
         self.row = assembly.table(1)[0]
-        self.varies = bent(assembly)
-        # Meshes keep their mean stiffness here, so the joints alone make the period.
-        alone = replace(self.topo, meshes=())
-        self.turns = require_period(assembly.line, alone) if self.varies else Fraction(1)
+        self.varies = bent(assembly) or bool(one.waves)
+        self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.reach = _reach(one.angle)
+        self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         if self.varies:
-            self.batch = max(1, MOST_NUMBERS // self._blocks(self.reach) ** 2)
+            self.batch = self._batch()
         else:
             self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
 
     def coefficients(self, speed: Array) -> LineCoefficients:
-        found = self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
-        return replace(found, waves=())
+        return self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
 
     def _table(self, speed: Array) -> Array:
         table = self.assembly.table(len(speed))
         table[:, 0] = speed
         return table
 
-    def _blocks(self, reach: int) -> int:
-        """Unknowns of the largest system."""
-        spans = [g.highest - g.lowest for g in groups_of(self.shaken, self.row, 1 / self.turns, reach)]
-        return (max(spans, default=0) + 2 * reach + 1) * self.topo.size
+    def _plan(self, reach: int) -> tuple[list[Group], dict[int, int], int]:
+        """Groups, the offsets of their harmonics, and samples over the period that resolve them."""
+        layers = offsets(self.rates, reach)
+        width = max(layers)
+        groups = [OWN, *groups_of(self.shaken, self.row, 1 / self.turns, width)]
+        widest = max(int(np.ptp(g.harmonics(layers, reach)[0])) for g in groups) + 1
+        return groups, layers, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+
+    def _batch(self) -> int:
+        """Speeds together, by the largest arrays of one."""
+        groups, layers, times = self._plan(self.reach)
+        n = self.topo.size
+        most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
+        return max(1, MOST_NUMBERS // max(most**2, 4 * times * n**2))
 
     def solved(self, speed: Array) -> tuple[_Sum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
@@ -198,7 +206,9 @@ class _Case:
             carrier = [[g.frequency if g.frequency else float(e.order) for e, _ in g.members][0] for g in groups]
             in_time = np.array([g.frequency > 0 for g in groups])
             nu = np.where(in_time[:, None], np.array(carrier)[:, None], np.array(carrier)[:, None] * speed)
-            sources = [self._sources(g, table, co, base, nu[j][:, None], None) for j, g in enumerate(groups)]
+            sources = [
+                self._sources(g, table, co, base, nu[j][:, None], matrices.wave, None) for j, g in enumerate(groups)
+            ]
             right = np.stack([force[:, 0, :] for force, _ in sources])
             y = straight_response(topo, matrices, loss, nu, right)
             for j, group in enumerate(groups):
@@ -213,30 +223,32 @@ class _Case:
     def _bent(self, speed: Array, reach: int) -> tuple[_Sum, Array]:
         topo, table, co = self.topo, self._table(speed), self.coefficients(speed)
         cycles = 1 / self.turns
-        groups = [OWN, *groups_of(self.shaken, self.row, cycles, reach)]
-        widest = max(g.highest - g.lowest for g in groups) + 2 * reach + 1
-        times = 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+        groups, layers, times = self._plan(reach)
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
         matrices, base = line_matrices(topo, co, tau), self._base(speed, co, tau)
         step = float(cycles) * speed
         blocks = HillBlocks(topo, matrices, co.loss, step)
         places = channels_of(topo)
-        total, last = _Sum(len(speed), places.count, topo.size), np.zeros(len(speed))
+        total = _Sum(len(speed), places.count, topo.size)
+        last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in groups:
             carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
-            h = np.arange(group.lowest - reach, group.highest + reach + 1)
+            h, rim = group.harmonics(layers, reach)
             nu = carrier[:, None] + h * step[:, None]
             right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
-            x = blocks.solve(carrier, h, right)
+            least = np.maximum(least, 1e-6 * np.abs(right).max(axis=(1, 2)))
+            x = blocks.solve(carrier, h, rim, right)
             seen = _seen(topo, x, h, times, matrices, base)
             seen[..., places.twist] += error
             self._add_torque(seen, co, nu)
-            last = np.maximum(last, np.abs(seen[:, [0, -1], places.torque]).max(axis=(1, 2)))
+            self._add_waves(seen, co, h, matrices.wave, own=group.own)
+            last = np.maximum(last, np.abs(seen[:, rim, places.torque]).max(axis=(1, 2)))
             for j, harmonic in enumerate(h):
                 total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
-        self._add_base(total, base, cycles, reach)
+        self._add_base(total, base, cycles, max(layers))
         self._add_static(total, co)
         largest = np.max([np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()], axis=0)
+        largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
     def _base(self, speed: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
@@ -244,7 +256,14 @@ class _Case:
         return base_of_excitation(self.topo, co, plain, tau)
 
     def _sources(
-        self, group: Group, table: Array, co: LineCoefficients, base: BaseOfExcitation, nu: Array, only: Exciter | None
+        self,
+        group: Group,
+        table: Array,
+        co: LineCoefficients,
+        base: BaseOfExcitation,
+        nu: Array,
+        wave: Array,
+        only: Exciter | None,
     ) -> tuple[Complex, Complex]:
         """Torque on the unknowns (case, time, n) and twist by transmission errors (case, 1, spring), all members
         (or one) together; ``nu`` (case, 1) is their frequency."""
@@ -259,8 +278,8 @@ class _Case:
                 force += torque_on_unknowns(self.topo, exciter, sizes, base)
                 continue
             e = exciter.compliance
-            torque = (co.stiffness[:, e, None] + 1j * nu * co.damping[:, e, None]) * sizes[:, None]
-            torque = np.broadcast_to(torque, (cases, times))
+            stiffness = co.stiffness[:, e, None] * wave[..., e]
+            torque = (stiffness + 1j * nu * co.damping[:, e, None]) * sizes[:, None]
             force += twist_on_unknowns(self.topo, exciter, torque, base.relative)
             error[:, 0, e] += sizes
         return force, error
@@ -282,8 +301,8 @@ class _Case:
         if group.own:
             right += np.fft.fft(matrices.forcing, axis=1)[:, h % times] / times
         for exciter, m in group.members:
-            at = int(m - h[0])
-            force, twist = self._sources(group, table, co, base, nu[:, at : at + 1], exciter)
+            at = int(np.searchsorted(h, m))
+            force, twist = self._sources(group, table, co, base, nu[:, at : at + 1], matrices.wave, exciter)
             right += np.fft.fft(force, axis=1)[:, (h - m) % times] / times
             error[:, at] += twist[:, 0]
         return right, error
@@ -294,18 +313,32 @@ class _Case:
         k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
         seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
 
+    def _add_waves(self, seen: Complex, co: LineCoefficients, h: Integers, wave: Array, *, own: bool) -> None:
+        """What the varying part of mesh stiffnesses adds to their torques, in place."""
+        places, times = channels_of(self.topo), wave.shape[1]
+        for e in sorted({mesh.compliance for mesh in co.waves}):
+            change = np.fft.fft(wave[..., e] - 1.0, axis=1) / times
+            apart = change[:, (h[:, None] - h[None, :]) % times]
+            twist, k = seen[..., places.twist.start + e], co.stiffness[:, e, None]
+            torque = k * (apart @ twist[..., None])[..., 0]
+            if own:
+                torque = torque + co.torque[:, e, None] * change[:, h % times]
+            seen[..., places.torque.start + e] += torque
+
     def _add_static(self, total: _Sum, co: LineCoefficients) -> None:
         places = channels_of(self.topo)
         total.mean[:, places.twist] += co.twist
         total.mean[:, places.torque] += co.torque
 
-    def _add_base(self, total: _Sum, base: BaseOfExcitation, cycles: Fraction, reach: int) -> None:
+    def _add_base(self, total: _Sum, base: BaseOfExcitation, cycles: Fraction, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
         topo = self.topo
         first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         spectrum = np.fft.rfft(base.rotation[..., first], axis=1) / base.rotation.shape[1]
-        for h in range(1, min(spectrum.shape[1] - 1, 2 * reach) + 1):
-            total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
+        least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
+        for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
+            if np.any(np.abs(spectrum[:, h]) > least):
+                total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
 
 
 def _seen(

@@ -1,8 +1,8 @@
 """A bent line that starts free, about its own periodic motion: the base of its stability.
 
 About the motion of rigid shafts at constant input speed, which is no motion of a free line, its rigid-body pair
-grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks are left out, as they are for
-driven lines.
+grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks are left out,
+which ``stability`` says.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def own_motion(line: Driveline, speed: float) -> OwnMotion:
     motion = prepared.observe(orbit.system, times, states)
     topo = prepared.assembly.topology
     # Nothing is cut off here, so no rotation of a joint's input counts as a deviation from what is known.
-    response = LinearResponse(
+    response = LinearResponse.sampled(
         times * speed,
         motion.twist,
         motion.torque,

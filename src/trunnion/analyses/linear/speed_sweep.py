@@ -22,12 +22,14 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.analyses.linear.order_response import order_response, without_excitation
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.exciters import exciters
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.loads import drive_places, drive_torques
-from trunnion.equations.steady_base import require_steady_base
+from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.results.drawing import drawing
@@ -133,6 +135,18 @@ def speed_sweep(
     InputError : speeds that are not positive; a line without steady base motion or with too long a period.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
+    if not (assembly.topology.free and bent(assembly)):
+        found = order_response(assembly, speeds, statically_twisted=statically_twisted, progress=progress)
+        return SpeedSweep(
+            found.speed,
+            found.vibratory_twist,
+            found.vibratory_torque,
+            found.mean_torque,
+            found.joint_rotation,
+            found.cut_off,
+            found.springs,
+            found.remarks,
+        )
     speed = np.atleast_1d(np.asarray(speeds, dtype=float))
     if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
         raise InputError(
@@ -162,25 +176,25 @@ def speed_sweep(
         if progress:
             progress(min(1.0, (start + BATCH) / len(speed)))
     twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
-    said = left_out("speed_sweep", assembly.line)
+    said = (*left_out("speed_sweep", assembly.line), *without_excitation(assembly))
     return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly), said)
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:
-    """Speeds [rad/s] from ``low`` to ``high``, closer together about the peaks ω_i/(2m|R|) of the response.
+    """Speeds [rad/s] from ``low`` to ``high``, closer together about the peaks ω_i/(2m|R|) and ω_i/K of the response.
 
     An even grid alone would step over the peaks of lightly damped modes.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
     modes = natural_frequencies(assembly)
     topo = assembly.topology
-    rates = sorted({abs(float(topo.speed_ratio[j])) for j in topo.joints})
+    orders = {2.0 * m * abs(float(topo.speed_ratio[j])) for j in topo.joints for m in (1, 2, 3)}
+    orders |= {float(e.order) for e in exciters(assembly) if not e.in_time and not e.held}
     found = [np.linspace(low, high, points)]
     for frequency, damping in zip(modes.frequency, modes.damping_ratio, strict=True):
         width = max(float(abs(damping)), 1e-4)
-        for rate in rates:
-            for order in (1, 2, 3):
-                found.append(frequency / (2 * order * rate) * (1 + width * CLUSTER))
+        for order in sorted(orders):
+            found.append(frequency / order * (1 + width * CLUSTER))
     every = np.unique(np.concatenate(found))
     return every[(every >= low) & (every <= high)]
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.analyses.linear.order_response import without_excitation
 from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
 from trunnion.analyses.orbits.periodic_orbit import speed_in_words
@@ -197,13 +198,14 @@ def stability(
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]))
-        return replace(found, left_out=left_out("stability", assembly.line))
+        said = without_excitation(assembly, errors_counted=True)
+        return replace(found, left_out=(*left_out("stability", assembly.line), *said))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = _propagate(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     topo = assembly.topology
     rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
-    response = linear_response(assembly, coefficients, run)
+    response = linear_response(assembly, system.rate, statically_twisted=statically_twisted)
     frequency = np.array(system.frequencies)
     half_turns = 2 * require_period(assembly.line, topo)
     found = _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
@@ -326,13 +328,18 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
     else:
         yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
     response = result.response
-    if response is not None and not response.linear:
+    if response is not None and not np.all(np.isfinite(response.torque_amplitude)):
+        yield Finding(
+            Gravity.DANGER,
+            f"No steady forced motion exists at {at}: an excitation meets a natural frequency without damping.",
+        )
+    elif response is not None and not response.linear:
         worst = int(response.joint_rotation.argmax())
         shaft = int(response.twist_amplitude.argmax())
         steady = "Stable does not mean quiet: its" if result.verdict is Verdict.STABLE else "Its"
         yield Finding(
             Gravity.DANGER,
-            f"{steady} joints force a rotation of {response.joint_rotation[worst]:.3g} rad at the input of "
+            f"{steady} excitation forces a rotation of {response.joint_rotation[worst]:.3g} rad at the input of "
             f"{response.joints[worst]} at {at} (twist of {response.shafts[shaft]} "
             f"±{response.twist_amplitude[shaft]:.3g} rad by linear theory), beyond the linear range of "
             f"{LINEAR_RANGE} rad: read it as resonance, not as an amplitude; the verdict holds for small twist only.",

@@ -28,14 +28,13 @@ from trunnion.analyses.orbits.periodic_orbit import (
 )
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
-from trunnion.numerics.curves import extremes, extremes_of_samples, fourier
+from trunnion.numerics.curves import extremes, fourier
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
@@ -59,7 +58,7 @@ class LinearComparison:
     """The same line linearised: about zero twist and about the twist of its static load.
 
     growth_rate [1/s] of the true motion and of the two linearisations; torque_peak_to_peak (shaft,) [N m] of the
-    true motion and of the linear forced response about static twist, which has no ``excitation`` of disks.
+    true motion and of the linear steady response about static twist.
     """
 
     growth_rate: float
@@ -68,7 +67,6 @@ class LinearComparison:
     torque_peak_to_peak: Array
     linear_torque_peak_to_peak: Array
     shafts: tuple[str, ...]
-    excited: bool
 
     @property
     def agree(self) -> bool:
@@ -83,7 +81,6 @@ class LinearComparison:
             f"twist, {self.static_twist.growth_rate:+.6g} about the static twist; torque of {self.shafts[worst]} "
             f"{self.torque_peak_to_peak[worst]:.5g} N m peak to peak here, "
             f"{self.linear_torque_peak_to_peak[worst]:.5g} by linear theory"
-            f"{', which leaves the excitation of the disks out' if self.excited else ''}"
         )
 
 
@@ -427,9 +424,8 @@ def _compare(response: PeriodicResponse, line: Driveline) -> LinearComparison:
         stability(line, response.speed, statically_twisted=False),
         static,
         response.torque_peak_to_peak,
-        extremes_of_samples(static.response.torque[:-1]).span,
+        2 * static.response.torque_amplitude,
         response.shafts,
-        any(isinstance(e, Disk) and e.excitation for e in line.elements),
     )
 
 
