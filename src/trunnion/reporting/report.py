@@ -11,6 +11,7 @@ from typing import Any
 
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
+from trunnion.driveline.features import feature
 from trunnion.reporting import tables
 from trunnion.reporting.contents import Contents, gather
 from trunnion.reporting.overview import CHART_POINTS, Overview, overview
@@ -100,6 +101,7 @@ def _page(contents: Contents, source: Path | None) -> str:
         "findings": contents.findings,
         "left_out": contents.left_out,
         "remarks": seen.remarks,
+        "staged": any(feature(key).places(seen.line) for key in ("backlash", "stages")),
         "operation": tables.operation(contents, unit),
         "elements": tables.elements(seen.line),
         "modes": tables.modes(contents, frequency_unit),

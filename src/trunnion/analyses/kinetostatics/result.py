@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.writing import written_whole
@@ -243,11 +244,11 @@ class Kinetostatics:
         """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
         return drawing(self, "plot")(self, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """The summary that printing gives, the input speed in ``unit``."""
+    def describe(self, unit: str | None = None) -> str:
+        """The summary that printing gives, the input speed in ``unit``, by default that of the line's description."""
         from trunnion.analyses.kinetostatics.summary import summary
 
-        return summary(self, unit)
+        return summary(self, unit or speed_unit(self.line))
 
     def __str__(self) -> str:
         return self.describe()

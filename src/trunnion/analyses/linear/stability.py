@@ -24,7 +24,7 @@ from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
 from trunnion.analyses.orbits.periodic_orbit import speed_in_words
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import bent
@@ -81,6 +81,7 @@ class Stability:
     names: tuple[str, ...]
     set_aside: int
     left_out: tuple[Finding, ...] = ()
+    unit: str = "rad/s"
     extra_torque: float | None = None
     speed_sentence: str = ""
 
@@ -102,8 +103,8 @@ class Stability:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first; speeds in rad/s."""
-        return self.findings_in("rad/s")
+        """What to read first, gravest first; speeds in the unit of the line's description."""
+        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
@@ -137,8 +138,9 @@ class Stability:
         )
         return dataset if self.response is None else dataset.merge(self.response.data)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """The result in a few lines, speeds in ``unit``."""
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
         lines = [
             f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
             f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e} per period of "
@@ -199,7 +201,7 @@ def stability(
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]))
         said = without_excitation(assembly, errors_counted=True)
-        return replace(found, left_out=(*left_out("stability", assembly.line), *said))
+        return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = _propagate(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
@@ -209,7 +211,7 @@ def stability(
     frequency = np.array(system.frequencies)
     half_turns = 2 * require_period(assembly.line, topo)
     found = _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
-    return replace(found, left_out=left_out("stability", assembly.line))
+    return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
 
 
 def _about_own_motion(assembly: Assembly, speed: float) -> Stability:
