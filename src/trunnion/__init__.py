@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     )
     from trunnion.analyses.linear.bending import bending_speeds
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-    from trunnion.analyses.linear.order_response import order_response
     from trunnion.analyses.linear.resonance_speeds import resonance_speeds
     from trunnion.analyses.linear.speed_sweep import speed_sweep, sweep_speeds
     from trunnion.analyses.linear.stability import stability
@@ -48,6 +47,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
     from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
     from trunnion.analyses.orbits.piecewise_sweep import basins, rattle_index, sweep
+    from trunnion.analyses.orders.response import order_response
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
@@ -142,7 +142,7 @@ _HOME = {
     "stable_limit": "trunnion.analyses.charts.stable_limit",
     "speed_sweep": "trunnion.analyses.linear.speed_sweep",
     "sweep_speeds": "trunnion.analyses.linear.speed_sweep",
-    "order_response": "trunnion.analyses.linear.order_response",
+    "order_response": "trunnion.analyses.orders.response",
     "bending_speeds": "trunnion.analyses.linear.bending",
     "harmonic_balance": "trunnion.analyses.orbits.harmonic_balance",
     "kinetostatics": "trunnion.analyses.kinetostatics",

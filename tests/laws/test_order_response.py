@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.linear.order_result import OrderResponse
+from trunnion.analyses.orders.result import OrderResponse
 
 
 def two_masses(**shaft: Any) -> tn.Driveline:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.linear.order_result import OrderResponse
+from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.operation import Operation
 from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS, DASHES

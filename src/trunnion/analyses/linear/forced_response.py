@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.order_spectrum import order_spectrum
-from trunnion.analyses.linear.order_totals import common_turns, extremes, wave
+from trunnion.analyses.orders.spectrum import order_spectrum
+from trunnion.analyses.orders.totals import common_turns, extremes, wave
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import stiffness_waves

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.linear.order_response import order_response, without_excitation
+from trunnion.analyses.orders.response import order_response, without_excitation
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble

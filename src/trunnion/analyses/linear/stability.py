@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.linear.order_response import without_excitation
 from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
 from trunnion.analyses.orbits.periodic_orbit import speed_in_words
+from trunnion.analyses.orders.response import without_excitation
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble

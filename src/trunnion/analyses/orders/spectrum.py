@@ -13,10 +13,10 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.order_channels import Channels, channels_of, motion_channels
-from trunnion.analyses.linear.order_groups import OWN, Group, groups_of, offsets
-from trunnion.analyses.linear.order_hill import HillBlocks
-from trunnion.analyses.linear.order_straight import straight_response
+from trunnion.analyses.orders.channels import Channels, channels_of, motion_channels
+from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
+from trunnion.analyses.orders.hill import HillBlocks
+from trunnion.analyses.orders.straight import straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
     BaseOfExcitation,

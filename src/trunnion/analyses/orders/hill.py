@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.order_straight import SINGULAR
+from trunnion.analyses.orders.straight import SINGULAR
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 

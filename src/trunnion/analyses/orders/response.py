@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
-from trunnion.analyses.linear.order_result import WORTH_SHOWING, OrderResponse
-from trunnion.analyses.linear.order_spectrum import OrderSpectrum, order_spectrum
+from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
+from trunnion.analyses.orders.spectrum import OrderSpectrum, order_spectrum
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft

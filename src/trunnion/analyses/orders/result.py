@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.linear.order_spectrum import OrderSpectrum
-from trunnion.analyses.linear.order_totals import adds_exactly, common_turns, extremes, wave
+from trunnion.analyses.orders.spectrum import OrderSpectrum
+from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor

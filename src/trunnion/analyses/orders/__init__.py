@@ -1,0 +1,1 @@
+"""Linear steady response by order."""
