@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +39,7 @@ def verdicts(radius: ArrayLike, error: ArrayLike, undamped: ArrayLike = False) -
     return np.where(np.isfinite(radius) & np.isfinite(error), code, Verdict.FAILED).astype(np.int8)
 
 
-def flag_attributes() -> dict[str, object]:
+def flag_attributes() -> dict[str, Any]:
     """CF attributes that spell the codes out in a dataset."""
     return {
         "flag_values": np.array([int(v) for v in Verdict], dtype=np.int8),

@@ -7,8 +7,8 @@ is only an indication: joint phases then move with the motion.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,7 @@ from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.topology import Topology
 from trunnion.numerics.chain.dense_monodromy import Propagation
-
-if TYPE_CHECKING:
-    import xarray as xr
+from trunnion.results.declared import Held, Result, axis, over, remark
 
 Array = NDArray[np.float64]
 
@@ -35,8 +33,8 @@ TURNS = 10
 """Length of the wave form where nothing is common."""
 
 
-@dataclass(frozen=True)
-class LinearResponse:
+@dataclass(frozen=True, repr=False)
+class LinearResponse(Result):
     """Linear steady response of a line over one period of everything (ten turns where there is none).
 
     tau (time,) input angle [rad]; twist (time, shaft) [rad] and torque (time, shaft) [N m], positive with the
@@ -84,26 +82,18 @@ class LinearResponse:
         """Whether the deviations stay within ``LINEAR_RANGE``, so that the amplitudes can be trusted."""
         return bool(self.largest_joint_rotation <= LINEAR_RANGE)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        return xr.Dataset(
-            {
-                "twist": (("input_angle", "shaft"), self.twist, {"units": "rad"}),
-                "torque": (("input_angle", "shaft"), self.torque, {"units": "N*m"}),
-                "rotation": (("input_angle", "coordinate"), self.rotation, {"units": "rad"}),
-                "joint_rotation": ("joint", self.joint_rotation, {"units": "rad"}),
-            },
-            coords={
-                "input_angle": ("input_angle", self.tau, {"units": "rad"}),
-                "shaft": list(self.shafts),
-                "joint": list(self.joints),
-                "coordinate": list(self.names),
-            },
-            attrs={"linear_range": LINEAR_RANGE, "within_linear_range": int(self.linear)},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Twist and torque of every shaft and the deviation of every inertia over the period."""
+        yield axis("input_angle", self.tau, "rad")
+        yield axis("shaft", self.shafts)
+        yield axis("joint", self.joints)
+        yield axis("coordinate", self.names)
+        yield over("input_angle shaft", "twist", self.twist, "rad")
+        yield over("input_angle shaft", "torque", self.torque, "N*m")
+        yield over("input_angle coordinate", "rotation", self.rotation, "rad")
+        yield over("joint", "joint_rotation", self.joint_rotation, "rad")
+        yield remark("linear_range", LINEAR_RANGE)
+        yield remark("within_linear_range", int(self.linear))
 
     def __str__(self) -> str:
         rows = [

@@ -16,10 +16,10 @@ mis-linearised equations.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,11 +29,9 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KINDS = ("harmonic", "subharmonic", "sum", "difference")
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -83,8 +81,8 @@ class Resonance:
         return f"{self.kind} {self.label}"
 
 
-@dataclass(frozen=True)
-class ResonanceSpeeds:
+@dataclass(frozen=True, repr=False)
+class ResonanceSpeeds(Result):
     """Resonances by ascending speed; ``findings`` say what of the line is left out."""
 
     resonances: tuple[Resonance, ...]
@@ -97,31 +95,17 @@ class ResonanceSpeeds:
     def __len__(self) -> int:
         return len(self.resonances)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
+    def declared(self) -> Iterator[Held]:
+        """Speed, kind, order, exciting mesh of every resonance, and whether it can open."""
         rows = self.resonances
-        return xr.Dataset(
-            {
-                "speed": ("resonance", [r.speed for r in rows], {"units": "rad/s"}),
-                "kind": ("resonance", [r.kind for r in rows]),
-                "order": ("resonance", [r.order for r in rows]),
-                "mesh": (
-                    "resonance",
-                    [r.mesh for r in rows],
-                    {"long_name": "gear mesh that excites; empty for joints"},
-                ),
-                "opens": (
-                    "resonance",
-                    np.array([r.opens for r in rows], dtype=np.int8),
-                    {"long_name": "unloaded line can be unstable there"},
-                ),
-            },
-            coords={"resonance": [str(r) for r in rows]},
-            attrs={"orders": self.orders},
-        )
+        yield axis("resonance", [str(r) for r in rows])
+        yield over("resonance", "speed", [r.speed for r in rows], "rad/s")
+        yield over("resonance", "kind", [r.kind for r in rows])
+        yield over("resonance", "order", [r.order for r in rows])
+        yield over("resonance", "mesh", [r.mesh for r in rows], about="gear mesh that excites; empty for joints")
+        opens = np.array([r.opens for r in rows], dtype=np.int8)
+        yield over("resonance", "opens", opens, about="unloaded line can be unstable there")
+        yield remark("orders", self.orders)
 
     def table(self, unit: str = "rpm") -> list[dict[str, object]]:
         """One row per resonance, speeds in ``unit``."""

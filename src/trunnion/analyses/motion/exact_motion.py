@@ -6,9 +6,9 @@ rounding, and the changes of stage are located to rounding (``numerics/staged_fl
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,10 +18,8 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -49,8 +47,8 @@ class StageEvents:
         return len(self.time)
 
 
-@dataclass(frozen=True)
-class ExactMotion:
+@dataclass(frozen=True, repr=False)
+class ExactMotion(Result):
     """A motion of a line with stages.
 
     springs: names of all shafts and meshes (spring,); time (points,) [s]; twist [rad], rate [rad/s] and torque [N m]
@@ -120,27 +118,20 @@ class ExactMotion:
         out[np.flatnonzero(inside)[order]] = found.states
         return out
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        over = ("time", "spring")
-        return xr.Dataset(
-            {
-                "twist": (over, self.twist, {"units": "rad"}),
-                "twist_rate": (over, self.rate, {"units": "rad/s"}),
-                "torque": (over, self.torque, {"units": "N*m"}),
-                "stage": (over, self.stage[:, : len(self.springs)]),
-                "event_time": ("event", self.events.time, {"units": "s"}),
-                "event_spring": ("event", np.array([self.springs[i] for i in self.events.spring], dtype=str)),
-                "event_stage": ("event", self.events.stage),
-                "event_side": ("event", self.events.side),
-            },
-            coords={"time": ("time", self.time, {"units": "s"}), "spring": list(self.springs)},
-            attrs={"driveline": self.line.name, "outcome": self.outcome.kind,
-                   "outcome_sentence": self.outcome.sentence},
-        )  # fmt: skip
+    def declared(self) -> Iterator[Held]:
+        """Twist, its rate, torque and stage of every spring over time, and the located changes of stage."""
+        yield axis("time", self.time, "s")
+        yield axis("spring", self.springs)
+        yield over("time spring", "twist", self.twist, "rad")
+        yield over("time spring", "twist_rate", self.rate, "rad/s")
+        yield over("time spring", "torque", self.torque, "N*m")
+        yield over("time spring", "stage", self.stage[:, : len(self.springs)])
+        yield over("event", "event_time", self.events.time, "s")
+        yield over("event", "event_spring", np.array([self.springs[i] for i in self.events.spring], dtype=str))
+        yield over("event", "event_stage", self.events.stage)
+        yield over("event", "event_side", self.events.side)
+        yield remark("driveline", self.line.name)
+        yield from ending(self.outcome)
 
     def __str__(self) -> str:
         rows = []
@@ -152,8 +143,6 @@ class ExactMotion:
         span = f"from {self.start_time:.6g} to {self.end:.6g} s"
         head = f"exact motion of {self.line.name} {span}, {len(self.events)} events"
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 def exact_motion(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
@@ -19,13 +19,13 @@ from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -33,8 +33,8 @@ PER_TURN = 128
 MOST_SAMPLES = 200_000
 
 
-@dataclass(frozen=True)
-class LineSimulation:
+@dataclass(frozen=True, repr=False)
+class LineSimulation(Result):
     """A motion of a line.
 
     time (points,) [s]; rotation (points, coordinate): deviation from uniform rotation [rad], and rate [rad/s];
@@ -148,34 +148,22 @@ class LineSimulation:
     def _torque_at(self, times: Array) -> Array:
         return self.motion_at(times).torque
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
+    def declared(self) -> Iterator[Held]:
+        """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
         n = len(self.line.names)
-        return xr.Dataset(
-            {
-                "rotation": (("time", "coordinate"), self.state[:, :n], {"units": "rad"}),
-                "rate": (("time", "coordinate"), self.state[:, n:], {"units": "rad/s"}),
-                "twist": (("time", "shaft"), self.twist, {"units": "rad"}),
-                "torque": (("time", "shaft"), self.torque, {"units": "N*m"}),
-                "input_speed": ("time", self.input_speed, {"units": "rad/s"}),
-                "input_angle": ("time", self.profile.angle(self.time), {"units": "rad"}),
-            },
-            coords={
-                "time": ("time", self.time, {"units": "s"}),
-                "coordinate": list(self.line.names),
-                "shaft": list(self.shafts),
-            },
-            attrs={
-                "driveline": self.pieces[0].system.name,
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                "tolerance": self.pieces[0].tolerance,
-                "steps": self.steps,
-            },
-        )
+        yield axis("time", self.time, "s")
+        yield axis("coordinate", self.line.names)
+        yield axis("shaft", self.shafts)
+        yield over("time coordinate", "rotation", self.state[:, :n], "rad")
+        yield over("time coordinate", "rate", self.state[:, n:], "rad/s")
+        yield over("time shaft", "twist", self.twist, "rad")
+        yield over("time shaft", "torque", self.torque, "N*m")
+        yield over("time", "input_speed", self.input_speed, "rad/s")
+        yield over("time", "input_angle", self.profile.angle(self.time), "rad")
+        yield remark("driveline", self.pieces[0].system.name)
+        yield from ending(self.outcome)
+        yield remark("tolerance", self.pieces[0].tolerance)
+        yield remark("steps", self.steps)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torques over time; see ``trunnion.plots.motion``."""
@@ -193,8 +181,6 @@ class LineSimulation:
         turns = float(self.profile.angle(self.end)) / (2 * np.pi)
         head = f"motion of {self.pieces[0].system.name} over {self.end:.6g} s ({turns:.6g} turns): {self.steps} steps"
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 @overload

@@ -12,7 +12,7 @@ Bifurcation and Chaos 1, 1991):
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
 from trunnion.numerics.continuation.newton import solve
+from trunnion.results.declared import Held, Result, axis, ending, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.verdict import Verdict, verdicts
+from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -112,8 +112,8 @@ class SpecialPoint:
     peak_to_peak: Array
 
 
-@dataclass(frozen=True)
-class PeriodicBranch:
+@dataclass(frozen=True, repr=False)
+class PeriodicBranch(Result):
     """Periodic motions along a branch.
 
     parameter (points,); start (points, n); multipliers (points, n); verdict (points,) codes; peak_to_peak (points,
@@ -171,28 +171,18 @@ class PeriodicBranch:
             found.append(_motion_at(self.problem, self.unknowns[-1], value))
         return found
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        from trunnion.results.verdict import flag_attributes
-
-        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=-1)
-        return xr.Dataset(
-            {
-                "parameter": ("point", self.parameter, {"units": self.unit, "long_name": self.label}),
-                "period": ("point", self.period, {"units": "s"}),
-                "peak_to_peak": (("point", "curve"), self.peak_to_peak, {"units": self.curve_unit}),
-                "largest": (("point", "curve"), self.largest, {"units": self.curve_unit}),
-                "multiplier": (("point", "multiplier_number", "part"), parts, {"units": "1"}),
-                "verdict": ("point", self.verdict, flag_attributes()),
-                "special_kind": ("special", np.array([p.kind for p in self.special], dtype=str)),
-                "special_parameter": ("special", np.array([p.parameter for p in self.special]), {"units": self.unit}),
-            },
-            coords={"curve": list(self.curves), "part": ["real", "imaginary"]},
-            attrs={"outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Size, period and multipliers over the points of the branch, and its special points."""
+        yield axis("curve", self.curves)
+        yield over("point", "parameter", self.parameter, self.unit, self.label)
+        yield over("point", "period", self.period, "s")
+        yield over("point curve", "peak_to_peak", self.peak_to_peak, self.curve_unit)
+        yield over("point curve", "largest", self.largest, self.curve_unit)
+        yield over("point multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("point", "verdict", self.verdict, **flag_attributes())
+        yield over("special", "special_kind", np.array([p.kind for p in self.special], dtype=str))
+        yield over("special", "special_parameter", np.array([p.parameter for p in self.special]), self.unit)
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
@@ -207,8 +197,6 @@ class PeriodicBranch:
         low, high = self.parameter.min(), self.parameter.max()
         head = f"branch of periodic motions over {self.label} from {low:.6g} to {high:.6g}{unit}: {counts}"
         return "\n".join([head, *rows, f"  {self.outcome}"])
-
-    __repr__ = __str__
 
 
 def follow_both_ways(

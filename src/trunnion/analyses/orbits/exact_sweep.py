@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -18,12 +19,12 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import kernel, move
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -31,8 +32,8 @@ REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
 
-@dataclass(frozen=True)
-class LineSweep:
+@dataclass(frozen=True, repr=False)
+class LineSweep(Result):
     """Steady motions of a line, in the order it was swept.
 
     value (points,) [rad/s]: speed, or common frequency of excitation in time; torque_low, torque_high (points, spring)
@@ -96,35 +97,27 @@ class LineSweep:
             )  # fmt: skip
         return self.springs.index(spring)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        over = "speed" if self.line.clock == "speed" else "frequency"
+    def declared(self) -> Iterator[Held]:
+        """Extremes of every spring's torque, impacts and contact of those with stages, over speed or frequency."""
+        clock = "speed" if self.line.clock == "speed" else "frequency"
         staged = [self.springs[e] for e in self.line.staged]
         shape = (len(self.value), len(staged))
         impacts = np.array([[c.impacts for c in row] for row in self.contacts]).reshape(shape)
         energy = np.array([[c.impact_energy for c in row] for row in self.contacts]).reshape(shape)
         sides = np.array([[c.contact for c in row] for row in self.contacts], dtype=str).reshape(shape)
-        return xr.Dataset(
-            {
-                "torque_low": ((over, "spring"), self.torque_low, {"units": "N*m"}),
-                "torque_high": ((over, "spring"), self.torque_high, {"units": "N*m"}),
-                "impacts": ((over, "staged_spring"), impacts),
-                "impact_energy": ((over, "staged_spring"), energy, {"units": "J"}),
-                "contact": ((over, "staged_spring"), sides),
-                "settled": (over, self.settled),
-                "periods": (over, self.periods),
-            },
-            coords={
-                over: (over, self.value, {"units": "rad/s"}),
-                "spring": list(self.springs),
-                "staged_spring": staged,
-            },
-            attrs={"driveline": self.line.name, "direction": "up" if self.up else "down",
-                   "outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
-        )  # fmt: skip
+        yield axis(clock, self.value, "rad/s")
+        yield axis("spring", self.springs)
+        yield axis("staged_spring", staged)
+        yield over(f"{clock} spring", "torque_low", self.torque_low, "N*m")
+        yield over(f"{clock} spring", "torque_high", self.torque_high, "N*m")
+        yield over(f"{clock} staged_spring", "impacts", impacts)
+        yield over(f"{clock} staged_spring", "impact_energy", energy, "J")
+        yield over(f"{clock} staged_spring", "contact", sides)
+        yield over(clock, "settled", self.settled)
+        yield over(clock, "periods", self.periods)
+        yield remark("driveline", self.line.name)
+        yield remark("direction", "up" if self.up else "down")
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
@@ -157,8 +150,6 @@ class LineSweep:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 def exact_sweep(

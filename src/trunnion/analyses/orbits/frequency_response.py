@@ -10,7 +10,7 @@ sweep up, sweep down  settled motion step by step, as a bench would find it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from time import perf_counter
@@ -37,6 +37,7 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.stage_laws import has_stages
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
+from trunnion.results.declared import Held, Result, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
@@ -46,7 +47,6 @@ from trunnion.systems.second_order import SecondOrder
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -65,8 +65,8 @@ BALANCED = 20
 SWEPT, SAMPLES = 101, 1024
 
 
-@dataclass(frozen=True)
-class FrequencyResponse:
+@dataclass(frozen=True, repr=False)
+class FrequencyResponse(Result):
     """Half peak-to-peak over frequency by one method.
 
     frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
@@ -117,24 +117,16 @@ class FrequencyResponse:
             found.append((float(size[-1]), bool(self.stable[-1])))
         return sorted(found, reverse=True)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset."""
-        import xarray as xr
-
-        return xr.Dataset(
-            {
-                "frequency": ("point", self.frequency, {"units": "rad/s"}),
-                "half_peak_to_peak": ("point", self.half_peak_to_peak),
-                "stable": ("point", self.stable),
-                "mark_kind": ("mark", np.array([m[0] for m in self.marks], dtype=str)),
-                "mark_frequency": ("mark", np.array([m[1] for m in self.marks], dtype=float), {"units": "rad/s"}),
-            },
-            attrs={
-                "method": self.method, "curve": self.curve, "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-            },
-        )  # fmt: skip
+    def declared(self) -> Iterator[Held]:
+        """Half peak-to-peak and stability over the points of the curve, and its marks."""
+        yield over("point", "frequency", self.frequency, "rad/s")
+        yield over("point", "half_peak_to_peak", self.half_peak_to_peak)
+        yield over("point", "stable", self.stable)
+        yield over("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
+        yield over("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
+        yield remark("method", self.method)
+        yield remark("curve", self.curve)
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
@@ -157,8 +149,6 @@ class FrequencyResponse:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from the difference of Φ at two tolerances, and checked by Liouville's identity
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,7 @@ from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
 from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
@@ -31,7 +32,6 @@ from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -52,8 +52,8 @@ SETTLING = (0, 40, 400)
 """Periods integrated from the start before shooting, tried one after the other."""
 
 
-@dataclass(frozen=True)
-class PeriodicOrbit:
+@dataclass(frozen=True, repr=False)
+class PeriodicOrbit(Result):
     """A periodic motion and its stability.
 
     start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
@@ -116,38 +116,24 @@ class PeriodicOrbit:
         """Largest minus smallest value of every state (n,), found on the dense output."""
         return extremes(self.trajectory.at, self.trajectory.time_of_state).span
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units; complex numbers as real and imaginary parts."""
-        import xarray as xr
-
-        states = {
-            name: ("time", self.state[:, i], {"units": unit})
-            for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
-        }
-        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=1)
-        return xr.Dataset(
-            {
-                **states,
-                "multiplier": (("multiplier_number", "part"), parts, {"units": "1"}),
-                "multiplier_error": ("multiplier_number", self.multiplier_error, {"units": "1"}),
-                "spectral_radius": ((), self.spectral_radius, {"units": "1"}),
-                "error_estimate": ((), self.error_estimate, {"units": "1"}),
-                "growth_rate": ((), self.growth_rate, {"units": "1/s"}),
-                "period": ((), self.period, {"units": "s"}),
-            },
-            coords={"time": ("time", self.time, {"units": "s"}), "part": ["real", "imaginary"]},
-            attrs={
-                "system": self.system.name,
-                "verdict": str(self.verdict),
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                "residual": self.residual,
-                "liouville_defect": self.liouville_defect,
-                "tangents": "exact" if self.system.exact_tangents else "differenced",
-                **{f"parameter {k}": v for k, v in self.system.parameters.items()},
-            },
-        )
+    def declared(self) -> Iterator[Held]:
+        """Every state over one period, and the multipliers."""
+        yield axis("time", self.time, "s")
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("time", name, self.state[:, i], unit)
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield over("", "spectral_radius", self.spectral_radius, "1")
+        yield over("", "error_estimate", self.error_estimate, "1")
+        yield over("", "growth_rate", self.growth_rate, "1/s")
+        yield over("", "period", self.period, "s")
+        yield remark("system", self.system.name)
+        yield remark("verdict", str(self.verdict))
+        yield from ending(self.outcome)
+        yield remark("residual", self.residual)
+        yield remark("liouville_defect", self.liouville_defect)
+        yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Portrait of the orbit; see ``trunnion.plots.motion``."""
@@ -175,8 +161,6 @@ class PeriodicOrbit:
                 f"  {self.outcome}",
             ]
         )
-
-    __repr__ = __str__
 
 
 def periodic_orbit(

@@ -7,7 +7,7 @@ the two linearisations say is stated beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -35,6 +35,7 @@ from trunnion.equations.loads import given_shares
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.curves import extremes, fourier
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
@@ -43,7 +44,6 @@ from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -84,8 +84,8 @@ class LinearComparison:
         )
 
 
-@dataclass(frozen=True)
-class PeriodicResponse:
+@dataclass(frozen=True, repr=False)
+class PeriodicResponse(Result):
     """The periodic motion of a line at one speed.
 
     torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
@@ -212,41 +212,27 @@ class PeriodicResponse:
         """What to read first, speeds in ``unit``."""
         return by_gravity(_findings(self, unit))
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
+    def declared(self) -> Iterator[Held]:
+        """Twist and torque over one period, their orders, and the multipliers."""
         orders, amplitude = self.order_spectrum()
-        parts = np.stack([self.multipliers.real, self.multipliers.imag], axis=1)
-        return xr.Dataset(
-            {
-                "twist": (("time", "shaft"), self.twist, {"units": "rad"}),
-                "torque": (("time", "shaft"), self.torque, {"units": "N*m"}),
-                "torque_peak_to_peak": ("shaft", self.torque_peak_to_peak, {"units": "N*m"}),
-                "torque_mean": ("shaft", self.torque_mean, {"units": "N*m"}),
-                "order_amplitude": (("order", "shaft"), amplitude, {"units": "N*m"}),
-                "multiplier": (("multiplier_number", "part"), parts, {"units": "1"}),
-                "multiplier_error": ("multiplier_number", self.orbit.multiplier_error, {"units": "1"}),
-                "spectral_radius": ((), self.spectral_radius, {"units": "1"}),
-                "growth_rate": ((), self.growth_rate, {"units": "1/s"}),
-                "period": ((), self.period, {"units": "s"}),
-                "speed": ((), self.speed, {"units": "rad/s"}),
-            },
-            coords={
-                "time": ("time", self.time, {"units": "s"}),
-                "shaft": list(self.shafts),
-                "order": ("order", orders, {"units": "1", "long_name": "cycles per turn of the input"}),
-                "part": ["real", "imaginary"],
-            },
-            attrs={
-                "driveline": self.orbit.system.name,
-                "verdict": str(self.verdict),
-                "outcome": self.outcome.kind,
-                "outcome_sentence": self.outcome.sentence,
-                "comparison": str(self.comparison or self.no_comparison),
-            },
-        )
+        yield axis("time", self.time, "s")
+        yield axis("shaft", self.shafts)
+        yield axis("order", orders, "1", "cycles per turn of the input")
+        yield over("time shaft", "twist", self.twist, "rad")
+        yield over("time shaft", "torque", self.torque, "N*m")
+        yield over("shaft", "torque_peak_to_peak", self.torque_peak_to_peak, "N*m")
+        yield over("shaft", "torque_mean", self.torque_mean, "N*m")
+        yield over("order shaft", "order_amplitude", amplitude, "N*m")
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("multiplier_number", "multiplier_error", self.orbit.multiplier_error, "1")
+        yield over("", "spectral_radius", self.spectral_radius, "1")
+        yield over("", "growth_rate", self.growth_rate, "1/s")
+        yield over("", "period", self.period, "s")
+        yield over("", "speed", self.speed, "rad/s")
+        yield remark("driveline", self.orbit.system.name)
+        yield remark("verdict", str(self.verdict))
+        yield from ending(self.outcome)
+        yield remark("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
@@ -281,8 +267,6 @@ class PeriodicResponse:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 def periodic_response(

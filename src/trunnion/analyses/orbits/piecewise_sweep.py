@@ -6,6 +6,7 @@ one frequency, and the rattle index, what the impacts of a period amount to, ove
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
@@ -26,6 +27,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS, MOST_EVENTS, kernel
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -39,8 +41,8 @@ LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Result):
     """Steady motion over frequency, in the order it was swept.
 
     frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
@@ -78,21 +80,17 @@ class Sweep:
         places = abrupt_changes(self.peak_to_peak)
         return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in places)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset."""
-        import xarray as xr
-
+    def declared(self) -> Iterator[Held]:
+        """Extremes, impacts and contact over frequency."""
         names = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "settled")
-        variables: dict[str, Any] = {name: ("frequency", np.asarray(getattr(self, name))) for name in names}
-        variables["contact"] = ("frequency", np.array(self.contact, dtype=str))
-        variables["periods"] = ("frequency", self.periods)
-        return xr.Dataset(
-            variables,
-            coords={"frequency": ("frequency", self.frequency, {"units": "rad/s"})},
-            attrs={"oscillator": self.oscillator.name, "direction": "up" if self.up else "down",
-                   "outcome": self.outcome.kind, "outcome_sentence": self.outcome.sentence},
-        )  # fmt: skip
+        yield axis("frequency", self.frequency, "rad/s")
+        for name in names:
+            yield over("frequency", name, np.asarray(getattr(self, name)))
+        yield over("frequency", "contact", np.array(self.contact, dtype=str))
+        yield over("frequency", "periods", self.periods)
+        yield remark("oscillator", self.oscillator.name)
+        yield remark("direction", "up" if self.up else "down")
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
@@ -110,8 +108,6 @@ class Sweep:
             f"jumps: {jumps}\n"
             f"  contact: {kinds}; {self.outcome}"
         )
-
-    __repr__ = __str__
 
 
 @overload
