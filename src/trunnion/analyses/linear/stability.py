@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
+from trunnion.analyses.linear.mode_content import mode_content, named_resonance
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.own_motion import own_motion
-from trunnion.analyses.linear.resonance_speeds import Resonance, nearest_resonance
+from trunnion.analyses.linear.resonance_speeds import Resonance, Source, nearest_resonance, sources
 from trunnion.analyses.orbits.periodic_orbit import speed_in_words
 from trunnion.analyses.orders.response import without_excitation
 from trunnion.driveline.driveline import Driveline
@@ -195,7 +196,7 @@ def stability(
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
         run = _propagate(line, tolerance)
-        return _judge(line, run, (Fraction(1),), Fraction(1), scaled, None, np.zeros((2 * line.size, 0)))
+        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, np.zeros((2 * line.size, 0)))
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
@@ -206,11 +207,10 @@ def stability(
     run = _propagate(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     topo = assembly.topology
-    rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
     response = linear_response(assembly, system.rate, statically_twisted=statically_twisted)
-    frequency = np.array(system.frequencies)
-    half_turns = 2 * require_period(assembly.line, topo)
-    found = _judge(system, run, rates, half_turns, frequency, response, rigid_motions(topo, coefficients))
+    turns, frequency = require_period(assembly.line, topo), np.array(system.frequencies)
+    aside = rigid_motions(topo, coefficients)
+    found = _judge(system, run, sources(assembly), turns, frequency, response, aside)
     return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
 
 
@@ -264,8 +264,8 @@ def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
 def _judge(
     system: PeriodicLinearSystem,
     run: Propagation,
-    rates: tuple[Fraction, ...],
-    half_turns: Fraction,
+    excited: tuple[Source, ...],
+    turns: Fraction,
     frequency: Array,
     response: LinearResponse | None,
     aside: Array,
@@ -286,9 +286,11 @@ def _judge(
     if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
         farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
-        named = nearest_resonance(frequency, complex(judged[np.abs(judged).argmax()]), rates, half_turns, farthest)
+        critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
+        content = mode_content(system, run, turns, complex(values[critical]), modes[:, critical].astype(complex))
+        named = named_resonance(content, frequency, excited, turns, farthest)
     if named is not None:
-        named = Resonance(named.speed * system.rate, named.kind, named.modes, named.order, named.rate)
+        named = replace(named, speed=named.speed * system.rate)
     sign, log_det = np.linalg.slogdet(matrix)
     return Stability(
         multipliers=values,
