@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source
-from trunnion.numerics.chain.dense_monodromy import Propagation
-from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
 Array = NDArray[np.float64]
 MAIN = 0.5
@@ -43,22 +41,34 @@ class ModeContent:
         return (min(i, j), max(i, j)) if clear else None
 
 
-def mode_content(
-    system: PeriodicLinearSystem, run: Propagation, turns: Fraction, multiplier: complex, start: NDArray[np.complex128]
-) -> ModeContent | None:
-    """Content of the Floquet mode that is ``start`` (2n,), x and dx/dτ, at τ = 0; modes are those of the mean M and K.
+@dataclass(frozen=True)
+class ModeMotion:
+    """The displacements x (samples, n) of one growing Floquet mode over a period, and what they are judged by.
+
+    Samples stand at equal distances of the input's angle from 0 on, the end left out; ``exponent`` is ln σ over
+    ``period`` [rad]; mass and stiffness (n, n) are the means M and K over the period, in any common unit.
+    """
+
+    displacement: NDArray[np.complex128]
+    exponent: complex
+    period: float
+    mass: Array
+    stiffness: Array
+
+
+def mode_content(motion: ModeMotion, turns: Fraction) -> ModeContent | None:
+    """Content of a Floquet mode of period ``turns`` of the input; modes are those of the mean M and K.
 
     None where the mode does not oscillate both ways.
     """
-    n, tau = system.size, run.tau[:-1]
-    mean = system.coefficients(tau[:: max(1, len(tau) // 64)])
-    mass, stiffness = mean.mass.mean(0), mean.stiffness.mean(0)
+    mass, stiffness = motion.mass, motion.stiffness
     shapes = eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)[1]
-    exponent = np.log(complex(multiplier)) / system.period
-    periodic = (run.matrix[:-1, :n] @ start) * np.exp(-exponent * tau)[:, None]
-    harmonic = np.round(np.fft.fftfreq(len(tau)) * len(tau)).astype(int)
-    frequency = exponent.imag + harmonic * 2 * np.pi / system.period
-    modal = np.fft.fft(periodic, axis=0) / len(tau) @ mass @ shapes
+    count = len(motion.displacement)
+    tau = motion.period * np.arange(count) / count
+    periodic = motion.displacement * np.exp(-motion.exponent * tau)[:, None]
+    harmonic = np.round(np.fft.fftfreq(count) * count).astype(int)
+    frequency = motion.exponent.imag + harmonic * 2 * np.pi / motion.period
+    modal = np.fft.fft(periodic, axis=0) / count @ mass @ shapes
     action = frequency[:, None] * np.abs(modal) ** 2
     ahead, back = np.maximum(action, 0), np.maximum(-action, 0)
     forward, backward = ahead.sum(0), back.sum(0)

@@ -10,27 +10,57 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LinearResponse
+from trunnion.analyses.linear.mode_content import ModeMotion
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
 from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
-from trunnion.equations.coefficients import assemble
+from trunnion.equations.aligned import aligned_matrices, frequencies
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.line_system import line_system
+from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
+from trunnion.numerics.integration.integration import integrate
 
 SAMPLES = 256
+PER_CYCLE = 8
+"""Samples at least per cycle of the highest mode."""
 
 
 @dataclass(frozen=True)
 class OwnMotion:
-    """The motion, its twists and torques over one period, and the torque [N m at the input] beyond the balance."""
+    """The motion at ``speed`` [rad/s], its twists and torques over one period, and the torque [N m at the input]
+    beyond the balance; ``assembly`` is the line without excitations."""
 
     orbit: PeriodicOrbit
     response: LinearResponse
     extra_torque: float
+    assembly: Assembly
+    speed: float
+
+    def mode_motion(self, multiplier: complex, start: NDArray[np.complex128]) -> ModeMotion:
+        """How a disturbance that is ``start`` (2n,) at t = 0, a Floquet mode, moves over the period.
+
+        Modes are those of the means of M and K about the motion of rigid shafts, which is near.
+        """
+        topo, orbit, system = self.assembly.topology, self.orbit, self.orbit.system
+        co = self.assembly.coefficients(self.assembly.table(1, self.speed))
+        turn = self.speed * orbit.period
+        mean = line_matrices(topo, co, turn * np.arange(SAMPLES) / SAMPLES)
+        highest = float(frequencies(aligned_matrices(topo, co), free=True).max()) * orbit.period / (2 * np.pi)
+        times = orbit.period * np.linspace(0, 1, max(SAMPLES, PER_CYCLE * int(np.ceil(highest))) + 1)
+        block = np.stack([orbit.start, start.real, start.imag])
+        samples = np.empty((len(times) - 1, topo.size), dtype=complex)
+        for i, (now, after) in enumerate(zip(times[:-1], times[1:], strict=True)):
+            samples[i] = block[1, : topo.size] + 1j * block[2, : topo.size]
+            regime = system.regime_at(now, block[0])
+            block = integrate(system.equations, now, after, block, regime=regime, tolerance=1e-8, dense=False).final
+        exponent = np.log(multiplier) / turn
+        return ModeMotion(samples, exponent, turn, mean.mass[0].mean(0), mean.stiffness[0].mean(0))
 
 
 def own_motion(line: Driveline, speed: float) -> OwnMotion:
@@ -62,7 +92,7 @@ def own_motion(line: Driveline, speed: float) -> OwnMotion:
         tuple(prepared.assembly.line.names[topo.stations[j].element] for j in topo.joints),
         topo.names,
     )
-    return OwnMotion(orbit, response, found.extra_torque)
+    return OwnMotion(orbit, response, found.extra_torque, prepared.assembly, speed)
 
 
 def _quiet(line: Driveline) -> Driveline:

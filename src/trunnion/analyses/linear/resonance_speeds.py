@@ -35,8 +35,6 @@ from trunnion.results.speeds import show_speed, speed_factor
 
 KINDS = ("harmonic", "subharmonic", "sum", "difference")
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-LOCKED = 0.7
-"""Radians over a period between a mode and the multiplier that it is locked into, at most."""
 
 
 @dataclass(frozen=True)
@@ -182,41 +180,3 @@ def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:
             if high > low * (1 + 1e-12):
                 found.append(Resonance((high - low) / (2 * k * float(rate)), "difference", (i, j), k, rate))
     return found
-
-
-def _turned(frequency: float, half_turns: Fraction, multiplier: complex) -> float:
-    """How far [rad] the turn of a mode over the period is from that of a multiplier, forward or backward."""
-    turn, angle = frequency * np.pi * float(half_turns), float(np.angle(multiplier))
-    return float(min(abs(np.angle(np.exp(1j * (turn - side * angle)))) for side in (-1, 1)))
-
-
-def nearest_resonance(
-    frequency: np.ndarray,
-    multiplier: complex,
-    rates: tuple[Fraction, ...] = (Fraction(1),),
-    half_turns: Fraction = Fraction(1),
-    farthest: float = 0.1,
-    orders: int = 4,
-) -> Resonance | None:
-    """The resonance that a critical multiplier names, or None where none is near.
-
-    ``frequency`` are natural frequencies over the input speed, so that speed 1 is where the line runs;
-    ``half_turns`` is the period of the multiplier in half turns of the input. A mode locked to m times a joint's
-    excitation 2RΩ turns by m R π in every half turn, so over the period a real multiplier must have the sign
-    of cos(m R π half_turns); a complex one belongs to a sum if it turns as both its modes do. Among those that
-    fit and lie within a relative distance ``farthest`` in speed, the nearest.
-    """
-    real = abs(multiplier.imag) <= 1e-7 * abs(multiplier)
-    candidates = []
-    for rate in rates:
-        for r in _at_rate(frequency, orders, rate):
-            if r.kind in ("harmonic", "subharmonic"):
-                m = 2 * r.order if r.kind == "harmonic" else 2 * r.order - 1
-                sign = np.cos(np.pi * float(m * rate * half_turns))
-                fits = real and sign * multiplier.real > 0.99 * abs(multiplier.real)
-            else:
-                fits = r.kind == "sum" and (not real or half_turns != 1)
-                fits = fits and all(_turned(frequency[i - 1], half_turns, multiplier) < LOCKED for i in r.modes)
-            if fits and abs(np.log(r.speed)) <= farthest:
-                candidates.append(r)
-    return min(candidates, key=lambda r: (round(abs(np.log(r.speed)), 9), r.order)) if candidates else None

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
-from trunnion.analyses.linear.mode_content import mode_content, named_resonance
+from trunnion.analyses.linear.mode_content import ModeMotion, mode_content, named_resonance
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.own_motion import own_motion
-from trunnion.analyses.linear.resonance_speeds import Resonance, Source, nearest_resonance, sources
+from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.periodic_orbit import speed_in_words
 from trunnion.analyses.orders.response import without_excitation
 from trunnion.driveline.driveline import Driveline
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
@@ -217,28 +218,30 @@ def stability(
 def _about_own_motion(assembly: Assembly, speed: float) -> Stability:
     """Of a free line with bent joints, which no motion of rigid shafts stands for."""
     topo = assembly.topology
-    half_turns = 2 * require_period(assembly.line, topo)
+    turns = require_period(assembly.line, topo)
     motion = own_motion(assembly.line, speed)
-    orbit, named = motion.orbit, None
-    critical = orbit.multipliers[np.argmin(np.abs(np.abs(orbit.multipliers) - orbit.spectral_radius))]
-    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(critical.real - 1) > SPEED_ALONE:
-        frequency = natural_frequencies(assembly).frequency / speed
-        rates = tuple(sorted({abs(topo.speed_ratio[j]) for j in topo.joints}))
-        farthest = 0.5 if orbit.verdict is Verdict.UNSTABLE else 0.1
-        named = nearest_resonance(frequency, complex(critical), rates, half_turns, farthest)
-    if named is not None:
-        named = Resonance(named.speed * speed, named.kind, named.modes, named.order, named.rate)
+    orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)
-    modes = np.linalg.eig(orbit.monodromy)
-    vectors = modes[1][:, np.argsort(-np.abs(modes[0]))] * scale[:, None]
+    values, vectors = np.linalg.eig(orbit.monodromy)
+    by_modulus = np.argsort(-np.abs(values))
+    critical = np.argmin(np.abs(np.abs(values) - orbit.spectral_radius))
+    named = None
+    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
+        content = mode_content(motion.mode_motion(complex(values[critical]), vectors[:, critical]), turns)
+        frequency = natural_frequencies(assembly).frequency / speed
+        farthest = 0.5 if orbit.verdict is Verdict.UNSTABLE else 0.1
+        named = named_resonance(content, frequency, sources(assembly), turns, farthest)
+    if named is not None:
+        named = replace(named, speed=named.speed * speed)
+    shapes = vectors[:, by_modulus] * scale[:, None]
     return Stability(
         multipliers=orbit.multipliers,
         multiplier_error=orbit.multiplier_error,
-        floquet_modes=vectors / np.abs(vectors).max(0),
+        floquet_modes=shapes / np.abs(shapes).max(0),
         spectral_radius=orbit.spectral_radius,
         error_estimate=orbit.error_estimate,
         verdict=orbit.verdict,
-        period=np.pi * float(half_turns),
+        period=2 * np.pi * float(turns),
         speed=speed,
         resonance=named,
         response=motion.response,
@@ -259,6 +262,16 @@ def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
     cycles = system.fastest * system.period / (2 * np.pi)
     least = max(TIMES_PER_PERIOD // 2, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1)))))
     return propagate(arrays, system.period, system.size, tolerance, least)
+
+
+def _mode_motion(system: PeriodicLinearSystem, run: Propagation, multiplier: complex, start: Complex) -> ModeMotion:
+    """How the Floquet mode that is ``start`` (2n,) at τ = 0 moves over the period."""
+    n, at_rest = system.size, run.states(np.zeros(2 * system.size))
+    parts = [run.states(np.ascontiguousarray(part)) - at_rest for part in (start.real, start.imag)]
+    mean = system.coefficients(run.tau[: -1 : max(1, len(run.tau) // 64)])
+    displacement = (parts[0] + 1j * parts[1])[:-1, :n]
+    exponent = np.log(complex(multiplier)) / system.period
+    return ModeMotion(displacement, exponent, system.period, mean.mass.mean(0), mean.stiffness.mean(0))
 
 
 def _judge(
@@ -287,8 +300,8 @@ def _judge(
         # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
         farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
         critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
-        content = mode_content(system, run, turns, complex(values[critical]), modes[:, critical].astype(complex))
-        named = named_resonance(content, frequency, excited, turns, farthest)
+        motion = _mode_motion(system, run, complex(values[critical]), modes[:, critical].astype(complex))
+        named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
     if named is not None:
         named = replace(named, speed=named.speed * system.rate)
     sign, log_det = np.linalg.slogdet(matrix)
