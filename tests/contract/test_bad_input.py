@@ -13,6 +13,7 @@ from trunnion.driveline import (
     Driveline,
     HookeJoint,
     IdealJoint,
+    Limit,
     LoadCase,
     Operation,
     Ratio,
@@ -33,6 +34,48 @@ def line(*elements, **rest):
 
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
+    # limits
+    (lambda: Limit(max_torque=1), "limit.of: is missing", 'of = "Shaft 1"'),
+    (lambda: Limit(of="Shaft 1"), "limit of Shaft 1.of = 'Shaft 1': limits nothing", "max_torque"),
+    (lambda: Limit(of="Shaft 1", max_torque="400"), "limit of Shaft 1.max_torque = '400': has no unit", "N*m"),
+    (lambda: Limit(of="Shaft 1", max_torque="4 rpm"), "limit of Shaft 1.max_torque = '4 rpm': rpm is not", "N*m"),
+    (lambda: Limit(of="Shaft 1", max_stress=0), "limit of Shaft 1.max_stress = 0: must be positive", "GPa"),
+    (lambda: Limit(of="Shaft 1", max_toque=1), "limit of Shaft 1.max_toque = 1: unknown key", '"max_torque"'),
+    (lambda: Limit(of="Shaft 1", max_torque=1, margin=10), "limit of Shaft 1.margin = 10: must be", "stay free"),
+    (
+        lambda: Limit(of="Shaft 1", transient_vibratory_torque=1),
+        "limit of Shaft 1.vibratory_torque: is missing beside transient",
+        "continuous",
+    ),
+    (
+        lambda: Limit(of="Shaft 1", vibratory_torque=2, transient_vibratory_torque=1),
+        "limit of Shaft 1.transient_vibratory_torque = 1: is smaller than vibratory_torque",
+        "swap",
+    ),
+    (
+        lambda: Limit(of="Shaft 1", ship_shaft="flansh"),
+        "limit of Shaft 1.ship_shaft = 'flansh': is not a design feature",
+        '"flange"',
+    ),
+    (lambda: line(limits=[Limit(of="shaf", max_torque=1)]), "limit.of = 'shaf': is not an element", "Shaft 1"),
+    (lambda: line(limits=[Limit(of="Coupling *", max_torque=1)]), "limit.of = 'Coupling *': has no el", "Shaft *"),
+    (
+        lambda: line(limits=[Limit(of="Disk 1", max_torque=1)]),
+        "limit of Disk 1.max_torque = 1: does not belong to a Disk",
+        "max_acceleration",
+    ),
+    (
+        lambda: line(limits=[Limit(of="Shaft *", max_stress=1)]),
+        "limit of Shaft *.max_stress = 1: needs the outer_diameter",
+        "outer_diameter, length",
+    ),
+    (
+        lambda: line(limits=[Limit(of="Shaft 1", max_torque=1), Limit(of="Shaft 1", max_torque=2)]),
+        "limit of Shaft 1.max_torque = 2: is stated twice",
+        "leave one",
+    ),
+    (lambda: line(limits={"of": "Shaft 1"}), "driveline.limits = ", "tn.Limit("),
+    (lambda: line(limits=[3]), "driveline.limit 1 = 3: is not a limit", "tn.Limit("),
     # quantities
     (
         lambda: HookeJoint(angle="12 kg"),
@@ -371,6 +414,15 @@ DISK = '[[element]]\ntype = "Disk"\ninertia = 1\n'
 
 # (content of bad.toml, how the message starts, what it must also say)
 FILES = [
+    (HEAD + DISK + '[limit]\nof = "a"\n', "bad.toml: limit: is a single table", "[[limit]]"),
+    ("limit = [3]\n" + HEAD + DISK, "bad.toml: limit 1 = 3: is not a table", "[[limit]]"),
+    (HEAD + DISK + "[[limit]]\nmax_torque = 3\n", "bad.toml: limit 1.of: is missing", "of ="),
+    (
+        HEAD + DISK + '[[limit]]\nof = "Disk 1"\nmax_acceleration = "300"\n',
+        "bad.toml: limit of Disk 1.max_acceleration = '300': has no unit",
+        "rad/s^2",
+    ),
+    (HEAD + DISK + '[[limit]]\nof = "Disk"\nmax_acceleration = 3\n', "bad.toml: limit.of = 'Disk': is not", "Disk 1"),
     (b"", "bad.toml: is empty", "trunnion new two-shaft"),
     (b" \n\n", "bad.toml: is empty", "trunnion new two-shaft"),
     (b"\x89PNG\r\n\x1a\n\x00", "bad.toml: is not a text file in UTF-8", "save it as UTF-8"),

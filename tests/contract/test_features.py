@@ -199,7 +199,7 @@ def test_every_analysis_has_a_row() -> None:
 
 def test_every_field_belongs_to_a_feature() -> None:
     models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation]
-    models += [tn.Driveline, Operation, LoadCase]
+    models += [tn.Driveline, tn.Limit, Operation, LoadCase]
     common = set(Element.model_fields)
     fields = {
         f"{model.__name__}.{key}"

@@ -19,6 +19,7 @@ from trunnion.driveline import (
     Driveline,
     HookeJoint,
     IdealJoint,
+    Limit,
     LoadCase,
     Operation,
     Ratio,
@@ -107,6 +108,13 @@ def drivelines(draw):
             speed_unit=draw(st.sampled_from(["rpm", "Hz", "rad/s"])),
             load_cases=cases if draw(st.booleans()) else (),
         )
+    sprung = [n for n, e in zip(line.names, elements, strict=True) if isinstance(e, Shaft)]
+    if sprung and draw(st.booleans()):
+        margin = draw(st.floats(0, 0.99))
+        rest["limits"] = [
+            Limit(of=draw(st.sampled_from(sprung)), vibratory_torque=draw(positive), margin=margin),
+            Limit(of="Shaft *", max_torque=draw(positive), max_twist=draw(positive)),
+        ]
     return Driveline(elements, **rest)
 
 

@@ -17,6 +17,7 @@ from trunnion.driveline.elements import (
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
+from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.schema import json_schema
@@ -35,6 +36,7 @@ __all__ = [
     "GearPair",
     "HookeJoint",
     "IdealJoint",
+    "Limit",
     "LoadCase",
     "Operation",
     "Coupling",

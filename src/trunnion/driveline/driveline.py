@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, fie
 
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Name, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of, wrong_limits
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.refusals import about, nearest, refuse
@@ -31,10 +32,12 @@ class Driveline(BaseModel):
     damping_ratio : one damping ratio for the whole line instead of damping in the shafts.
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
     operation : where it runs.
+    limits : what its parts may bear, for ``assess``.
 
     Raises
     ------
-    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice.
+    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits of elements
+        that cannot have them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -45,6 +48,7 @@ class Driveline(BaseModel):
     damping_ratio: Dimensionless | None = None
     damping_ratio_frequency: Frequency | None = None
     operation: Operation | None = None
+    limits: Limits = ()
 
     def __init__(
         self,
@@ -55,6 +59,7 @@ class Driveline(BaseModel):
         damping_ratio: float | str | None = None,
         damping_ratio_frequency: float | str | None = None,
         operation: Operation | None = None,
+        limits: Iterable[Limit] = (),
     ) -> None:
         data: dict[str, Any] = {
             "elements": _checked(elements),
@@ -63,6 +68,7 @@ class Driveline(BaseModel):
             "damping_ratio": damping_ratio,
             "damping_ratio_frequency": damping_ratio_frequency,
             "operation": operation,
+            "limits": limits,
         }
         try:
             super().__init__(**data)
@@ -85,6 +91,7 @@ class Driveline(BaseModel):
         if not wrong:
             wrong += _wrong_ends(self, self.parents)
         wrong += [*_wrong_damping(self), *_wrong_loads(self), *_wrong_drives(self)]
+        wrong += wrong_limits(self.limits, self.names, self.elements)
         if wrong:
             raise InputError.together(wrong)
         return self
@@ -112,6 +119,11 @@ class Driveline(BaseModel):
             raise InputError(
                 "is not an element of this driveline", key=str(name), remedy=nearest(str(name), self.names)
             ) from None
+
+    @cached_property
+    def limits_by_element(self) -> tuple[OneLimit, ...]:
+        """Every limit that holds; one stated for an element goes before that of its kind."""
+        return limits_of(self.limits, self.names, self.elements)
 
     def with_load(self, case: str) -> Driveline:
         """The same line under the torques of one of its load cases; disks not named there keep theirs."""

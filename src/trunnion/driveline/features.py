@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, DoubleCardanJoint
+from trunnion.driveline.limits import Limit
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -159,6 +160,8 @@ NOT_FEATURES = {
     "Driveline.name": "a label",
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Driveline.limits": "what elements may bear, which assess compares with",
+    **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",
     "Operation.angle_range": "the default range of charts in reports",

@@ -32,6 +32,7 @@ from trunnion.driveline.elements import Disk, Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
 from trunnion.driveline.gears import MESH_KINDS
 from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
@@ -56,6 +57,7 @@ TOP_KEYS = (
     "damping_ratio",
     "damping_ratio_frequency",
     "operation",
+    "limit",
     "element",
 )
 
@@ -89,6 +91,7 @@ def dumps(line: Driveline) -> str:
     blocks = [_block("", top)]
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
+    blocks += [_block("[[limit]]", _written_limit(limit)) for limit in line.limits]
     for element in line.elements:
         blocks += _element_blocks(element)
     return "\n".join(blocks)
@@ -189,6 +192,8 @@ def _driveline(table: dict[str, Any], source: str) -> Driveline:
         read("elements", table.get("element"), lambda value: _elements(value, source))
     if "operation" in table:
         read("operation", table["operation"], _operation)
+    if "limit" in table:
+        read("limits", table["limit"], _limits)
     if wrong:
         wrong += problems_of([lambda: Driveline([Disk(inertia=1.0)], **rest)])  # its own keys
         raise InputError.together(wrong)
@@ -289,6 +294,30 @@ def _load_case(case: Any, place: int) -> LoadCase:
         if is_name(case.get("name")):
             raise
         raise about(error, label) from None
+
+
+def _limits(tables: Any) -> list[Limit]:
+    if not isinstance(tables, list):
+        remedy = "write [[limit]] with double brackets"
+        raise InputError("is a single table", key="limit", remedy=remedy)
+    made: list[Limit] = []
+    wrong: list[InputError] = []
+    for place, table in enumerate(tables, start=1):
+        label = f"limit {place}"
+        if not isinstance(table, dict):
+            wrong.append(InputError("is not a table", element=label, value=table, remedy="write [[limit]]"))
+            continue
+        try:
+            made.append(Limit(**table))
+        except InputError as error:
+            wrong += (error if isinstance(table.get("of"), str) else about(error, label)).problems
+    if wrong:
+        raise InputError.together(wrong)
+    return made
+
+
+def _written_limit(limit: Limit) -> dict[str, Any]:
+    return {k: written(v, LIMIT_KINDS[k]) if k in LIMIT_KINDS else v for k, v in limit.stated.items()}
 
 
 def _located(error: InputError, source: str) -> InputError:

@@ -80,6 +80,7 @@ PRESSURE = Kind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0
 DENSITY = Kind("density", "kg/m^3", "7850 kg/m^3")
 MASS = Kind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
 POWER = Kind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
+ACCELERATION = Kind("angular acceleration", "rad/s^2", "300 rad/s^2")
 RATIO = Kind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
@@ -97,6 +98,7 @@ KINDS = (
     DENSITY,
     MASS,
     POWER,
+    ACCELERATION,
     RATIO,
 )
 
@@ -284,6 +286,7 @@ Pressure = Annotated[float, Quantity(PRESSURE)]
 Density = Annotated[float, Quantity(DENSITY)]
 Mass = Annotated[float, Quantity(MASS)]
 Power = Annotated[float, Quantity(POWER)]
+Acceleration = Annotated[float, Quantity(ACCELERATION)]
 Dimensionless = Annotated[float, Quantity(RATIO)]
 
 

@@ -10,6 +10,7 @@ from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
 
@@ -81,6 +82,11 @@ def json_schema() -> dict[str, Any]:
                 "description": "frequency at which damping_ratio holds; default: the lowest elastic mode",
             },
             "operation": {"$ref": "#/$defs/Operation"},
+            "limit": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/Limit"},
+                "description": "what elements may bear, for assess",
+            },
             "element": {
                 "type": "array",
                 "minItems": 1,
@@ -98,6 +104,7 @@ def json_schema() -> dict[str, Any]:
             **definitions,
             "Operation": operation,
             "LoadCase": _model(LoadCase),
+            "Limit": _model(Limit),
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),

@@ -1,0 +1,269 @@
+"""What the parts of a line may bear: limits of an element, or of all elements of a kind.
+
+::
+
+    [[limit]]
+    of = "front tube"                   # an element, or "Shaft *" for all of a kind
+    max_torque = "6 kN*m"
+    vibratory_torque = "600 N*m"
+    margin = "10 %"
+
+A limit changes no motion; ``assess`` compares with it. What an element states of its own goes before its kind's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.quantities import (
+    ACCELERATION,
+    ANGLE,
+    PRESSURE,
+    RATIO,
+    SPEED,
+    TORQUE,
+    Acceleration,
+    Angle,
+    Dimensionless,
+    Kind,
+    Pressure,
+    Speed,
+    Torque,
+)
+from trunnion.driveline.refusals import nearest, numbered, refuse
+from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.errors import InputError
+
+SHIP_SHAFTS = {
+    "flange": 1.0,
+    "shrink fit": 1.0,
+    "keyway tapered": 0.60,
+    "keyway cylindrical": 0.45,
+    "radial hole": 0.50,
+    "slot": 0.30,
+    "propeller shaft": 0.55,
+    "propeller shaft forward": 0.80,
+}
+"""Design features of ship shafts and their factor C_K (IACS UR M68)."""
+
+LIMIT_KINDS: dict[str, Kind] = {
+    "max_torque": TORQUE,
+    "vibratory_torque": TORQUE,
+    "transient_vibratory_torque": TORQUE,
+    "max_stress": PRESSURE,
+    "max_twist": ANGLE,
+    "max_speed_fluctuation": SPEED,
+    "max_acceleration": ACCELERATION,
+    "margin": RATIO,
+    "temperature_factor": RATIO,
+    "starting_factor": RATIO,
+}
+"""Physical kinds of its quantities."""
+
+_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft)
+_MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
+    "max_torque": (*_SPRING, GearPair),
+    "vibratory_torque": (*_SPRING, GearPair),
+    "transient_vibratory_torque": (*_SPRING, GearPair),
+    "max_stress": (Shaft,),
+    "max_twist": _SPRING,
+    "max_speed_fluctuation": (Disk,),
+    "max_acceleration": (Disk,),
+    "temperature_factor": (Coupling,),
+    "starting_factor": (Coupling,),
+    "ship_shaft": (Shaft,),
+}
+_TUBE = {"max_stress": ("outer_diameter",), "ship_shaft": ("outer_diameter", "tensile_strength")}
+"""What of a shaft a limit needs besides."""
+
+
+def _ship_shaft(value: object) -> object:
+    if value is None or (isinstance(value, str) and value in SHIP_SHAFTS):
+        return value
+    remedy = nearest(value, SHIP_SHAFTS) if isinstance(value, str) else 'write "flange", say'
+    raise InputError("is not a design feature of a ship's shaft", value=value, remedy=remedy)
+
+
+class Limit(BaseModel):
+    """Limits of one element or of all elements of a kind.
+
+    Parameters
+    ----------
+    of : name of the element, or "Shaft *" for all shafts (any kind of element).
+    max_torque : largest |mean + vibratory| torque [N m]; of a mesh, at its driven gear.
+    vibratory_torque : half of peak-to-peak [N m], borne continuously.
+    transient_vibratory_torque : the same, borne for passing quickly: where only the continuous limit is exceeded,
+        the speed range is barred.
+    max_stress : largest shear stress at the outside of a tube [Pa].
+    max_twist : largest |mean + vibratory| twist [rad].
+    max_speed_fluctuation : half of peak-to-peak of the angular speed [rad/s].
+    max_acceleration : half of peak-to-peak of the angular acceleration [rad/s²].
+    margin : share of each limit here that must stay free.
+    temperature_factor, starting_factor : S_t and S_z of a coupling's ratings; 1 by default.
+    ship_shaft : judges the shaft by IACS UR M68, as one with this design feature.
+
+    Raises
+    ------
+    InputError : nothing limited, or a number that is not positive.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    of: str = Field(description='name of the element, or "Shaft *" for all of a kind')
+    max_torque: Torque | None = Field(default=None, description="largest torque, mean and vibratory together")
+    vibratory_torque: Torque | None = Field(default=None, description="half of peak-to-peak, continuously")
+    transient_vibratory_torque: Torque | None = Field(
+        default=None, description="half of peak-to-peak, where the line passes quickly"
+    )
+    max_stress: Pressure | None = Field(default=None, description="largest shear stress at the outside of a tube")
+    max_twist: Angle | None = Field(default=None, description="largest twist, mean and vibratory together")
+    max_speed_fluctuation: Speed | None = Field(default=None, description="of a disk, half of peak-to-peak")
+    max_acceleration: Acceleration | None = Field(default=None, description="of a disk, half of peak-to-peak")
+    margin: Dimensionless = Field(default=0.0, description="share of each limit here that must stay free")
+    temperature_factor: Dimensionless = Field(default=1.0, description="S_t of a coupling's ratings")
+    starting_factor: Dimensionless = Field(default=1.0, description="S_z of a coupling's ratings")
+    ship_shaft: Annotated[str | None, BeforeValidator(_ship_shaft)] = Field(
+        default=None,
+        json_schema_extra={"enum": list(SHIP_SHAFTS)},
+        description="judge the shaft by IACS UR M68, as one with this design feature",
+    )
+
+    def __init__(self, **data: Any) -> None:
+        label = f"limit of {data['of']}" if isinstance(data.get("of"), str) else "limit"
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element=label, example='of = "Shaft 1"') from None
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        stated = [key for key in self.stated if key not in ("of", "margin")]
+        if not stated:
+            raise InputError("limits nothing", key="of", value=self.of, remedy='write max_torque = "4 kN*m", say')
+        for key in stated:
+            if key in LIMIT_KINDS and not getattr(self, key) > 0:
+                example = LIMIT_KINDS[key].example
+                raise InputError("must be positive", key=key, value=getattr(self, key), remedy=f'write "{example}"')
+        if not 0 <= self.margin < 1:
+            remedy = 'write "10 %", say: the share that must stay free'
+            raise InputError("must be at least 0 and below 1", key="margin", value=self.margin, remedy=remedy)
+        if self.transient_vibratory_torque is not None:
+            if self.vibratory_torque is None:
+                remedy = "write the continuous limit beside it"
+                raise InputError("is missing beside transient_vibratory_torque", key="vibratory_torque", remedy=remedy)
+            if self.transient_vibratory_torque < self.vibratory_torque:
+                raise InputError(
+                    "is smaller than vibratory_torque, which is borne continuously",
+                    key="transient_vibratory_torque",
+                    value=self.transient_vibratory_torque,
+                    remedy="swap the two",
+                )
+        return self
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults."""
+        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
+
+    @property
+    def kind(self) -> str | None:
+        """The kind of element it holds for; None where ``of`` names one element."""
+        owner, star = self.of[:-2], self.of[-2:]
+        return owner if star == " *" else None
+
+
+def _tables(value: object) -> tuple[Limit, ...]:
+    remedy = 'write limits=[tn.Limit(of="Shaft 1", max_torque="4 kN*m")]'
+    if isinstance(value, str | dict | Limit) or not isinstance(value, Iterable):
+        raise InputError("is not a list of limits", value=value, remedy=remedy)
+    made, wrong = [], []
+    for place, item in enumerate(value, start=1):
+        try:
+            if not isinstance(item, Limit | dict):
+                raise InputError("is not a limit", value=item, remedy=remedy)
+            made.append(item if isinstance(item, Limit) else Limit(**item))
+        except InputError as error:
+            wrong.append(error if isinstance(item, dict) and "of" in item else numbered(error, "limit", place))
+    if wrong:
+        raise InputError.together(wrong)
+    return tuple(made)
+
+
+Limits = Annotated[tuple[Limit, ...], BeforeValidator(_tables)]
+
+
+@dataclass(frozen=True)
+class OneLimit:
+    """One limit of one element: its name, key and value, and the margin required of it."""
+
+    element: str
+    key: str
+    value: Any
+    margin: float
+
+
+def limits_of(limits: Sequence[Limit], names: Sequence[str], elements: Sequence[Element]) -> tuple[OneLimit, ...]:
+    """Every limit that holds, by element; one stated for an element goes before that of its kind."""
+    found: dict[tuple[str, str], OneLimit] = {}
+    for limit in sorted(limits, key=lambda one: one.kind is None):  # the element's own last, so that it stays
+        for name, element in zip(names, elements, strict=True):
+            if name != limit.of and element.kind != limit.kind:
+                continue
+            for key, value in limit.stated.items():
+                if key not in ("of", "margin") and _lacks(element, key) is None:
+                    found[name, key] = OneLimit(name, key, value, limit.margin)
+    place = {name: i for i, name in enumerate(names)}
+    return tuple(sorted(found.values(), key=lambda one: place[one.element]))
+
+
+def wrong_limits(limits: Sequence[Limit], names: Sequence[str], elements: Sequence[Element]) -> Iterator[InputError]:
+    """Limits of no element, of elements that cannot have them, or stated twice."""
+    seen: set[tuple[str, str]] = set()
+    for limit in limits:
+        label = f"limit of {limit.of}"
+        concerned = [e for n, e in zip(names, elements, strict=True) if limit.of == n or limit.kind == e.kind]
+        if not concerned:
+            known = [*names, *(f"{kind} *" for kind in dict.fromkeys(e.kind for e in elements))]
+            problem = "has no element in this driveline" if limit.kind in KINDS else "is not an element"
+            yield InputError(problem, element="limit", key="of", value=limit.of, remedy=nearest(limit.of, known))
+            continue
+        for key, value in limit.stated.items():
+            if key in ("of", "margin"):
+                continue
+            where: dict[str, Any] = {"element": label, "key": key, "value": value}
+            lacking = [_lacks(element, key) for element in concerned]
+            if all(lacking):
+                yield InputError(lacking[0] or "", **where, remedy=_remedy(concerned[0], key))
+            if (limit.of, key) in seen:
+                yield InputError("is stated twice", **where, remedy="leave one of the two out")
+            seen.add((limit.of, key))
+
+
+def _lacks(element: Element, key: str) -> str | None:
+    """Why an element cannot have a limit; None where it can."""
+    if not isinstance(element, _MAY_HAVE[key]):
+        return f"does not belong to a {element.kind}"
+    for needed in _TUBE.get(key, ()):
+        if getattr(element, needed, None) is None:
+            return f"needs the {needed} of the Shaft"
+    return None
+
+
+def _remedy(element: Element, key: str) -> str:
+    if not isinstance(element, _MAY_HAVE[key]):
+        kinds = ", ".join(kind.__name__ for kind in _MAY_HAVE[key])
+        own = [k for k, kinds_ in _MAY_HAVE.items() if isinstance(element, kinds_)]
+        return f"it limits {kinds}" + (f"; a {element.kind} may have {', '.join(own)}" if own else "")
+    needed = next(n for n in _TUBE[key] if getattr(element, n, None) is None)
+    return {
+        "outer_diameter": "describe it by outer_diameter, length and material, or limit its torque",
+        "tensile_strength": 'write tensile_strength = "600 MPa", or name a material with one',
+    }[needed]
