@@ -5,16 +5,19 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
+# Files of tests side by side, one per processor; kernels are compiled into one cache that they share.
+PYTEST := $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile
+
 .PHONY: demo test slow check format clean
 
 demo: $(VENV)/.installed
 	$(BIN)/trunnion analyze examples/truck.toml
 
 test: $(VENV)/.installed-dev
-	$(BIN)/python -m pytest -m "not slow"
+	$(PYTEST) -m "not slow"
 
 slow: $(VENV)/.installed-dev
-	$(BIN)/python -m pytest -m slow || [ $$? -eq 5 ]  # 5: none collected
+	$(PYTEST) -m slow || [ $$? -eq 5 ]  # 5: none collected
 
 check: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
