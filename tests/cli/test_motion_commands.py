@@ -61,7 +61,7 @@ def test_run_up(run, here):
     call = ("run-up", "line.toml", "--from", "300 rpm", "--to", "600 rpm", "--acceleration", "200 rpm")
     result = run(*call, "--limit", "700 N*m")
     assert result.exit_code == 0, result.stderr
-    assert "run from 300 rpm to 600 rpm at 200 rpm/s" in result.stdout and "steady torque found" in result.stdout
+    assert "run from 300 rpm to 600 rpm at 200 rpm/s" in result.stdout and "steady vibration found" in result.stdout
     assert "limit" in result.stdout
     data = json.loads(run(*call, "-o", "a.csv", "-o", "b.png", "-o", "c.nc", "--json").stdout)
     assert data["shafts"][0]["peak_torque"] < data["shafts"][0]["largest_steady_torque"]
