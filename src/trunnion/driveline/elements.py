@@ -382,7 +382,10 @@ def one_way(element: Element, direct: str, other: tuple[str, ...], needed: tuple
         return
     missing = [key for key in needed if getattr(element, key) is None]
     if stated and missing:
-        raise InputError(f"is missing beside {stated[0]}", key=missing[0], remedy=f"needed are {', '.join(needed)}")
+        remedy = f"needed are {', '.join(needed)}"
+        if missing == ["shear_modulus"] and "material" in type(element).model_fields:
+            remedy = 'write material = "steel", say, or shear_modulus'
+        raise InputError(f"is missing beside {stated[0]}", key=missing[0], remedy=remedy)
     if missing:
         remedy = f"write {element.example}, or {', '.join(needed)}" if direct != "ratio" else f"write {element.example}"
         raise InputError("is missing", key=direct, remedy=remedy)

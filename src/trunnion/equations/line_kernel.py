@@ -33,8 +33,9 @@ UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SIN
 HEAD = 10
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
-INERTIA, LOAD, VISCOUS, QUADRATIC = range(10, 14)
-PER_STATION = 14
+# LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
+INERTIA, LOAD, VISCOUS, QUADRATIC, BY_SPEED, BY_SQUARE = range(10, 16)
+PER_STATION = 16
 # Per compliance.
 NEAR, FAR, NEAR_COORDINATE, FAR_COORDINATE, STIFFNESS, DAMPING = range(6)
 LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
@@ -162,7 +163,8 @@ def line(t, y_, p_, k, regime, out_):
             inertia[i] += mass * r[s] * r[s]
             half_slope[i] += mass * r[s] * r1[s]
             half_bend[i] += mass * (r1[s] * r1[s] + r[s] * r2[s])
-        load, viscous, quadratic = p[q + LOAD], p[q + VISCOUS], p[q + QUADRATIC]
+        load = p[q + LOAD] + (p[q + BY_SPEED] + p[q + BY_SQUARE] * omega) * omega
+        viscous, quadratic = p[q + VISCOUS], p[q + QUADRATIC]
         if load != 0.0 or viscous != 0.0 or quadratic != 0.0:
             load += (viscous + quadratic * abs(v[s])) * v[s]
             growth = viscous + 2 * quadratic * abs(v[s])

@@ -18,7 +18,7 @@ from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
 from trunnion.equations.line_regimes import line_regimes, staged_springs
-from trunnion.equations.loads import drive_places, drive_torques
+from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link, common_rate
 from trunnion.errors import InputError
@@ -167,15 +167,19 @@ class LineSystem:
     def numbers(self, row: Array, course: Course | None = None, drive: float = 0.0) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
-        ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads.
+        ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
+        their own, drives with a share follow its speed and acceleration.
         """
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
         co = assembly.coefficients(table, statically_twisted=False, free_play=True)
-        course = course or Course(float(row[0]))
-        core = kernel()
         ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
-        load = co.load[0]
+        load, by_speed, by_square = co.load[0], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
+        if course is not None and topo.free and given_shares(topo, assembly.packed.column, table).any():
+            load, by_speed, by_square = accelerating_loads(
+                topo, assembly.packed.column, row, co.inertia[0], course.acceleration
+            )
+        course, core = course or Course(float(row[0])), kernel()
         if drive:
             share = drive_places(topo, assembly.packed.column, table)
             load = load + drive_torques(topo, share, np.array([drive]))[0]
@@ -189,7 +193,8 @@ class LineSystem:
             out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
             out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
             out[core.INERTIA] = co.inertia[0, s]
-            out[core.LOAD] = load[s] * np.sign(mean[s])
+            out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] = load[s], by_speed[s], by_square[s]
+            out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] *= np.sign(mean[s])
             before = phase[station.before] if station.before >= 0 else 0.0
             chi = before + co.shift[0, s]
             if station.link is Link.SHAFT:
@@ -261,16 +266,17 @@ class LineSystem:
                 potential += law.energy(self.observe(system, t, x).twist[:, e])
         return kinetic, potential
 
-    def varied(self, parameter: str | Parameter) -> Callable[[float], System]:
-        """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group)."""
+    def varied(self, parameter: str | Parameter) -> Callable[..., System]:
+        """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the
+        torque of ``with_drive``."""
         columns, labels = self.assembly.packed.resolve(parameter), self.assembly.packed.labels
 
-        def at(value: float) -> System:
+        def at(value: float, drive: float = 0.0) -> System:
             changes = {
                 labels[i]: float(offset + slope * value)
                 for i, slope, offset in zip(columns.index, columns.slope, columns.offset, strict=True)
             }
-            return self.system.with_parameters(changes)
+            return (self.with_drive(drive) if drive else self.system).with_parameters(changes)
 
         return at
 

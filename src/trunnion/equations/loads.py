@@ -8,7 +8,7 @@ a ``drive_share``, each carries its share of what is left as a constant torque.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,16 +33,39 @@ class StationLoads:
 
 def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
     """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0."""
+    loads = _described(topo, column, table)
+    if topo.free and (share := given_shares(topo, column, table)).any():
+        left = unbalanced(topo, loads, table[:, 0])
+        loads = replace(loads, constant=loads.constant + drive_torques(topo, share, left))
+    return loads
+
+
+def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
     constant, viscous, quadratic = (np.zeros((len(table), len(topo.stations))) for _ in range(3))
     for station, element in topo.disks:
         constant[:, station] += table[:, column(element, "load_torque")]
         viscous[:, station] += table[:, column(element, "viscous_load")]
         quadratic[:, station] += table[:, column(element, "quadratic_load")]
-    loads = StationLoads(constant, viscous, quadratic)
-    if topo.free and (share := given_shares(topo, column, table)).any():
-        left = unbalanced(topo, loads, table[:, 0])
-        loads = StationLoads(constant + drive_torques(topo, share, left), viscous, quadratic)
-    return loads
+    return StationLoads(constant, viscous, quadratic)
+
+
+def accelerating_loads(
+    topo: Topology, column: Column, row: Array, inertia: Array, acceleration: float
+) -> tuple[Array, Array, Array]:
+    """Loads (station,) that do not go with a station's own speed, while drives with a share keep a free line at a
+    prescribed input speed Ω and ``acceleration`` [rad/s²]: constant [N m], and what the drives add by Ω and by Ω².
+
+    The drives carry the loads at their mean speeds and what accelerates the ``inertia`` (station,), were it rigid.
+    """
+    table, turning = row[None], np.abs(_ratios(topo))
+    loads, share = _described(topo, column, table), given_shares(topo, column, table)
+    needed = (
+        loads.constant @ turning + acceleration * (inertia @ turning**2),
+        loads.viscous @ turning**2,
+        loads.quadratic @ turning**3,
+    )
+    constant, by_speed, by_square = (drive_torques(topo, share, torque)[0] for torque in needed)
+    return loads.constant[0] + constant, by_speed, by_square
 
 
 def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:

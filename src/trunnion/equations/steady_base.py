@@ -64,6 +64,21 @@ def require_balance(assembly: Assembly, table: Array) -> None:
         )
 
 
+def require_share(assembly: Assembly) -> None:
+    """Refuse a free line of which no disk says that it drives: nothing tells what torque accelerates it."""
+    topo, table = assembly.topology, assembly.table(1)
+    if topo.free and not given_shares(topo, assembly.packed.column, table).any():
+        place = drive_places(topo, assembly.packed.column, table)[0]
+        _, element = max(topo.disks, key=lambda pair: float(place[pair[0]]))
+        raise InputError(
+            "starts free, and no disk has a share in what accelerates it",
+            element="driveline",
+            key="drive_share",
+            remedy=f'give the driving disk, "{assembly.line.names[element]}" say, drive_share = 1, in place of '
+            "a driving load_torque",
+        )
+
+
 def imbalance(assembly: Assembly, table: Array) -> Array:
     """Torque at the input [N m] (cases,) that a free line lacks to keep its speed; 0 where its torques balance."""
     topo, column = assembly.topology, assembly.packed.column

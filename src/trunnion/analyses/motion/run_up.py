@@ -8,6 +8,10 @@ The acceleration sets in smoothly, as ½A(1 − cos πt/T) over a ramp of T seco
 by twice its inertia torque and leave the slowest mode ringing. Over three of its periods that ringing is at most 1/35
 of the inertia torque, cos(ωT/2)/((ωT/π)² − 1) without damping.
 
+The acceleration is that of the drive. Where a line starts free, nothing turns at a prescribed speed: its disks with a
+drive_share carry the torque that balances the loads at each speed and accelerates the whole inertia, were it rigid and
+its joints straight. What dampers, bent joints and vibration take beyond that makes it lag, see ``RunUp.lag``.
+
 ``safe_accelerations`` finds how fast and how slowly a line may be run up for a torque that must not be exceeded.
 """
 
@@ -23,14 +27,16 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.motion.order_map import times_at_angles
-from trunnion.analyses.motion.simulate import LineSimulation, simulate
+from trunnion.analyses.motion.simulate import LineSimulation, simulate_line
+from trunnion.analyses.orbits.free_orbit import closes, kept_speed_orbit
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import line_system
-from trunnion.equations.loads import static_torque
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.loads import drive_torques, given_shares, static_torque
 from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
 from trunnion.results.drawing import drawing
@@ -69,10 +75,13 @@ class SteadyResponse:
 class RunUp:
     """A passage at constant acceleration.
 
-    speed (turns,) [rad/s] in the middle of each turn, or of the little more that leaves none over; upper and lower
+    speed (turns,) [rad/s] asked for in the middle of each turn, or of the little more that leaves none over, less the
+    ``lag``; upper and lower
     (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; vibration (turns,
     shaft): the largest distance of the torque from the quasi-static one, which loads and inertia ask for; ramp [s]:
-    over which the acceleration sets in; steady: the steady response in the same range (None if not asked for).
+    over which the acceleration sets in; lag (turns,) [rad/s]: by how much the input turned slower on average than
+    asked, which only a line that starts free can; steady: the steady response in the same range (None if not asked
+    for).
     """
 
     simulation: LineSimulation
@@ -82,6 +91,7 @@ class RunUp:
     upper: Array
     lower: Array
     vibration: Array
+    lag: Array
     steady: SteadyResponse | None
 
     @property
@@ -154,6 +164,7 @@ class RunUp:
             "vibration": (("turn", "shaft"), self.vibration, {"units": "N*m"}),
             "peak_vibration": ("shaft", self.peak_vibration, {"units": "N*m"}),
             "vibration_speed": ("shaft", self.vibration_speed, {"units": "rad/s"}),
+            "lag": ("turn", self.lag, {"units": "rad/s"}),
         }
         coords: dict[str, Any] = {"shaft": list(self.shafts)}
         if self.steady is not None:
@@ -189,6 +200,13 @@ class RunUp:
             f"{show_speed(self.acceleration, unit)}/s, set in over {self.ramp:.3g} s: {len(self.speed)} turns in "
             f"{self.simulation.end:.5g} s"
         )
+        if self.simulation.line.assembly.topology.free:
+            worst = int(np.argmax(np.abs(self.lag)))
+            sense = "slower" if self.lag[worst] >= 0 else "faster"
+            rows.append(
+                f"  the drives carry the loads and accelerate the inertia; the input turned up to "
+                f"{show_speed(abs(self.lag[worst]), unit)} {sense} than asked, at {show_speed(self.speed[worst], unit)}"
+            )
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
     def _against(self, i: int) -> str:
@@ -230,27 +248,23 @@ def run_up(
     steady : number of speeds, at least, at which the steady periodic motion is computed for comparison; 0 leaves
         it out.
 
-    The run begins on the periodic motion at ``first`` where there is one, otherwise without twist.
+    The run begins on the periodic motion at ``first`` where there is one, otherwise without twist (a line that starts
+    free: twisted by its mean torques).
 
     Raises
     ------
-    InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a free line; more
-        than 20 000 turns.
+    InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a line that
+        starts free without a drive_share; more than 20 000 turns.
     """
     _check(first, last, acceleration)
     prepared = line_system(line, first)
-    if prepared.assembly.topology.free:
-        raise InputError(
-            "starts free, so its speed cannot be prescribed", element="driveline",
-            remedy="put a ConstantSpeed in front",
-        )  # fmt: skip
+    require_share(prepared.assembly)
     length = _ramp(prepared.assembly, first, last, acceleration, ramp)
     profile = _profile(first, last, acceleration, length)
-    begun = prepared.rest()
-    if prepared.system.forcing_period is not None:
-        orbit = periodic_orbit(prepared.system, start=begun, settle=False)
-        begun = orbit.start if orbit.outcome.ok else begun
-    run = simulate(prepared.assembly, profile.time[-1], speed=profile, start=begun, tolerance=tolerance)
+    begun, extra = _begin(prepared)
+    run = simulate_line(
+        prepared.assembly, profile.time[-1], speed=profile, start=begun, tolerance=tolerance, drive=extra
+    )
     # Windows of equal angle, a turn or a little more, so that none is left over.
     angle = float(profile.angle(run.end))
     windows = max(int(angle / (2 * np.pi)), 1)
@@ -262,16 +276,33 @@ def run_up(
         return np.hstack([torque, torque - quasi_static(times)])
 
     seen = extremes_in(curves, run.cuts, edges)
+    lag = -np.diff(run.motion_at(edges).rotation[:, 0]) / np.diff(edges)
     return RunUp(
         simulation=run,
         acceleration=float(acceleration),
         ramp=length,
-        speed=profile.at(times_at_angles(run, angle * (np.arange(windows) + 0.5) / windows)),
+        speed=profile.at(times_at_angles(run, angle * (np.arange(windows) + 0.5) / windows)) - lag,
         upper=seen.high[:, :count],
         lower=seen.low[:, :count],
         vibration=seen.largest[:, count:],
+        lag=lag,
         steady=_steady(prepared.assembly, first, last, steady) if steady else None,
     )
+
+
+def _begin(prepared: LineSystem) -> tuple[Array, float]:
+    """The state to begin with, and what a free line's drives give there [N m at the input] beyond the balance."""
+    if prepared.assembly.topology.free:
+        begun = prepared.twisted()
+        if not closes(prepared):
+            return begun, 0.0
+        found = kept_speed_orbit(prepared, settle=False)
+        return (found.orbit.start, found.extra_torque) if found.orbit.outcome.ok else (begun, 0.0)
+    begun = prepared.rest()
+    if prepared.system.forcing_period is not None:
+        orbit = periodic_orbit(prepared.system, start=begun, settle=False)
+        begun = orbit.start if orbit.outcome.ok else begun
+    return begun, 0.0
 
 
 @dataclass(frozen=True)
@@ -413,7 +444,11 @@ def _inertia_torque(assembly: Assembly) -> Array:
     topo = assembly.topology
     coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False)
     ratios = np.abs(np.array([float(q) for q in topo.speed_ratio]))
-    return np.asarray(static_torque(topo, coefficients.inertia * ratios)[0])
+    needed = coefficients.inertia * ratios
+    if topo.free:
+        share = given_shares(topo, assembly.packed.column, assembly.table(1))
+        needed = needed + drive_torques(topo, share, needed @ ratios)
+    return np.asarray(static_torque(topo, needed)[0])
 
 
 def _quasi_static(
@@ -438,7 +473,8 @@ def _quasi_static(
 
 def _steady(assembly: Assembly, first: float, last: float, points: int) -> SteadyResponse | None:
     """The branch of steady motions over the range, folds and all; what was found of it."""
-    if line_system(assembly, first).system.forcing_period is None:
+    prepared = line_system(assembly, first)
+    if prepared.system.forcing_period is None or (assembly.topology.free and not closes(prepared)):
         return None
     branch = periodic_branch(
         assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10

@@ -16,6 +16,7 @@ from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -236,7 +237,9 @@ def simulate(
     ----------
     duration : [s]; or ``turns`` of a driveline's input; or ``periods`` of a system's forcing; or up to the last of
         ``times``.
-    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``.
+    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``. A line that
+        starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and what
+        accelerates its inertia along a profile; how it really turns is what the rotations tell.
     start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
         default the line without twist; of a system (n,), by default its own.
     start_time : of a system [s]; the phase of its forcing.
@@ -268,7 +271,7 @@ def simulate(
         )
     other = {"start_time": start_time or None, "longest_step": longest_step if np.isfinite(longest_step) else None}
     _refuse("belongs to a System", "give a duration, or turns of the input", periods=periods, **other)
-    return _simulate_line(
+    return simulate_line(
         system, duration, speed=speed, turns=turns, start=start, times=times, events=events, tolerance=tolerance,
         most_steps=most_steps, dense=dense,
     )  # fmt: skip
@@ -280,7 +283,7 @@ def _refuse(problem: str, remedy: str, **given: object) -> None:
             raise InputError(problem, key=key, value=value, remedy=remedy)
 
 
-def _simulate_line(
+def simulate_line(
     line: Driveline | Assembly,
     duration: float | None = None,
     *,
@@ -292,7 +295,9 @@ def _simulate_line(
     tolerance: float = TOLERANCE,
     most_steps: int = MOST_STEPS,
     dense: bool = True,
+    drive: float = 0.0,
 ) -> LineSimulation:
+    """As ``simulate``; ``drive`` [N m at the input] is what a free line's drives give beyond what keeps its course."""
     description = line.line if isinstance(line, Assembly) else line
     profile = speed
     if not isinstance(profile, SpeedProfile):
@@ -309,12 +314,14 @@ def _simulate_line(
         duration = float(wanted[-1])
     duration = positive_time(duration, "give seconds, or turns of the input")
     state = prepared.rest() if start is None else prepared.system.checked(start, "start")
+    if len(profile.time) > 1:
+        require_share(prepared.assembly)
     row = prepared.assembly.table(1, profile.speed[0])[0]
     pieces: list[Simulation] = []
     for end, course in profile.courses(duration):
         system = prepared.system
         if len(profile.time) > 1:
-            numbers = prepared.numbers(row, course)
+            numbers = prepared.numbers(row, course, drive)
             system = replace(system, numbers_of=_constant(numbers), period=None)
         pieces.append(
             simulate_system(

@@ -84,7 +84,7 @@ class Problem(Protocol):
         """State at t = 0."""
 
     def multipliers(self, point: CurvePoint) -> Complex:
-        """Floquet multipliers by falling modulus; NaN where the motion cannot be computed."""
+        """Floquet multipliers that count by falling modulus; NaN where the motion cannot be computed."""
 
     def radius_error(self, point: CurvePoint, radius: float) -> float:
         """What the spectral radius may be off by; any bound will do that decides on which side of 1 it lies."""
@@ -116,7 +116,8 @@ class SpecialPoint:
 class PeriodicBranch(Result):
     """Periodic motions along a branch.
 
-    parameter (points,); start (points, n); multipliers (points, n); verdict (points,) codes; peak_to_peak (points,
+    parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a line which starts free
+    sets aside; verdict (points,) codes; peak_to_peak (points,
     curves): of the shaft torques [N m] of a line, or of the states of a system, named by ``curves``; largest: their
     largest absolute values; amplitude (points, n): of the fundamental of every state; special:
     folds and other special points in order; outcome: where the branch ended and why.
@@ -319,7 +320,8 @@ def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tupl
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
             ends = test(problem.multipliers(here)), test(problem.multipliers(there))
-            told = ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
+            alike = len(problem.multipliers(here)) == len(problem.multipliers(there))
+            told = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
             if not told or (kind == "branch point" and i in folds):
                 continue
             met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
@@ -361,8 +363,11 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
     """The branch from its points and the kinds of the special ones among them."""
     points, kinds, n = [p for p, _ in walk], [kind for _, kind in walk], problem.size
     observed = [problem.observed(p) for p in points]
-    multipliers = np.array([problem.multipliers(p) for p in points]).reshape(-1, n)
-    radius = np.abs(multipliers).max(axis=1) if len(points) else np.zeros(0)
+    counting = [problem.multipliers(p) for p in points]
+    multipliers = np.full((len(points), n), np.nan, dtype=complex)
+    for row, values in zip(multipliers, counting, strict=True):
+        row[: len(values)] = values
+    radius = np.array([np.abs(values).max(initial=0.0) for values in counting])
     errors = np.array([problem.radius_error(p, float(r)) for p, r in zip(points, radius, strict=True)])
     special = tuple(
         SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])

@@ -11,7 +11,7 @@ The disturbance that shifts the phase, x′ + R Ω, comes back exactly: its mult
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, Neutral, Periodic
 from trunnion.driveline.elements import Disk
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.integration.integration import End, Trajectory, integrate
@@ -41,9 +41,16 @@ class FreeOrbit:
 
 
 def kept_speed_orbit(
-    line: LineSystem, start: ArrayLike | None = None, *, tolerance: float = TOLERANCE, settle: bool = True
+    line: LineSystem,
+    start: ArrayLike | None = None,
+    *,
+    tolerance: float = TOLERANCE,
+    settle: bool = True,
+    driven: Callable[[float], System] | None = None,
 ) -> FreeOrbit:
     """The periodic motion of a free line at its mean speed ``line.speed``.
+
+    ``driven`` : torque beyond the balance → system, by default those of ``line`` as described.
 
     Raises
     ------
@@ -51,11 +58,11 @@ def kept_speed_orbit(
     """
     require_closing(line)
     first = line.twisted() if start is None else line.system.checked(start, "start")
-    problem = _KeptSpeed(line, tolerance)
+    problem = _KeptSpeed(line, driven or line.with_drive, tolerance)
     for count in SETTLING if settle else SETTLING[:1]:
         guess = first
         if count:
-            system = line.system
+            system = problem.driven(0.0)
             run = integrate(
                 system.equations, 0.0, count * problem.length, first,
                 regime=system.regime_at(0.0, first), tolerance=1e-8, dense=False,
@@ -73,9 +80,24 @@ def kept_speed_orbit(
     return FreeOrbit(judged(shots, replace(root, x=state)), torque)
 
 
+def closes(line: LineSystem) -> bool:
+    """Whether the motion of a free line can close: a frequency in time has no fixed ratio to a speed that is free."""
+    return line.period_turns is not None and not line.time_harmonics
+
+
+def require_kept_speed(line: LineSystem) -> None:
+    """Refuse a free line whose drives keep no speed that is asked for, or whose motion cannot close."""
+    require_closing(line)
+    assembly = line.assembly
+    row = assembly.table(1, line.speed)
+    require_balance(assembly, row)
+    if loaded_by_speed(assembly):
+        require_share(assembly)  # a constant torque balances at one speed only
+
+
 def require_closing(line: LineSystem) -> None:
     """Refuse a free line whose motion cannot close."""
-    if line.period_turns is None or line.time_harmonics:
+    if not closes(line):
         raise InputError(
             "starts free and is excited in time or without a common period: its motion does not close",
             element="driveline",
@@ -92,10 +114,16 @@ def neutral_motions(line: LineSystem, speed: float) -> Callable[[System, Array],
     topo, n = line.assembly.topology, line.assembly.topology.size
     turn = np.array([float(topo.speed_ratio[topo.reference[g]]) for g, c in enumerate(topo.coordinate) if c >= 0])
     faster = np.append(np.zeros(n), turn)
-    by_speed = loaded_by_speed(line.assembly)
-    steady = not (bent(line.assembly) or by_speed or line.excited or topo.tripods)
+    column, elements = line.assembly.packed.column, line.assembly.line.elements
+    loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    unsteady = [column(topo.stations[s].element, "angle") for s in (*topo.joints, *topo.tripods)]
+    for _, i in topo.disks:
+        count = len(getattr(elements[i], "excitation", None) or ())
+        unsteady += [column(i, f"excitation {h} amplitude") for h in range(1, count + 1)]
 
     def at(system: System, x: Array) -> Neutral:
+        by_speed = _any(line, system, loads)
+        steady = not (by_speed or _any(line, system, unsteady))
         shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + np.append(turn * speed, np.zeros(n))
         if steady:
             return Neutral(np.stack([shift, faster], axis=1))
@@ -104,32 +132,42 @@ def neutral_motions(line: LineSystem, speed: float) -> Callable[[System, Array],
     return at
 
 
+def _any(line: LineSystem, system: System, places: Iterable[int]) -> bool:
+    """Whether any of some numbers of the line is other than 0 in ``system``."""
+    return any(system.parameters[line.assembly.packed.labels[i]] for i in places)
+
+
 def loaded_by_speed(assembly: Assembly) -> bool:
     """Whether any load of the line depends on the speed."""
     disks = [element for element in assembly.line.elements if isinstance(element, Disk)]
     return any(disk.viscous_load or disk.quadratic_load for disk in disks)
 
 
+def torque_scale(line: LineSystem) -> float:
+    """The torque [N m] at the input that changes the speed over a period by what counts as one in error control."""
+    topo, system = line.assembly.topology, line.system
+    assert system.forcing_period is not None
+    co = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False, free_play=True)
+    inertia = float(co.inertia[0] @ np.array([float(q) for q in topo.speed_ratio]) ** 2)
+    return float(np.asarray(system.scale)[topo.size]) * inertia / float(system.forcing_period)
+
+
 class _KeptSpeed:
     """P(x; torque) = x with the first rotation held."""
 
-    def __init__(self, line: LineSystem, tolerance: float) -> None:
-        self.line, self.tolerance = line, tolerance
-        system = line.system
+    def __init__(self, line: LineSystem, driven: Callable[[float], System], tolerance: float) -> None:
+        self.line, self.driven, self.tolerance = line, driven, tolerance
+        system = driven(0.0)
         assert system.forcing_period is not None
         self.length = float(system.forcing_period)
-        topo = line.assembly.topology
-        co = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False, free_play=True)
-        inertia = float(co.inertia[0] @ np.array([float(q) for q in topo.speed_ratio]) ** 2)
-        # The torque that changes the speed over a period by what counts as one in error control.
         self.scale = np.array(system.scale, dtype=float)
-        self.scale[0] = self.scale[topo.size] * inertia / self.length
+        self.scale[0] = torque_scale(line)
         self.anchor = 0.0
         self.last: Trajectory | None = None
 
     def shots(self, torque: float) -> Shots:
         neutral = neutral_motions(self.line, self.line.speed)
-        return Shots(self.line.with_drive(torque), 0.0, self.length, True, self.tolerance, neutral=neutral)
+        return Shots(self.driven(torque), 0.0, self.length, True, self.tolerance, neutral=neutral)
 
     def solve(self, guess: Array) -> Root:
         self.anchor = float(guess[0])
@@ -147,7 +185,7 @@ class _KeptSpeed:
         return np.asarray(run.final[0] - x), slope
 
     def _end(self, x: Array, torque: float) -> Array | None:
-        system = self.line.with_drive(torque)
+        system = self.driven(torque)
         run = integrate(
             system.equations, 0.0, self.length, x, regime=system.regime_at(0.0, x), tolerance=self.tolerance,
             dense=False,

@@ -32,6 +32,7 @@ from trunnion.analyses.perturbation.describing_function import DescribingFunctio
 from trunnion.analyses.perturbation.multiple_scales import multiple_scales
 from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.line_system import line_system
 from trunnion.equations.stage_laws import has_stages
@@ -201,6 +202,8 @@ def methods_of(system: PiecewiseOscillator | SecondOrder | System | Driveline) -
     if isinstance(system, SecondOrder):
         return OF_SYSTEMS[:1]
     if isinstance(system, Driveline):
+        if not any(isinstance(element, ConstantSpeed) for element in system.elements):
+            return OF_SYSTEMS[1:]  # the torque of its drives is unknown
         # Shooting takes chattering contact as it is; a series would need hundreds of harmonics.
         staged = any(has_stages(element) for element in system.elements)
         return (*(OF_SYSTEMS[::-1] if staged else OF_SYSTEMS), METHODS[0])
@@ -238,8 +241,8 @@ def frequency_response(
         ``frequency``; or a driveline over its input speed.
     low, high : [rad/s].
     method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
-        "shooting" (default of drivelines with backlash or stages) for the others; "exact" also for a driveline that
-        ``exact_motion`` takes.
+        "shooting" (default of drivelines with backlash or stages, the only one of those that start free) for the
+        others; "exact" also for a driveline that ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
     begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.

@@ -366,8 +366,8 @@ def judged(shots: Shots, root: Root) -> PeriodicOrbit:
     kept, off = values, bound
     speed, rests = np.nan, shots.rests(run)
     if shots.neutral is not None:
-        scaled, error = _scaled_matrix(system, run, coarse, root.size)
-        kept, off, speed = _beside_neutral(scaled, error, shots.neutral(system, x), scale)
+        scaled, error = scaled_matrix(system, run, coarse, root.size)
+        kept, off, speed = beside_neutral(scaled, error, shots.neutral(system, x), scale)
     elif not (shots.forced or rests):
         others = np.delete(np.arange(n), int(np.argmin(np.abs(values - 1))))
         kept, off = values[others], bound[others]
@@ -409,7 +409,7 @@ def judged(shots: Shots, root: Root) -> PeriodicOrbit:
     )
 
 
-def _beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array) -> tuple[Complex, Array, float]:
+def beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array) -> tuple[Complex, Array, float]:
     """The multipliers to judge, their bounds, and the one of the line's speed where that is not judged with them."""
     aside = neutral.returns / scale[:, None]
     missed = float(np.linalg.norm(scaled @ aside[:, :1] - aside[:, :1]) / np.linalg.norm(aside[:, :1]))
@@ -429,13 +429,13 @@ def multipliers_of(system: System, run: Trajectory, coarse: Trajectory, residual
     run, coarse : the motion with its tangents, and again at ``COARSER`` times the tolerance; residual : how far it
     misses closing, in units of the states' scale.
     """
-    scaled, error = _scaled_matrix(system, run, coarse, residual)
+    scaled, error = scaled_matrix(system, run, coarse, residual)
     values, bound = multipliers(scaled, np.array(error))
     order = np.argsort(-np.abs(values))
     return values[order], bound[order]
 
 
-def _scaled_matrix(system: System, run: Trajectory, coarse: Trajectory, residual: float) -> tuple[Array, float]:
+def scaled_matrix(system: System, run: Trajectory, coarse: Trajectory, residual: float) -> tuple[Array, float]:
     """Φ (n, n) in units of the states' scales, and what it may be off by in the 2-norm."""
     scale = np.asarray(system.scale)
     scaled, rough = (r.final[1:].T * scale[None, :] / scale[:, None] for r in (run, coarse))

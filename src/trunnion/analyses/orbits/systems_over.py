@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.orbits.free_orbit import require_kept_speed
 from trunnion.analyses.orbits.periodic_response import require_forced
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -26,18 +27,24 @@ LINE_SCALE = 30
 class SystemOver:
     """Systems by the value of a parameter.
 
-    at : value → system; scale (n + 1,) : size of each state and of the parameter that counts as one; label, unit : of
-    the parameter; begin : the value to begin with; curves : the states of a system, the shafts of a line, of which
-    the torques [N m] are looked at.
+    at : value → system, and of a line that starts free (value, torque [N m] beyond the balance of its loads) → system;
+    scale (n + 1,) : size of each state and of the parameter that counts as one; label, unit : of the parameter; begin :
+    the value to begin with; curves : the states of a system, the shafts of a line, of which the torques [N m] are
+    looked at.
     """
 
-    at: Callable[[float], System]
+    at: Callable[..., System]
     scale: Array
     label: str
     unit: str
     begin: float
     line: LineSystem | None
     curves: tuple[str, ...]
+
+    @property
+    def free(self) -> bool:
+        """Whether it is a line that starts free."""
+        return self.line is not None and self.line.assembly.topology.free
 
     @property
     def curve_unit(self) -> str:
@@ -57,12 +64,16 @@ def system_over(
     begin: float | None,
     speed: float | None,
     width: float,
+    *,
+    free: bool = False,
 ) -> SystemOver:
     """The systems of ``line`` over a parameter, whose range times ``width`` is its scale.
 
+    ``free`` : whether lines that start free are taken, at the mean speed that their drives keep.
+
     Raises
     ------
-    InputError : an unknown parameter, a reversed range, an autonomous system, a free line.
+    InputError : an unknown parameter, a reversed range, an autonomous system, a free line not asked for.
     """
     if not (np.isfinite(low) and np.isfinite(high) and low < high):
         raise InputError("must be a rising range", key="low, high", value=[float(low), float(high)])
@@ -76,7 +87,15 @@ def system_over(
     description = line.line if isinstance(line, Assembly) else line
     over_speed = parameter == "speed"
     prepared = line_system(line, first if over_speed and first > 0 else operating_speed(description, speed))
-    require_forced(prepared)
+    if not prepared.assembly.topology.free:
+        require_forced(prepared)
+    elif free:
+        require_kept_speed(prepared)
+    else:
+        raise InputError(
+            "starts free, which a series of harmonics at a given speed does not take", element="driveline",
+            remedy='use periodic_branch or method = "shooting", or put a ConstantSpeed in front',
+        )  # fmt: skip
     columns = prepared.assembly.packed.resolve(parameter)
     scale = np.append(LINE_SCALE * np.asarray(prepared.system.scale), (high - low) * width)
     return SystemOver(prepared.varied(parameter), scale, columns.label, columns.unit, first, prepared, prepared.shafts)
