@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c const
 # Files of tests side by side, one per processor; kernels are compiled into one cache that they share.
 PYTEST := $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile
 
-.PHONY: demo test slow check format clean
+.PHONY: demo test slow studies check format clean
 
 demo: $(VENV)/.installed
 	$(BIN)/trunnion analyze examples/truck.toml
@@ -17,7 +17,10 @@ test: $(VENV)/.installed-dev
 	$(PYTEST) -m "not slow"
 
 slow: $(VENV)/.installed-dev
-	$(PYTEST) -m slow || [ $$? -eq 5 ]  # 5: none collected
+	$(PYTEST) -m "slow and not study"
+
+studies: $(VENV)/.installed-dev
+	$(PYTEST) -m study
 
 check: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
