@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from trunnion._version import __version__
 
 if TYPE_CHECKING:
+    from trunnion.analyses.assessment.assess import assess
     from trunnion.analyses.chaos.bifurcation_diagram import bifurcation_diagram
     from trunnion.analyses.chaos.certify_chaos import certify_chaos
     from trunnion.analyses.chaos.chaos_zero_one import zero_one_test
@@ -136,6 +137,7 @@ _HOME = {
     "Term": "trunnion.driveline.parameters",
     "pack": "trunnion.driveline.parameters",
     # analyse
+    "assess": "trunnion.analyses.assessment.assess",
     "natural_frequencies": "trunnion.analyses.linear.natural_frequencies",
     "resonance_speeds": "trunnion.analyses.linear.resonance_speeds",
     "stability": "trunnion.analyses.linear.stability",

@@ -208,6 +208,7 @@ TABLE: dict[str, Row] = {
 }
 
 NOT_ANALYSES = {
+    "assess": "judges by the analyses above, and prints what each of them says",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",

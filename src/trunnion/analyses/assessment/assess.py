@@ -1,0 +1,108 @@
+"""Is the line fit for its speeds, which limit binds first, by what margin?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from trunnion.analyses.assessment.bending import bending
+from trunnion.analyses.assessment.check import Check, in_order, worst
+from trunnion.analyses.assessment.couplings import coupling_ratings
+from trunnion.analyses.assessment.gear_hammer import gear_hammer
+from trunnion.analyses.assessment.joint_angles import joint_angles
+from trunnion.analyses.assessment.own_limits import own_limits
+from trunnion.analyses.assessment.parametric import parametric_stability
+from trunnion.analyses.assessment.result import Assessment, verdict_of
+from trunnion.analyses.assessment.separation import separation
+from trunnion.analyses.assessment.ship_shafts import ship_shafts
+from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.assessment.uniformity import uniformity
+from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.errors import InputError
+from trunnion.results.finding import Finding, by_gravity
+
+
+def assess(
+    line: Driveline,
+    speeds: tuple[float, float] | None = None,
+    *,
+    load_case: str | None = None,
+    unit: str | None = None,
+) -> Assessment:
+    """Every limit of the description and every rule that applies, over the running range.
+
+    Parameters
+    ----------
+    line : the driveline, with its ``limits``.
+    speeds : lowest and highest input speed [rad/s]; default the description's range, or its operating speed alone.
+    load_case : name of one of the line's load cases; by default the line is judged as stated and under each of them.
+    unit : of speeds in sentences; default the one of the description.
+
+    Raises
+    ------
+    InputError : no speed and no range, a range that is reversed, no such load case.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> parts = [engine, tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"), tn.Disk(inertia=0.8)]
+    >>> line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_torque=400.0)])
+    >>> judged = tn.assess(line, (90.0, 110.0))
+    >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
+    satisfied max torque of shaft 0.68
+    """
+    if load_case is not None:
+        line = line.with_load(load_case)
+    low, high, speed = _range(line, speeds)
+    every = cases_of(line, low, high)
+    cases = every[:1] if load_case is not None else every
+    subject = Subject(line, low, high, speed, unit or speed_unit(line), cases)
+    checks = in_order([*worst(_by_case(subject)), *_of_line(subject)])
+    verdict, barred = verdict_of(checks, speed)
+    return Assessment(verdict, checks, barred, low, high, speed, subject.unit, _findings(cases, subject.unit))
+
+
+def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:
+    stated = line.operation.speed if line.operation else None
+    if speeds is None and line.operation and line.operation.speed_range:
+        speeds = line.operation.speed_range
+    if speeds is None:
+        one = operating_speed(line, None)
+        return one, one, one
+    ends = tuple(speeds)
+    if len(ends) != 2 or not 0 <= ends[0] <= ends[1] or not 0 < ends[1] < float("inf"):
+        remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"
+        raise InputError("must be a lowest and a highest speed", key="speeds", value=speeds, remedy=remedy)
+    return float(ends[0]), float(ends[1]), stated
+
+
+def _by_case(subject: Subject) -> Iterator[Check]:
+    for case in subject.cases:
+        yield from own_limits(subject, case)
+        yield from coupling_ratings(subject, case)
+        yield from ship_shafts(subject, case)
+        yield from separation(subject, case)
+        yield from gear_hammer(subject, case)
+        yield from parametric_stability(subject, case)
+
+
+def _of_line(subject: Subject) -> Iterator[Check]:
+    assembly, turn = subject.cases[0].assembly, _turn(subject)
+    yield from joint_angles(subject, assembly, turn)
+    yield from uniformity(subject, turn)
+    yield from bending(subject, assembly)
+
+
+def _turn(subject: Subject) -> Kinetostatics | None:
+    try:
+        return kinetostatics(subject.line, subject.high)
+    except InputError:  # a line clamped at both ends
+        return None
+
+
+def _findings(cases: tuple[Case, ...], unit: str) -> tuple[Finding, ...]:
+    """What the responses say of themselves, once."""
+    said = {f.sentence: f for case in cases if case.response for f in case.response.findings_in(unit)}
+    return by_gravity(said.values())

@@ -1,0 +1,34 @@
+"""Bending critical speed of tubes, a caution only: the model is torsional.
+
+highest speed ≤ 0.75 ω_crit,   ω_crit = (π/L)² √(EI/(ρA))      (practice of propeller shafts)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.subject import Subject
+from trunnion.analyses.linear.bending import SAFE_SHARE, bending_speeds
+from trunnion.equations.coefficients import Assembly
+
+RULE = Rule("Ω ≤ 0.75 (π/L)² √(EI/(ρA))", "practice of propeller shafts; supports taken as joints", "typical")
+
+
+def bending(subject: Subject, assembly: Assembly) -> Iterator[Check]:
+    """Every shaft described as a tube with a density."""
+    found = bending_speeds(assembly)
+    if not found:
+        because = "no shaft is described as a tube with a density"
+        yield Check("bending critical speed", Status.NOT_APPLICABLE, RULE, because)
+    for row in found:
+        limit = SAFE_SHARE * row.input_speed
+        margin = below(subject.high, limit)
+        because = (
+            f"{subject.shown(subject.high)} against 75 % of {subject.shown(row.input_speed)} at the input, "
+            f"{percent(margin)}"
+        )
+        yield Check(
+            f"bending critical speed of {row.shaft}", judged(margin), RULE, because, margin, 0.0, subject.high, limit,
+            "rad/s", subject.high, f"E = {row.young_modulus / 1e9:.4g} GPa", guideline=True, element=row.shaft,
+        )  # fmt: skip

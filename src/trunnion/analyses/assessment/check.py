@@ -1,0 +1,114 @@
+"""What one check gives: a status, a margin, where, and why.
+
+The margin is the distance of the value to its limit over the limit: 0.2 keeps 20 % free, −0.5 exceeds by half.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+from math import inf, isfinite, nan
+
+
+class Status(Enum):
+    """How a check ends."""
+
+    SATISFIED = "satisfied"
+    EXCEEDED = "exceeded"
+    NOT_APPLICABLE = "not applicable"
+    NOT_JUDGED = "not judged"
+
+    def __str__(self) -> str:
+        return self.value
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a check stands on: formula, source, and how certain the rule is ("derived", "known", "typical", "yours")."""
+
+    formula: str
+    source: str
+    certainty: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check.
+
+    margin and required_margin [1], NaN where nothing is judged; value and limit in ``unit`` (SI); speed: of the input
+    where it binds [rad/s]; because: one sentence; inputs: the numbers that went in; load_case: "" for the line as
+    stated; barred: speed ranges [rad/s] to pass quickly; guideline: a rule of practice, not a limit or rating.
+    """
+
+    name: str
+    status: Status
+    rule: Rule
+    because: str
+    margin: float = nan
+    required_margin: float = 0.0
+    value: float = nan
+    limit: float = nan
+    unit: str = ""
+    speed: float = nan
+    inputs: str = ""
+    load_case: str = ""
+    barred: tuple[tuple[float, float], ...] = ()
+    guideline: bool = False
+    element: str = ""
+
+    @property
+    def spare(self) -> float:
+        """Margin beyond the one required."""
+        return self.margin - self.required_margin
+
+
+def below(value: float, limit: float) -> float:
+    """Margin of a value that must not exceed ``limit``."""
+    return 1 - value / limit if limit > 0 else (0.0 if value == 0 else -inf)
+
+
+def above(value: float, limit: float) -> float:
+    """Margin of a value that must reach ``limit``."""
+    return value / limit - 1
+
+
+def judged(margin: float, required: float = 0.0) -> Status:
+    """Satisfied where the margin is the required one at least."""
+    return Status.SATISFIED if margin >= required else Status.EXCEEDED
+
+
+def percent(margin: float) -> str:
+    """ "12 % free", "exceeded by 50 %"."""
+    if not isfinite(margin):
+        return "exceeded without bound" if margin < 0 else ""
+    return f"{100 * margin:.3g} % free" if margin >= 0 else f"exceeded by {-100 * margin:.3g} %"
+
+
+_RANK = {Status.EXCEEDED: 0, Status.SATISFIED: 1, Status.NOT_JUDGED: 2, Status.NOT_APPLICABLE: 3}
+
+
+def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
+    """What is exceeded first, then what is satisfied, each by spare margin, limits and ratings before guidelines."""
+    return tuple(sorted(checks, key=_place))
+
+
+def _place(check: Check) -> tuple[int, bool, float]:
+    exceeded = check.status is Status.EXCEEDED
+    spare = check.spare if check.spare == check.spare else 0.0
+    return _RANK[check.status], exceeded and check.guideline, spare
+
+
+def worst(checks: Iterable[Check]) -> tuple[Check, ...]:
+    """Of checks of one name over several load cases, the one that binds."""
+    by_name: dict[str, Check] = {}
+    for check in checks:
+        known = by_name.get(check.name)
+        if known is None or _severity(check) < _severity(known):
+            by_name[check.name] = check
+    return tuple(by_name.values())
+
+
+def _severity(check: Check) -> tuple[int, float]:
+    rank = {Status.EXCEEDED: 0, Status.NOT_JUDGED: 1, Status.SATISFIED: 2, Status.NOT_APPLICABLE: 3}
+    return rank[check.status], check.spare if check.spare == check.spare else 0.0

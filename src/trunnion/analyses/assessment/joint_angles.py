@@ -1,0 +1,109 @@
+"""Angles of propeller-shaft joints, after the makers' rules of practice.
+
+    every working angle at least 0.5°                           so that needle bearings turn
+    up to 3° without concern; at most 3.2° at 5000, 3.7° at 4500, 4.2° at 4000, 5.0° at 3500 rpm
+    two joints: both angles equal within 1°
+    angular acceleration behind the last joint ≤ 300 rad/s², of a shaft between joints ≤ 1000 rad/s²
+
+The angles are those of Spicer's operating-angle calculator; below 3500 rpm the acceleration judges instead. The two
+accelerations are usual acceptance values. All are taken at the highest speed of the range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.analyses.assessment.check import Check, Rule, Status, above, below, judged, percent
+from trunnion.analyses.assessment.subject import Subject
+from trunnion.analyses.kinetostatics import Kinetostatics
+from trunnion.analyses.kinetostatics.measures import largest
+from trunnion.driveline.driveline import hooke_joints
+from trunnion.driveline.quantities import DEGREE, RPM
+from trunnion.equations.coefficients import Assembly
+
+SPICER = "Spicer's operating-angle calculator"
+SMALLEST, EASY, APART = 0.5 * DEGREE, 3.0 * DEGREE, 1.0 * DEGREE
+TABLE_SPEED, TABLE_ANGLE = np.array([3500.0, 4000.0, 4500.0, 5000.0]) * RPM, np.array([5.0, 4.2, 3.7, 3.2]) * DEGREE
+TORSIONAL, INERTIAL = 300.0, 1000.0
+"""Usual acceptance [rad/s²]."""
+LEAST = Rule("β ≥ 0.5°", SPICER, "typical")
+MOST = Rule("β ≤ 5.0° at 3500, 4.2° at 4000, 3.7° at 4500, 3.2° at 5000 rpm; 3° always", SPICER, "typical")
+EQUAL = Rule("|β₁ − β₂| ≤ 1°", SPICER, "typical")
+SHAKES = Rule("acceleration behind the last joint ≤ 300 rad/s²", "usual acceptance", "typical")
+TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", "usual acceptance", "typical")
+
+
+def allowed_angle(speed: float) -> float | None:
+    """Largest angle [rad] at a joint's own speed [rad/s]; None below 3500 rpm, where acceleration judges."""
+    if speed < TABLE_SPEED[0]:
+        return None
+    return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
+
+
+def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | None) -> Iterator[Check]:
+    """The rules for every Hooke's joint, and for the line's accelerations at its highest speed."""
+    joints = hooke_joints(subject.line)
+    if not joints:
+        yield Check("joint angles", Status.NOT_APPLICABLE, MOST, "the line has no Hooke's joint")
+        return
+    topo = assembly.topology
+    ratios = [abs(float(topo.speed_ratio[topo.stations[j].before])) for j in topo.joints]
+    for (name, angle), ratio in zip(joints, ratios, strict=True):
+        yield from _one(subject, name, abs(angle), ratio * subject.high)
+    if len(joints) == 2:
+        apart = abs(abs(joints[0][1]) - abs(joints[1][1]))
+        margin = below(apart, APART)
+        because = f"{abs(joints[0][1]) / DEGREE:.4g} and {abs(joints[1][1]) / DEGREE:.4g} deg, {percent(margin)}"
+        yield Check("equal joint angles", judged(margin), EQUAL, because, margin, 0.0, apart, APART, "rad",
+                    guideline=True)  # fmt: skip
+    else:
+        because = "the rule is for two joints; uniformity judges the line"
+        yield Check("equal joint angles", Status.NOT_APPLICABLE, EQUAL, because)
+    if turn is not None:
+        yield from _accelerations(subject, assembly, turn)
+
+
+def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Check]:
+    said = f"{angle / DEGREE:.4g} deg"
+    margin = above(angle, SMALLEST)
+    yield Check(f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin, 0.0, angle,
+                SMALLEST, "rad", guideline=True, element=name)  # fmt: skip
+    limit = allowed_angle(speed)
+    title, at = f"angle of {name}", f"at {speed / RPM:.5g} rpm of its shaft"
+    if limit is None and angle > EASY:
+        because = f"{said} {at}: below 3500 rpm the acceleration judges"
+        yield Check(title, Status.NOT_APPLICABLE, MOST, because)
+        return
+    limit = EASY if limit is None else limit
+    margin = below(angle, limit)
+    because = f"{said} against {limit / DEGREE:.3g} deg {at}, {percent(margin)}"
+    yield Check(title, judged(margin), MOST, because, margin, 0.0, angle, limit, "rad", subject.high, guideline=True,
+                element=name)  # fmt: skip
+
+
+def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
+    topo = assembly.topology
+    last = max((topo.speed_ratio[j] for j in topo.joints), key=abs)
+    for branch in turn.branches:
+        end = turn.on_branch(branch)
+        value = float(end.peak_acceleration) * abs(float(last) / end.mean_ratio)
+        where = f" on the way to {branch}" if len(turn.branches) > 1 else ""
+        yield _acceleration(subject, f"acceleration behind the joints{where}", SHAKES, value, TORSIONAL)
+    inner = [
+        (float(largest(turn.acceleration[s])), name)
+        for s, name in enumerate(turn.shafts)
+        if np.any(turn.acceleration[s]) and not np.allclose(np.abs(turn.acceleration[s] / turn.shaft_ratio[s]),
+                                                            np.abs(turn.output_acceleration / turn.mean_ratio))
+    ]  # fmt: skip
+    if inner:
+        value, name = max(inner)
+        yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL)
+
+
+def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit: float) -> Check:
+    margin = below(value, limit)
+    because = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}, {percent(margin)}"
+    return Check(title, judged(margin), rule, because, margin, 0.0, value, limit, "rad/s^2", subject.high,
+                 "rigid shafts", guideline=True)  # fmt: skip

@@ -1,0 +1,178 @@
+"""The limits that the description states: torque, vibratory torque, stress, twist, speed fluctuation, acceleration.
+
+    largest |mean + vibratory| ≤ limit          of torque, stress τ = 16 T D/(π(D⁴ − d⁴)), twist
+    half of peak-to-peak over the cycle ≤ limit     of vibratory torque, speed fluctuation, acceleration
+
+by the linear response to every order, at every speed of the running range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.orders.result import OrderResponse
+from trunnion.analyses.orders.totals import extremes
+from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
+from trunnion.driveline.quantities import shown
+from trunnion.driveline.shafts import Shaft
+from trunnion.equations.aligned import relative_ratio
+from trunnion.equations.coefficients import shaft_stiffness
+
+Array = NDArray[np.float64]
+WHOLE = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
+SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
+JUDGED = {
+    "max_torque": WHOLE,
+    "vibratory_torque": SWING,
+    "transient_vibratory_torque": SWING,
+    "max_stress": WHOLE,
+    "max_twist": WHOLE,
+    "max_speed_fluctuation": SWING,
+    "max_acceleration": SWING,
+}
+
+
+def own_limits(subject: Subject, case: Case) -> Iterator[Check]:
+    """Every limit of the description, and a line for springs without any limit of torque."""
+    for limit in subject.line.limits_by_element:
+        if limit.key in JUDGED:
+            yield _one(subject, case, limit)
+    without = unlimited(subject, case)
+    if without:
+        yield Check(
+            "torque without limit",
+            Status.NOT_JUDGED,
+            Rule("", "the description", "yours"),
+            f"{', '.join(without)}: no limit of torque or stress is stated; write [[limit]] with of and max_torque",
+        )
+
+
+def unlimited(subject: Subject, case: Case) -> list[str]:
+    """Springs whose torque nothing judges: no limit of torque, vibratory torque or stress, no rating."""
+    keys = ("max_torque", "vibratory_torque", "max_stress", "ship_shaft")
+    limited = {one.element for one in subject.line.limits_by_element if one.key in keys}
+    names, elements = subject.line.names, subject.line.elements
+    rated = {
+        n for n, e in zip(names, elements, strict=True) if getattr(e, "maximum_torque", None) is not None
+    }  # fmt: skip
+    springs = [names[i] for c in case.assembly.topology.compliances for i in c.shafts]
+    return [name for name in springs if name not in limited | rated]
+
+
+def spring_of(case: Case, element: str) -> int:
+    """The spring that an element is part of."""
+    place = case.assembly.line.index(element)
+    return next(c for c, ends in enumerate(case.assembly.topology.compliances) if place in ends.shafts)
+
+
+def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
+    name = f"{limit.key.replace('_', ' ')} of {limit.element}"
+    rule = JUDGED[limit.key]
+    if isinstance(case.answer, str):
+        return Check(name, Status.NOT_JUDGED, rule, f"no linear response: {case.answer}")
+    found = _values(case, case.answer, limit)
+    if isinstance(found, str):
+        return Check(name, Status.NOT_APPLICABLE, rule, found)
+    values, by_order = found
+    kind = LIMIT_KINDS[limit.key]
+    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
+    value = float(values[at]) if np.isfinite(values[at]) else np.inf
+    margin = below(value, limit.value)
+    said = cause(case, at, by_order[at])
+    how = shown(value, kind, digits=4) if np.isfinite(value) else "no steady state (undamped resonance)"
+    because = f"{how} against {shown(limit.value, kind, digits=4)} at {subject.shown(case.speeds[at])}, " + percent(
+        margin
+    )
+    because += (f", {said}" if said else "") + case.suffix
+    allowed = limit.value * (1 - limit.margin)
+    barred = bands(case.speeds, values, np.full(len(values), allowed)) if limit.key == "vibratory_torque" else ()
+    if limit.margin:
+        because += f"; {100 * limit.margin:.3g} % must stay free"
+    if barred:
+        because += f"; beyond it {_listed(subject, barred)}"
+    return Check(
+        name, judged(margin, limit.margin), rule, because, margin, limit.margin, value, limit.value, kind.unit,
+        float(case.speeds[at]), f"{len(values)} speeds, {subject.shown(case.speeds[0])} to "
+        f"{subject.shown(case.speeds[-1])}", case.name, barred, element=limit.element,
+    )  # fmt: skip
+
+
+def _listed(subject: Subject, ranges: tuple[tuple[float, float], ...]) -> str:
+    return " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" if a < b else subject.shown(a) for a, b in ranges)
+
+
+def bands(speeds: Array, values: Array, limit: Array) -> tuple[tuple[float, float], ...]:
+    """Ranges of speed where ``values`` lie above ``limit``, their ends interpolated."""
+    over = np.where(np.isfinite(values), values - limit, np.inf)
+    found, start = [], None
+    for i, excess in enumerate(over):
+        if excess > 0 and start is None:
+            start = speeds[0] if i == 0 else _crossing(speeds[i - 1 : i + 1], over[i - 1 : i + 1])
+        if start is not None and (excess <= 0 or i == len(over) - 1):
+            end = speeds[i] if excess > 0 else _crossing(speeds[i - 1 : i + 1], over[i - 1 : i + 1])
+            found.append((float(start), float(end)))
+            start = None
+    return tuple(found)
+
+
+def _crossing(speeds: Array, over: Array) -> float:
+    if not np.all(np.isfinite(over)):
+        return float(speeds[0] if over[0] > 0 else speeds[1])
+    return float(speeds[0] + (speeds[1] - speeds[0]) * over[0] / (over[0] - over[1]))
+
+
+def _values(case: Case, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
+    """What is limited, (speed,), and amplitudes by order (speed, order); or why there is none."""
+    if limit.key in ("max_speed_fluctuation", "max_acceleration"):
+        return _of_disk(case, response, limit)
+    c = spring_of(case, limit.element)
+    torque = np.abs(response.torque[:, :, c])
+    if limit.key in ("vibratory_torque", "transient_vibratory_torque"):
+        return response.vibratory_torque[:, c], torque
+    if limit.key == "max_torque":
+        return response.peak_torque[:, c], torque
+    element = case.assembly.line.elements[case.assembly.line.index(limit.element)]
+    if limit.key == "max_stress":
+        assert isinstance(element, Shaft)
+        factor = stress_factor(element)
+        return response.peak_torque[:, c] * factor, torque * factor
+    places = response.spectrum.channels
+    low, high = extremes(response.spectrum, response.spectrum.amplitude[..., places.twist], response.mean_twist)
+    twist = np.maximum(np.abs(low), np.abs(high))[:, c] * _share(case, limit.element, c)
+    return twist, np.abs(response.twist[:, :, c])
+
+
+def stress_factor(shaft: Shaft) -> float:
+    """τ/T = 16 D/(π(D⁴ − d⁴)) [1/m³] at the outside of a tube."""
+    assert shaft.outer_diameter
+    outer, inner = shaft.outer_diameter, shaft.inner_diameter or 0.0
+    return 16 * outer / (np.pi * (outer**4 - inner**4))
+
+
+def _share(case: Case, element: str, compliance: int) -> float:
+    """Share of the twist of shafts in series that falls on one of them: the softest twists most."""
+    table, line = case.assembly.table(1), case.assembly.line
+    shafts = case.assembly.topology.compliances[compliance].shafts
+    soft = {line.names[i]: 1 / float(shaft_stiffness(case.assembly, table, i)[0]) for i in shafts}
+    return soft[element] / sum(soft.values())
+
+
+def _of_disk(case: Case, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
+    topo, place = case.assembly.topology, case.assembly.line.index(limit.element)
+    station = next(s for s, element in topo.disks if element == place)
+    group = topo.group_of(station)
+    i = topo.coordinate[group]
+    if i < 0:
+        return "a ConstantSpeed holds its rotation"
+    if any(topo.group_of(j) == group for j in topo.joints) and station != topo.reference[group]:
+        return "it hangs on a joint without a shaft between; put a Shaft there to see its own motion"
+    ratio = abs(relative_ratio(topo, station))
+    rates = 1 if limit.key == "max_speed_fluctuation" else 2
+    values = response.speed_fluctuation if rates == 1 else response.acceleration
+    turning = np.abs(response.order * response.speed[:, None] + response.frequency) ** rates
+    return values[:, i] * ratio, np.abs(response.rotation[:, :, i]) * turning * ratio

@@ -1,0 +1,110 @@
+"""Parametric stability along the range: no disturbance may grow.
+
+    growth rate σ(Ω) = ln|largest multiplier| / period < 0     at every speed
+
+The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
+slowest mode: 100 % where they take nothing, 0 on the border of stability. 241 speeds; 25 for bent lines that start
+free, where each takes its own periodic motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.own_limits import bands
+from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.analyses.charts.stability_chart import stability_chart
+from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.analyses.linear.stability import stability
+from trunnion.driveline.driveline import hooke_joints
+from trunnion.equations.steady_base import bent
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.verdict import Verdict
+
+RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived")
+POINTS, EACH = 241, 25
+NAME = "parametric stability"
+Array = NDArray[np.float64]
+
+
+def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
+    """One check: the speed at which the slowest disturbance dies out slowest."""
+    varies = any(mesh.stiffness_rates for mesh in case.assembly.topology.meshes)
+    if not bent(case.assembly) and not varies:
+        because = "no joint is bent and no mesh varies: nothing excites the line parametrically"
+        yield Check(NAME, Status.NOT_APPLICABLE, RULE, because)
+        return
+    try:
+        speeds, growth, verdict = _along(case)
+    except (InputError, ComputationError) as error:
+        yield Check(NAME, Status.NOT_JUDGED, RULE, str(error).splitlines()[0], load_case=case.name)
+        return
+    judgeable = np.isfinite(growth)
+    if not np.any(judgeable):
+        yield Check(NAME, Status.NOT_JUDGED, RULE, "the computation failed at every speed" + case.suffix)
+        return
+    at = int(np.nanargmax(growth))
+    straight = float(np.nanmin(-loaded_modes(case.assembly, speeds[at : at + 1])[0].real))
+    inputs = f"{len(speeds)} speeds, {subject.shown(speeds[0])} to {subject.shown(speeds[-1])}"
+    here = f"at {subject.shown(speeds[at])}{case.suffix}"
+    unstable = verdict == Verdict.UNSTABLE
+    if np.any(unstable):
+        ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
+        spread = " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in ranges)
+        resonance = _resonance(case, float(speeds[at]))
+        because = (
+            f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s {here}{resonance}; unstable between {spread}"
+        )
+        margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
+        yield Check(
+            NAME, Status.EXCEEDED, RULE, because, float(margin), 0.0, float(growth[at]), 0.0, "1/s",
+            float(speeds[at]), inputs, case.name, ranges,
+        )  # fmt: skip
+    elif np.all(verdict[judgeable] == Verdict.STABLE) and np.all(judgeable):
+        share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
+        because = (
+            f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
+            "the straight line's damping"
+        )
+        yield Check(
+            NAME, Status.SATISFIED, RULE, because, float(share), 0.0, float(growth[at]), 0.0, "1/s",
+            float(speeds[at]), inputs, case.name,
+        )  # fmt: skip
+    else:
+        words = sorted({str(Verdict(int(v))) for v in verdict if v != Verdict.STABLE})
+        because = f"{' and '.join(words)} at some speeds: state the damping of the shafts{case.suffix}"
+        yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=inputs, load_case=case.name)
+
+
+def _resonance(case: Case, speed: float) -> str:
+    try:
+        found = stability(case.assembly, speed).resonance
+    except (InputError, ComputationError):
+        return ""
+    return f" ({found})" if found else ""
+
+
+def _along(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
+    """Speeds, growth rates [1/s] and verdicts."""
+    assembly, low, high = case.assembly, float(case.speeds[0]), float(case.speeds[-1])
+    joints = [(name, angle) for name, angle in hooke_joints(assembly.line) if angle]
+    if joints and not assembly.topology.free and high > low:
+        name, angle = joints[0]
+        chart = stability_chart(assembly, ("speed", low, high, POINTS), (f"{name}.angle", angle, angle, 1))
+        speeds = np.asarray(chart.x, dtype=float)
+        turns = float(assembly.topology.period_turns())
+        growth = np.log(np.maximum(chart.spectral_radius[0], 1e-300)) * speeds / (2 * np.pi * turns)
+        return speeds, growth, np.asarray(chart.verdict[0])
+    speeds = np.linspace(low, high, EACH if assembly.topology.free else 200) if high > low else case.speeds
+    growth, verdict = np.full(len(speeds), np.nan), np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8)
+    for i, speed in enumerate(speeds):
+        try:
+            found = stability(assembly, float(speed))
+        except ComputationError:
+            continue
+        growth[i], verdict[i] = found.growth_rate, int(found.verdict)
+    return speeds, growth, verdict

@@ -1,0 +1,140 @@
+"""What ``assess`` gives: a verdict, and every check with its margin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from trunnion.analyses.assessment.check import Check, Status, percent
+from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.finding import Finding
+from trunnion.results.speeds import show_speed, speed_factor
+
+
+@dataclass(frozen=True, repr=False)
+class Assessment(Result):
+    """A line judged over its running range.
+
+    verdict: exceeded, satisfied, or not judged where a limit is missing that alone could judge; checks: the binding
+    one first, then by margin; barred: speed ranges [rad/s] that the line may only pass quickly; low, high: the running
+    range, speed: the operating one [rad/s] or None; unit: of speeds in print; findings: what was said on the way.
+    """
+
+    verdict: Status
+    checks: tuple[Check, ...]
+    barred: tuple[tuple[float, float], ...]
+    low: float
+    high: float
+    speed: float | None
+    unit: str
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def binding(self) -> Check | None:
+        """The check that decides: exceeded most, or satisfied with the least margin; None where nothing is judged."""
+        first = next(iter(self.checks), None)
+        return first if first and first.status in (Status.EXCEEDED, Status.SATISFIED) else None
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one sentence."""
+        over_limit = [c for c in self.checks if c.status is Status.EXCEEDED]
+        open_ones = [c for c in self.checks if c.status is Status.NOT_JUDGED]
+        bind = self.binding
+        if self.verdict is Status.EXCEEDED:
+            assert bind is not None
+            more = f"; {len(over_limit) - 1} more exceeded" if len(over_limit) > 1 else ""
+            rule = " (a guideline)" if bind.guideline else ""
+            return f"exceeded: {bind.name}{rule}, {bind.because}{more}"
+        if self.verdict is Status.NOT_JUDGED:
+            names = ", ".join(c.name for c in open_ones[:4]) + (", ..." if len(open_ones) > 4 else "")
+            return f"not judged: nothing judged is exceeded, but {names or 'no limit is stated'}"
+        if self.barred:
+            ranges = " and ".join(f"{show_speed(a, self.unit)} to {show_speed(b, self.unit)}" for a, b in self.barred)
+            return f"satisfied where {ranges} is barred and passed quickly: there only transient limits hold"
+        assert bind is not None
+        return f"satisfied: {bind.name} binds, {bind.because}"
+
+    def check(self, name: str) -> Check:
+        """The check called ``name``; KeyError where there is none."""
+        for one in self.checks:
+            if one.name == name:
+                return one
+        raise KeyError(name)
+
+    def declared(self) -> Iterator[Held]:
+        """Status, margin, value and limit over the checks."""
+        yield axis("check", [c.name for c in self.checks])
+        yield over("check", "status", [str(c.status) for c in self.checks])
+        yield over("check", "margin", [c.margin for c in self.checks], "1", "distance to the limit over the limit")
+        yield over("check", "required_margin", [c.required_margin for c in self.checks], "1")
+        yield over("check", "value", [c.value for c in self.checks], about="in the unit of its check")
+        yield over("check", "limit", [c.limit for c in self.checks], about="in the unit of its check")
+        yield over("check", "check_unit", [c.unit for c in self.checks])
+        yield over("check", "speed", [c.speed for c in self.checks], "rad/s", "input speed where it binds")
+        yield over("check", "because", [c.because for c in self.checks])
+        yield over("check", "formula", [c.rule.formula for c in self.checks])
+        yield over("check", "source", [c.rule.source for c in self.checks])
+        yield over("check", "certainty", [c.rule.certainty for c in self.checks])
+        yield over("check", "inputs", [c.inputs for c in self.checks])
+        yield over("check", "load_case", [c.load_case for c in self.checks])
+        yield remark("verdict", str(self.verdict))
+        yield remark("sentence", self.sentence)
+        yield remark("findings", [str(f) for f in self.findings])
+        yield remark("barred_rad_per_s", [float(x) for pair in self.barred for x in pair])
+
+    def table(self, unit: str | None = None) -> list[dict[str, object]]:
+        """One row a check, speeds in ``unit``."""
+        unit = unit or self.unit
+        return [
+            {
+                "check": c.name,
+                "status": str(c.status),
+                "margin": percent(c.margin) if c.status in (Status.SATISFIED, Status.EXCEEDED) else "",
+                f"speed [{unit}]": f"{c.speed * speed_factor(unit):.5g}" if c.speed == c.speed else "",
+                "because": c.because,
+            }
+            for c in self.checks
+        ]
+
+    def __str__(self) -> str:
+        span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
+        rows = [f"assessment from {span}: {self.sentence}"]
+        for c in self.checks:
+            rows.append(f"  {c.status}: {c.name}: {c.because}")
+            if c.status in (Status.SATISFIED, Status.EXCEEDED):
+                details = [c.rule.formula, f"{c.rule.source} ({c.rule.certainty})", c.inputs]
+                rows.append(f"      {'; '.join(d for d in details if d)}")
+        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+
+
+def passable(check: Check, checks: tuple[Check, ...], speed: float | None) -> bool:
+    """Whether an exceeded check only bars speeds: its transient limit holds, and the line does not run there."""
+    partner = (f"transient vibratory torque of {check.element}", f"{check.name}, passing")
+    holds = any(c.name in partner and c.status is Status.SATISFIED for c in checks)
+    inside = speed is not None and any(a <= speed <= b for a, b in check.barred)
+    return bool(check.barred) and holds and not inside
+
+
+def verdict_of(checks: tuple[Check, ...], speed: float | None) -> tuple[Status, tuple[tuple[float, float], ...]]:
+    """The verdict over all checks, and the speed ranges that it bars."""
+    exceeded = [c for c in checks if c.status is Status.EXCEEDED]
+    barring = [c for c in exceeded if passable(c, checks, speed)]
+    barred = merged([pair for c in barring for pair in c.barred])
+    if len(barring) < len(exceeded):
+        return Status.EXCEEDED, barred
+    judged = any(c.status is Status.SATISFIED for c in checks)
+    if any(c.status is Status.NOT_JUDGED for c in checks) or not judged:
+        return Status.NOT_JUDGED, barred
+    return Status.SATISFIED, barred
+
+
+def merged(ranges: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Ranges with those that overlap joined."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted(ranges):
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], max(high, found[-1][1]))
+        else:
+            found.append((low, high))
+    return tuple(found)

@@ -1,0 +1,92 @@
+"""Separation of natural frequencies from the orders that excite the line.
+
+    |kΩ/ω − 1| ≥ 10 %   for every order k that shakes the line and every mode ω, over the running range
+
+(API 617/684, typical.) A mode that an order comes nearer to is not a fault by itself: it needs a check of torque or
+stress there, which the limits of the description give. Orders below 1 % of the largest torque by one order are left
+out. ω is the damped frequency of the loaded line, all joints straight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.check import Check, Rule, Status, above
+from trunnion.analyses.assessment.own_limits import unlimited
+from trunnion.analyses.assessment.subject import Case, Subject
+
+REQUIRED = 0.10
+WORTH = 0.01
+"""Share of a spring's largest torque by one order from which an order counts."""
+RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical")
+
+
+def separation(subject: Subject, case: Case) -> Iterator[Check]:
+    """One check a mode that an order meets, one for all the others together."""
+    if case.response is None:
+        yield Check("separation of modes", Status.NOT_JUDGED, RULE, f"no linear response: {case.answer}")
+        return
+    orders = shaking_orders(case)
+    if not len(orders):
+        yield Check("separation of modes", Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
+        return
+    clear: list[tuple[float, str, float]] = []
+    frequency = np.abs(case.modes.imag)
+    for m in range(frequency.shape[1]):
+        near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
+        if not np.isfinite(near):
+            continue
+        here = case.modes[at, m]
+        hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
+        if near >= REQUIRED:
+            said = f"order {order:.4g} comes no nearer than {100 * near:.3g} % to {hertz}"
+            clear.append((near, f"{said}, at {subject.shown(case.speeds[at])}", float(case.speeds[at])))
+            continue
+        what = "meets" if met else f"comes within {100 * near:.2g} % of"
+        gain = abs(here) / max(-2 * here.real, 1e-300)
+        said = f"order {order:.4g} {what} {hertz} at {subject.shown(case.speeds[at])}, amplification {gain:.3g}"
+        without = unlimited(subject, case)
+        status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
+        needs = (
+            f"; that needs a check of torque or stress: state limits for {', '.join(without)}"
+            if without
+            else "; the limits of torque and stress judge it"
+        )
+        yield Check(
+            f"separation of mode {m + case.first}", status, RULE, said + needs, above(near, REQUIRED), 0.0, near,
+            REQUIRED, "1", float(case.speeds[at]), "", case.name, guideline=True,
+        )  # fmt: skip
+    if clear:
+        near, said, speed = min(clear)
+        yield Check(
+            "separation of modes", Status.SATISFIED, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED, "1",
+            speed, f"{len(orders)} orders", case.name, guideline=True,
+        )  # fmt: skip
+
+
+def shaking_orders(case: Case) -> NDArray[np.float64]:
+    """Orders that make up 1 % of any spring's torque at least."""
+    response = case.response
+    assert response is not None
+    if not len(response.order):
+        return np.zeros(0)
+    size = np.nan_to_num(np.abs(response.torque)).max(axis=0)
+    worth = np.any(size >= WORTH * np.maximum(size.max(axis=0), 1e-300), axis=1)
+    return np.unique(response.order[worth & (response.frequency == 0) & (response.order > 0)])
+
+
+def _nearest(
+    speeds: NDArray[np.float64], frequency: NDArray[np.float64], orders: NDArray[np.float64]
+) -> tuple[float, float, int, bool]:
+    """Smallest |kΩ/ω − 1| over orders and speeds, with the order and the speed's number; 0 where they meet between."""
+    off = np.multiply.outer(orders, speeds) / frequency - 1
+    if not np.any(np.isfinite(off)):
+        return np.inf, 0.0, 0, False
+    size = np.where(np.isfinite(off), np.abs(off), np.inf)
+    crossed = np.any(off[:, 1:] * off[:, :-1] <= 0, axis=1)
+    size[crossed] = np.where(size[crossed] == size[crossed].min(axis=1, keepdims=True), 0.0, size[crossed])
+    k, at = np.unravel_index(int(size.argmin()), size.shape)
+    return float(size[k, at]), float(orders[k]), int(at), bool(crossed[k])

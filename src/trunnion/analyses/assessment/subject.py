@@ -1,0 +1,119 @@
+"""What the checks look at: the line under each of its load cases, over the speeds that it runs at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.charts.axes import lowest_speed
+from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.analyses.linear.speed_sweep import sweep_speeds
+from trunnion.analyses.orders.response import order_response
+from trunnion.analyses.orders.result import OrderResponse
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.speeds import show_speed, speed_factor
+
+Array = NDArray[np.float64]
+POINTS = 201
+"""Speeds of the even part of the grid; the peaks of the modes get more."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The line, its running range [rad/s], its operating speed [rad/s] or None, the unit of speeds, its cases."""
+
+    line: Driveline
+    low: float
+    high: float
+    speed: float | None
+    unit: str
+    cases: tuple[Case, ...]
+
+    def shown(self, speed: float) -> str:
+        """A speed in the unit of the description."""
+        return show_speed(float(f"{speed * speed_factor(self.unit):.5g}") / speed_factor(self.unit), self.unit)
+
+    def required(self, element: str) -> float:
+        """Largest margin that the description requires of an element."""
+        return max((one.margin for one in self.line.limits_by_element if one.element == element), default=0.0)
+
+
+@dataclass(frozen=True)
+class Case:
+    """The line under one load case ("" as stated), and the speeds that it is judged at."""
+
+    name: str
+    assembly: Assembly
+    low: float
+    high: float
+
+    @cached_property
+    def speeds(self) -> Array:
+        """Speeds [rad/s] from the lowest to the highest, closer about the peaks."""
+        if self.low == self.high:
+            return np.array([self.low])
+        low = max(self.low, lowest_speed(self.assembly), 1e-3 * self.high)
+        if low >= self.high:
+            return np.array([self.high])
+        return sweep_speeds(self.assembly, low, self.high, POINTS)
+
+    @cached_property
+    def answer(self) -> OrderResponse | str:
+        """The linear response by order, or why there is none."""
+        try:
+            return order_response(self.assembly, self.speeds)
+        except (InputError, ComputationError) as error:
+            return str(error).splitlines()[0]
+
+    @property
+    def response(self) -> OrderResponse | None:
+        """The linear response by order; None where there is none."""
+        return self.answer if isinstance(self.answer, OrderResponse) else None
+
+    @cached_property
+    def modes(self) -> NDArray[np.complex128]:
+        """Eigenvalues (speed, mode) [1/s] of the loaded line, joints straight, at ``speeds``."""
+        return loaded_modes(self.assembly, self.speeds)[0]
+
+    @property
+    def first(self) -> int:
+        """Number of the first elastic mode: 2 where the line can turn as a whole."""
+        return 2 if self.assembly.topology.free else 1
+
+    @property
+    def suffix(self) -> str:
+        """How sentences name the case."""
+        return f", load case {self.name}" if self.name else ""
+
+
+def cases_of(line: Driveline, low: float, high: float) -> tuple[Case, ...]:
+    """The line as stated and under each of its load cases."""
+    named = [case.name for case in line.operation.load_cases] if line.operation else []
+    return tuple(
+        Case(name, assemble(line.with_load(name) if name else line), low, high) for name in ("", *named)
+    )  # fmt: skip
+
+
+def cause(case: Case, at: int, size: Array) -> str:
+    """Which order leads at speed number ``at``, of amplitudes ``size`` (order,), and the mode that it is nearest to."""
+    response = case.response
+    if response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
+        return ""
+    k = int(np.nanargmax(size))
+    order, extra = float(response.order[k]), float(response.frequency[k])
+    name = f"order {order:.4g}" if not extra else f"the excitation at {show_speed(extra, 'Hz')}"
+    frequency = order * case.speeds[at] + extra
+    modes = np.abs(case.modes[at])
+    if not np.any(np.isfinite(modes)):
+        return f"led by {name}"
+    m = int(np.nanargmin(np.abs(np.log(modes / frequency))))
+    off = frequency / modes[m] - 1
+    side = f"{abs(100 * off):.2g} % {'above' if off > 0 else 'below'}" if abs(off) >= 5e-4 else "on"
+    if abs(off) > 3:
+        side = "far above"
+    return f"led by {name}, {side} mode {m + case.first} ({modes[m] / (2 * np.pi):.4g} Hz)"

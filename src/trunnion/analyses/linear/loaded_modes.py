@@ -1,0 +1,75 @@
+"""Modes of the loaded line over speed: damped eigenvalues of the aligned line, loads that go with speed included.
+
+(λ²M + λC(Ω) + K + iH) v = 0 with all joints straight: C holds the slopes of loads by speed at each station's own
+speed, H the damping that does not go with frequency. Modes keep their place by shape: a mode at one speed follows
+the one at the speed before that it shares most with, by the modal assurance criterion
+MAC(u, v) = |u*Mv|²/((u*Mu)(v*Mv)), weighed with the inertias.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.loads import load_slope
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+RIGID = 1e-6
+"""Share of the highest frequency below which a mode counts as rigid rotation."""
+
+
+def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
+    """Eigenvalues (speed, mode) [1/s] with positive imaginary part, and shapes (speed, rotation, mode).
+
+    Modes are numbered by the undamped frequency of the line, the rigid rotation of a free line left out. NaN where a
+    mode does not oscillate.
+    """
+    topo = assembly.topology
+    table = assembly.table(len(speeds))
+    table[:, 0] = speeds
+    coefficients = assembly.coefficients(table, any_frequency=True)
+    matrices = aligned_matrices(topo, coefficients)
+    damping = matrices.damping.copy()
+    slope = load_slope(topo, coefficients.viscous, coefficients.quadratic, np.asarray(speeds))
+    for s in range(len(topo.stations)):
+        c = topo.coordinate[topo.group_of(s)]
+        if c >= 0:
+            damping[:, c, c] += slope[:, s] * relative_ratio(topo, s) ** 2
+    loss = np.zeros_like(damping)
+    for e in range(len(topo.compliances)):
+        direction = elongation(topo, e)
+        loss += coefficients.loss[:, e, None, None] * np.outer(direction, direction)
+    n, mass = topo.size, matrices.mass[0]
+    root = np.sqrt(mass)
+    scale = np.outer(root, root)
+    squares, reference = np.linalg.eigh(matrices.stiffness[0] / scale)
+    elastic = squares > (RIGID**2) * max(squares.max(initial=0.0), 0.0)
+    last = reference[:, elastic].astype(complex)
+    found = np.full((len(speeds), last.shape[1]), np.nan, dtype=complex)
+    shapes = np.full((len(speeds), n, last.shape[1]), np.nan, dtype=complex)
+    for i in range(len(speeds)):
+        system = np.zeros((2 * n, 2 * n), dtype=complex)
+        system[:n, n:] = np.eye(n)
+        system[n:, :n] = -(matrices.stiffness[i] + 1j * loss[i]) / scale
+        system[n:, n:] = -damping[i] / scale
+        values, vectors = np.linalg.eig(system)
+        kept = values.imag > RIGID * np.sqrt(max(squares.max(initial=0.0), 0.0))
+        values, vectors = values[kept], vectors[:n, kept]
+        here, there = matched(last, vectors)
+        found[i, here] = values[there]
+        turned = vectors[:, there] / root[:, None]
+        largest = turned[np.abs(turned).argmax(axis=0), np.arange(len(there))]
+        shapes[i][:, here] = turned / largest
+        last[:, here] = vectors[:, there]
+    return found, shapes
+
+
+def matched(before: Complex, after: Complex) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Which columns belong together, by the largest sum of MAC; vectors in coordinates scaled with √M."""
+    share = np.abs(before.conj().T @ after) ** 2
+    share /= np.maximum((np.abs(before) ** 2).sum(axis=0)[:, None] * (np.abs(after) ** 2).sum(axis=0), 1e-300)
+    return linear_sum_assignment(-share)  # type: ignore[no-any-return]

@@ -1,0 +1,87 @@
+"""The command ``assess``: is the line fit for its speeds, and what binds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from trunnion.cli import output
+from trunnion.cli.options import File, Json, LoadCase, Unit, read_line, read_unit
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from trunnion.analyses.assessment.result import Assessment
+
+
+def assess(
+    file: File,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    as_json: Json = False,
+) -> None:
+    """Judge every limit of the file and every rule that applies, over its speed range; the binding one first."""
+    line = read_line(file)
+    unit = read_unit(line, unit)
+    from trunnion.analyses.assessment.assess import assess as judge
+
+    with output.compile_notice():
+        result = judge(line, load_case=load_case, unit=unit)
+    if as_json:
+        output.write_json("assess", assessment_json(result))
+        return
+    print_assessment(output.console(), result)
+
+
+def print_assessment(out: Console, result: Assessment) -> None:
+    """The verdict, the table of checks, and the rules that they stand on."""
+    out.print(result.sentence, style="bold", soft_wrap=True)
+    output.heading(out, "Checks, the binding one first")
+    rows = result.table()
+    output.table(out, [{k: v for k, v in row.items() if k != "because"} for row in rows])
+    output.heading(out, "Because")
+    for row in rows:
+        out.print(f"  {row['check']}: {row['because']}", soft_wrap=True)
+    output.heading(out, "Rules")
+    rules = dict.fromkeys((c.rule, c.inputs) for c in result.checks if c.margin == c.margin)
+    for rule, inputs in rules:
+        out.print(
+            f"  {rule.formula}: {rule.source} ({rule.certainty})" + (f"; {inputs}" if inputs else ""), soft_wrap=True
+        )
+    if result.findings:
+        output.heading(out, "Findings")
+        output.findings(out, result.findings)
+
+
+def assessment_json(result: Assessment) -> dict[str, Any]:
+    """Verdict and checks; speeds in ``speed_unit``, values and limits in the SI unit of each check."""
+    factor = speed_factor(result.unit)
+    return {
+        "verdict": str(result.verdict),
+        "sentence": result.sentence,
+        "speed_unit": result.unit,
+        "speed_range": [result.low * factor, result.high * factor],
+        "barred": [[a * factor, b * factor] for a, b in result.barred],
+        "checks": [
+            {
+                "name": c.name,
+                "status": str(c.status),
+                "margin": c.margin,
+                "required_margin": c.required_margin,
+                "value": c.value,
+                "limit": c.limit,
+                "unit": c.unit,
+                "speed": c.speed * factor,
+                "because": c.because,
+                "barred": [[a * factor, b * factor] for a, b in c.barred],
+                "formula": c.rule.formula,
+                "source": c.rule.source,
+                "certainty": c.rule.certainty,
+                "inputs": c.inputs,
+                "load_case": c.load_case,
+                "guideline": c.guideline,
+            }
+            for c in result.checks
+        ],
+        "findings": [str(f) for f in result.findings],
+    }

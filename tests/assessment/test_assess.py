@@ -1,0 +1,314 @@
+"""``assess`` against calculations by hand, and what it says where it cannot judge."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import trunnion as tn
+from trunnion.analyses.assessment.check import Status
+from trunnion.analyses.assessment.couplings import frequency_factor
+from trunnion.analyses.assessment.joint_angles import allowed_angle
+from trunnion.analyses.assessment.ship_shafts import barred_range, permissible_stress
+from trunnion.cli import app
+
+J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
+
+
+def two_mass(*limits, load=0.0, spring=None, order=2):
+    """A free line of two inertias, shaken by one order of 100 N m; mode 2 at 250 rad/s."""
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=J1, name="engine", drive_share=1.0, excitation=[{"order": order, "amplitude": T}]),
+            spring or tn.Shaft(stiffness=K, damping=C, name="shaft"),
+            tn.Disk(inertia=J2, name="load", load_torque=load),
+        ],
+        limits=limits,
+    )
+
+
+def torque(frequency):
+    """Amplitude by hand: the twist q of J₁J₂/(J₁ + J₂) q″ + cq′ + kq = T J₂/(J₁ + J₂), times |k + iνc|."""
+    reduced, share = J1 * J2 / (J1 + J2), J2 / (J1 + J2)
+    spring = K + 1j * frequency * C
+    return abs(T * share * spring / (spring - reduced * frequency**2))
+
+
+def test_the_torque_of_two_masses_by_hand():
+    one = tn.assess(two_mass(tn.Limit(of="shaft", vibratory_torque=400.0)), (100.0, 100.0))
+    check = one.check("vibratory torque of shaft")
+    assert check.value == pytest.approx(torque(200.0), rel=1e-9)
+    assert check.margin == pytest.approx(1 - torque(200.0) / 400.0, rel=1e-9)
+    assert check.status is Status.SATISFIED
+    assert "order 2, 20 % below mode 2 (39.79 Hz)" in check.because
+    peak = tn.assess(two_mass(tn.Limit(of="shaft", max_torque=400.0), load=50.0), (100.0, 100.0))
+    assert peak.check("max torque of shaft").value == pytest.approx(torque(200.0) + 50.0, rel=1e-9)
+
+
+def test_motion_of_a_disk_by_hand():
+    """Rotation of the load: J₂φ₂″ = −torque of the shaft, so its acceleration is torque/J₂."""
+    limits = [tn.Limit(of="load", max_acceleration=1000.0, max_speed_fluctuation=10.0)]
+    found = tn.assess(two_mass(*limits), (100.0, 100.0))
+    assert found.check("max acceleration of load").value == pytest.approx(torque(200.0) / J2, rel=1e-9)
+    assert found.check("max speed fluctuation of load").value == pytest.approx(torque(200.0) / J2 / 200.0, rel=1e-9)
+
+
+def test_stress_and_twist_of_a_tube_by_hand():
+    tube = tn.Shaft(outer_diameter="60 mm", inner_diameter="40 mm", length="0.5 m", material="steel", name="shaft")
+    line = two_mass(tn.Limit(of="shaft", max_stress="50 MPa", max_twist="1 deg"), spring=tube)
+    found = tn.assess(line, (50.0, 50.0))
+    largest = tn.order_response(line, [50.0]).peak_torque[0, 0]
+    second_moment = math.pi / 32 * (0.06**4 - 0.04**4)
+    assert found.check("max stress of shaft").value == pytest.approx(largest * 0.03 / second_moment, rel=1e-9)
+    assert found.check("max twist of shaft").value == pytest.approx(largest * 0.5 / (79.3e9 * second_moment), rel=1e-9)
+
+
+def test_without_limits_nothing_is_satisfied():
+    found = tn.assess(two_mass(), (60.0, 140.0))
+    assert found.verdict is Status.NOT_JUDGED
+    assert found.check("torque without limit").status is Status.NOT_JUDGED
+    assert found.check("separation of mode 2").status is Status.NOT_JUDGED
+    assert found.sentence.startswith("not judged")
+
+
+def test_limits_judge_what_separation_asks_for():
+    found = tn.assess(two_mass(tn.Limit(of="shaft", max_torque=1e4)), (60.0, 140.0))
+    assert found.check("separation of mode 2").status is Status.NOT_APPLICABLE
+    assert found.verdict is Status.SATISFIED
+    assert found.binding is found.checks[0]
+    peak = found.check("max torque of shaft")
+    fine = max(torque(2 * speed) for speed in np.linspace(120.0, 130.0, 4001))
+    assert peak.value == pytest.approx(fine, rel=2e-3)
+
+
+def test_separation_by_hand():
+    """Order 2 at 100 rad/s stands 20 % below 250 rad/s: twice the separation asked for."""
+    check = tn.assess(two_mass(), (50.0, 100.0)).check("separation of modes")
+    damped = 250.0 * math.sqrt(1 - (C / (2 * math.sqrt(K * 0.16))) ** 2)
+    assert check.value == pytest.approx(1 - 200.0 / damped, rel=1e-9)
+    assert check.margin == pytest.approx(check.value / 0.1 - 1)
+
+
+def test_a_required_margin():
+    value = torque(200.0)
+    kept = tn.Limit(of="shaft", vibratory_torque=value / 0.85, margin="10 %")
+    short = tn.Limit(of="shaft", vibratory_torque=value / 0.95, margin="10 %")
+    name = "vibratory torque of shaft"
+    assert tn.assess(two_mass(kept), (100.0, 100.0)).check(name).status is Status.SATISFIED
+    assert tn.assess(two_mass(short), (100.0, 100.0)).check(name).status is Status.EXCEEDED
+
+
+def test_a_limit_of_the_element_goes_before_that_of_its_kind():
+    limits = [tn.Limit(of="shaft", max_torque=300.0), tn.Limit(of="Shaft *", max_torque=1.0, max_twist=1.0)]
+    line = two_mass(*limits)
+    assert {(one.key, one.value) for one in line.limits_by_element} == {("max_torque", 300.0), ("max_twist", 1.0)}
+    assert line.replace("shaft", damping=3.0).limits == line.limits
+
+
+def test_a_range_that_is_passed_quickly_is_barred():
+    limit = tn.Limit(of="shaft", vibratory_torque=500.0, transient_vibratory_torque=5000.0)
+    line = two_mass(limit)
+    found = tn.assess(line, (60.0, 180.0))
+    assert found.check("vibratory torque of shaft").status is Status.EXCEEDED
+    assert found.verdict is Status.SATISFIED
+    assert "barred" in found.sentence
+    ((low, high),) = found.barred
+    assert torque(2 * low) == pytest.approx(500.0, rel=0.02)
+    assert torque(2 * high) == pytest.approx(500.0, rel=0.02)
+    there = tn.Driveline(line.elements, limits=line.limits, operation=tn.Operation(speed=125.0))
+    assert tn.assess(there, (60.0, 180.0)).verdict is Status.EXCEEDED  # it runs in the barred range
+    hard = two_mass(tn.Limit(of="shaft", vibratory_torque=500.0, transient_vibratory_torque=600.0))
+    assert tn.assess(hard, (60.0, 180.0)).verdict is Status.EXCEEDED
+
+
+def test_coupling_ratings_by_hand():
+    """At 120 rad/s order 2 shakes at 240/2π = 38.2 Hz: S_f = √3.82."""
+    coupling = tn.Coupling(
+        stiffness=K, damping=C, name="coupling", nominal_torque=100.0, maximum_torque=1000.0, vibratory_torque=900.0,
+        heat_rating=5000.0,
+    )  # fmt: skip
+    factors = tn.Limit(of="coupling", temperature_factor=1.4, starting_factor=1.3)
+    found = tn.assess(two_mass(factors, spring=coupling, load=60.0), (120.0, 120.0))
+    amplitude = torque(240.0)
+    expected = {
+        "nominal torque": 60.0 * 1.4,
+        "maximum torque": (60.0 + amplitude) * 1.4 * 1.3,
+        "vibratory torque": amplitude * 1.4 * math.sqrt(240.0 / (2 * math.pi) / 10),
+        "heat rating": 0.5 * C * 240.0**2 * (amplitude / abs(K + 240j * C)) ** 2 * 1.4,
+    }
+    for key, value in expected.items():
+        assert found.check(f"rating: {key} of coupling").value == pytest.approx(value, rel=1e-9), key
+    assert frequency_factor(4.0) == 1.0
+    assert frequency_factor(22.5) == pytest.approx(1.5)
+
+
+def test_joint_angles_by_hand():
+    """Halfway between 4000 (4.2°) and 4500 rpm (3.7°) lies 3.95°; beyond the table 3°; below 3500 rpm none."""
+    assert allowed_angle(tn.rpm(4250)) == pytest.approx(tn.deg(3.95))
+    assert allowed_angle(tn.rpm(6000)) == pytest.approx(tn.deg(3.0))
+    assert allowed_angle(tn.rpm(3400)) is None
+
+
+def jointed(first, second, offset="0 deg", **rest):
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=1e5, damping=20.0, fork_offset=0.0),
+            tn.Disk(inertia=0.02),
+            tn.HookeJoint(angle=first, name="front"),
+            tn.Shaft(stiffness=4e4, damping=5.0, fork_offset=offset, name="tube"),
+            tn.Disk(inertia=0.02),
+            tn.HookeJoint(angle=second, name="rear"),
+            tn.Shaft(stiffness=1e5, damping=20.0),
+            tn.Disk(inertia=0.1),
+        ],
+        **rest,
+    )
+
+
+def test_joint_rules_on_a_line():
+    found = tn.assess(jointed("4 deg", "2 deg"), (tn.rpm(1000), tn.rpm(4250)))
+    assert found.check("angle of front").margin == pytest.approx(1 - 4 / 3.95)
+    assert found.check("equal joint angles").status is Status.EXCEEDED
+    one = found.check("uniformity")
+    b1, b2 = math.radians(4), math.radians(2)
+    small = b1**2 - b2**2  # forks in line: the joints subtract
+    assert one.value == pytest.approx(small, rel=5e-3)
+    speed = tn.rpm(4250)
+    assert found.check("acceleration behind the joints").value == pytest.approx(speed**2 * small, rel=5e-3)
+    assert found.check("acceleration between the joints, tube").value == pytest.approx(speed**2 * b1**2, rel=5e-3)
+    slow = tn.assess(jointed("4 deg", "4 deg"), (tn.rpm(500), tn.rpm(1500)))
+    assert slow.check("angle of front").status is Status.NOT_APPLICABLE
+    assert slow.check("uniformity").status is Status.SATISFIED
+    none = tn.assess(jointed("0.2 deg", "0.2 deg"), (tn.rpm(500), tn.rpm(1500)))
+    assert none.check("smallest angle of rear").margin == pytest.approx(0.2 / 0.5 - 1)
+
+
+def test_ship_shafts_by_hand():
+    """σ_B = 600, d = 200: C_D = 0.35 + 0.93 · 200^−0.2 = 0.67231; 760/18 · 0.67231 = 28.387; · 2.5 and · 1.38."""
+    assert permissible_stress(600.0, 200.0, 1.0, 0.5) == pytest.approx(70.966, rel=1e-4)
+    assert permissible_stress(600.0, 200.0, 1.0, 1.0) == pytest.approx(39.173, rel=1e-4)
+    assert permissible_stress(600.0, 200.0, 0.45, 0.5) == pytest.approx(0.45 * 70.966, rel=1e-4)
+    assert barred_range(100.0, 0.5) == (pytest.approx(91.4286, rel=1e-5), pytest.approx(109.375))
+
+
+def ship(amplitude):
+    shaft = tn.Shaft(
+        outer_diameter="200 mm", length="6 m", shear_modulus="79.3 GPa", tensile_strength="700 MPa", damping=2000.0,
+        name="intermediate shaft",
+    )  # fmt: skip
+    engine = tn.Disk(inertia=800.0, drive_share=1.0, excitation=[{"order": 6, "amplitude": amplitude}])
+    limits = [tn.Limit(of="intermediate shaft", ship_shaft="flange")]
+    propeller = tn.Disk(inertia=600.0, quadratic_load=50.0)
+    operation = tn.Operation(speed="200 rpm", speed_range=["40 rpm", "205 rpm"])
+    return tn.Driveline([engine, shaft, propeller], limits=limits, operation=operation)
+
+
+def test_a_ship_shaft_with_a_barred_range():
+    found = tn.assess(ship(24000.0))
+    check = found.check("IACS UR M68 of intermediate shaft")
+    response = tn.order_response(ship(24000.0), [check.speed])
+    stress = response.vibratory_torque[0, 0] * 16 / (math.pi * 0.2**3)
+    assert check.value == pytest.approx(stress, rel=1e-9)
+    ratio = check.speed / tn.rpm(200)
+    assert check.limit == pytest.approx(760 / 18 * 0.67231 * (3 - 2 * ratio**2) * 1e6, rel=1e-4)  # σ_B counts to 600
+    assert check.status is Status.EXCEEDED
+    ((low, high),) = check.barred
+    assert low <= 16 * check.speed / (18 - ratio) * (1 + 1e-9)
+    assert high >= (18 - ratio) * check.speed / 16 * (1 - 1e-9)
+    passing = found.check("IACS UR M68 of intermediate shaft, passing")
+    assert passing.limit == pytest.approx(1.7 * check.limit, rel=1e-3)
+    assert tn.assess(ship(100.0)).check("IACS UR M68 of intermediate shaft").status is Status.SATISFIED
+
+
+def geared(load, cases=()):
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.1, drive_share=1.0, excitation=[{"order": 1, "amplitude": 50.0}]),
+            tn.Shaft(stiffness=2e4, damping=5.0),
+            tn.Disk(inertia=0.01),
+            tn.GearPair(name="gears", teeth_in=20, teeth_out=40, module="3 mm", mesh_stiffness=2e8, mesh_damping=500.0),
+            tn.Disk(inertia=0.4, name="wheel", load_torque=load),
+        ],
+        operation=tn.Operation(speed=80.0, load_cases=cases),
+    )
+
+
+def test_gear_hammer_goes_by_the_mean_torque():
+    name = "gear hammer in gears"
+    assert tn.assess(geared(0.0)).check(name).status is Status.NOT_JUDGED
+    heavy, light = (tn.assess(geared(load)).check(name) for load in (400.0, 10.0))
+    assert (heavy.status, light.status) == (Status.SATISFIED, Status.EXCEEDED)
+    assert heavy.limit == pytest.approx(400.0)
+    cases = (tn.LoadCase(name="idle", loads={"wheel": 10.0}), tn.LoadCase(name="none", loads={}))
+    worst = tn.assess(geared(400.0, cases)).check(name)
+    assert (worst.load_case, worst.margin) == ("idle", pytest.approx(light.margin))
+    assert tn.assess(two_mass(), (90.0, 90.0)).check("gear hammer").status is Status.NOT_APPLICABLE
+
+
+def test_parametric_stability_as_stability_finds_it():
+    line = tn.catalogue("two-shaft-cardan")
+    unstable = line.replace("HookeJoint 1", angle="35 deg")
+    frequency = float(tn.natural_frequencies(unstable).elastic[0])
+    found = tn.assess(unstable, (0.8 * frequency, 1.2 * frequency))
+    check = found.check("parametric stability")
+    there = tn.stability(unstable, check.speed)
+    assert (check.status, str(there.verdict)) == (Status.EXCEEDED, "unstable")
+    assert check.margin < 0 and "subharmonic" in check.because
+    assert check.value == pytest.approx(there.growth_rate, rel=1e-4, abs=1e-6)
+    assert tn.assess(two_mass(), (90.0, 90.0)).check("parametric stability").status is Status.NOT_APPLICABLE
+
+
+def test_speeds_that_are_no_range():
+    for speeds in ((100.0, 50.0), (0.0, 0.0), (50.0, math.inf), (1.0, 2.0, 3.0)):
+        with pytest.raises(tn.InputError, match="must be a lowest and a highest speed"):
+            tn.assess(two_mass(), speeds)
+    with pytest.raises(tn.InputError, match=r"operation\.speed: is not given"):
+        tn.assess(two_mass())
+
+
+def test_the_result_shows_itself():
+    found = tn.assess(two_mass(tn.Limit(of="shaft", max_torque=100.0)), (60.0, 140.0))
+    assert found.sentence.startswith("exceeded: max torque of shaft")
+    assert str(found).splitlines()[0].endswith(found.sentence)
+    assert list(found.data["status"].values) == [str(c.status) for c in found.checks]
+    assert [row["check"] for row in found.table("rpm")] == [c.name for c in found.checks]
+    order = [c.spare for c in found.checks if c.status is Status.SATISFIED]
+    assert order == sorted(order)
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "assess.md"
+
+
+def test_the_page_shows_what_happens():
+    page = PAGE.read_text(encoding="utf-8")
+    pattern, flags = r"^```{}\n(.*?)^```", re.DOTALL | re.MULTILINE
+    (code,), (shown,) = (re.findall(pattern.format(lang), page, flags) for lang in ("python", "text"))
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    assert printed.getvalue() == shown
+
+
+def test_the_command(tmp_path):
+    limit = tn.Limit(of="shaft", max_torque=100.0)
+    line = tn.Driveline(
+        two_mass(limit).elements, limits=[limit], operation=tn.Operation(speed_range=[60.0, 140.0], speed_unit="Hz")
+    )
+    tn.dump(line, tmp_path / "line.toml")
+    found = CliRunner().invoke(app, ["assess", str(tmp_path / "line.toml"), "--json"])
+    assert found.exit_code == 0, found.output
+    content = json.loads(found.stdout)
+    assert (content["verdict"], content["speed_unit"]) == ("exceeded", "Hz")
+    assert content["checks"][0]["name"] == "max torque of shaft"
+    assert content["checks"][0]["speed"] == pytest.approx(125.0 / (2 * math.pi), rel=0.01)
+    text = CliRunner().invoke(app, ["assess", str(tmp_path / "line.toml")]).stdout
+    assert text.startswith("exceeded: max torque of shaft") and "Hz" in text
