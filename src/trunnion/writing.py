@@ -20,6 +20,8 @@ from typing import NoReturn
 from trunnion.errors import ComputationError, InputError
 
 PREFIX = ".trunnion-"
+NEW, COMPLETE = "new", "complete"
+"""In a temporary folder: the files written, and the sign that they are all whole and on their way."""
 STALE = 86_400.0
 """Seconds after which a temporary file is nobody's, where its process cannot be asked for."""
 
@@ -59,7 +61,9 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
 def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary folder to write several files to; they move into ``folder`` together on success.
 
-    On failure, also on Ctrl-C, nothing is left: neither ``folder`` if it was not there nor any of the files.
+    A new folder appears at once with all its files. In one that is there, the files are replaced one after the other
+    once all of them are whole: a run that is killed within these moments leaves some old and some new, and the next
+    run that writes there replaces the rest. On failure, also on Ctrl-C, nothing has changed.
 
     Raises
     ------
@@ -67,34 +71,86 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     ComputationError : the disk is full or fails; what was there before is as it was.
     """
     target = Path(folder)
-    nearest = next(parent for parent in target.absolute().parents if parent.is_dir())
+    nearest = next(path for path in (target.absolute(), *target.absolute().parents) if path.is_dir())
     sweep(nearest)
     temporary = nearest / _own_prefix()
+    made = temporary / NEW
     try:
-        temporary.mkdir(mode=0o700)
+        made.mkdir(parents=True)
     except OSError as error:
         _refuse_output(target, f"cannot be made: {error.strerror}")
     try:
         with _disk_errors_about(target, temporary):
-            yield temporary
-        try:
-            target.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            _refuse_output(target, f"cannot be made: {error.strerror}")
-        with _disk_errors_about(target, temporary):
-            for written in sorted(temporary.iterdir()):
-                os.replace(written, target / written.name)
+            yield made
+        if target.is_dir():
+            with _disk_errors_about(target, temporary):
+                _replace_all(temporary, target)
+        else:
+            try:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                made.rename(target)
+            except OSError as error:
+                _refuse_output(target, f"cannot be made: {error.strerror}")
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+def _replace_all(temporary: Path, target: Path) -> None:
+    """Move all that is new into ``target``, or put back what was there."""
+    old = temporary / "old"
+    old.mkdir()
+    names = sorted(path.name for path in (temporary / NEW).iterdir())
+    for name in names:
+        if (target / name).exists():
+            _keep(target / name, old / name)
+    with _undone_on_failure(old, target, names):
+        if temporary.parent == target.absolute():  # else the target came up meanwhile, and the next run looks elsewhere
+            (temporary / COMPLETE).touch()
+        for name in names:
+            os.replace(temporary / NEW / name, target / name)
+
+
+def _keep(path: Path, kept: Path) -> None:
+    """A second name for a file, or a copy where the disk knows no second names."""
+    try:
+        os.link(path, kept)
+    except OSError:
+        shutil.copy2(path, kept)
+
+
+@contextmanager
+def _undone_on_failure(old: Path, target: Path, names: list[str]) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        (old.parent / COMPLETE).unlink(missing_ok=True)
+        for name in names:
+            if (old / name).exists():
+                os.replace(old / name, target / name)
+            elif not (old.parent / NEW / name).exists():
+                (target / name).unlink()
+        raise
+
+
 def sweep(folder: Path) -> None:
-    """Remove what runs that were killed left in ``folder``; what others are writing stays."""
+    """Remove what runs that were killed left in ``folder``; what others are writing stays.
+
+    Files that were whole and on their way into ``folder`` arrive, unless something newer is there.
+    """
     with suppress(OSError):
-        for left in folder.glob(f"{PREFIX}*"):
+        for left in sorted(folder.glob(f"{PREFIX}*"), key=lambda path: path.stat().st_mtime_ns):
             with suppress(OSError, ValueError):
                 if _is_abandoned(left):
+                    _finish(left)
                     shutil.rmtree(left) if left.is_dir() else left.unlink()
+
+
+def _finish(left: Path) -> None:
+    if (left / COMPLETE).exists():
+        for written in (left / NEW).iterdir():
+            there = left.parent / written.name
+            if not there.exists() or there.stat().st_mtime_ns <= written.stat().st_mtime_ns:
+                os.replace(written, there)
 
 
 def _own_prefix() -> str:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+import trunnion
 from trunnion.errors import ComputationError, InputError
 from trunnion.writing import folder_written_whole, written_whole
 
@@ -93,3 +95,60 @@ def test_a_full_disk_is_said_about_the_file_asked_for(tmp_path, whole):
         with whole(target) as temporary:
             raise OSError(28, "No space left on device", str(temporary))
     assert everything(tmp_path) == ["old", "old/one.nc"] if whole is written_whole else ["old"]
+
+
+KILLED = """
+import os, pathlib, sys
+from trunnion.writing import folder_written_whole
+moved, most = 0, int(sys.argv[2])
+replace = os.replace
+def killed(*names):
+    global moved
+    if moved == most:
+        os._exit(9)
+    moved += 1
+    replace(*names)
+os.replace = killed
+with folder_written_whole(sys.argv[1]) as temporary:
+    for name in ("a", "b", "c"):
+        (temporary / name).write_text("new")
+"""
+
+
+@pytest.mark.parametrize("moved", range(3))
+def test_files_on_their_way_arrive_with_the_next_run(tmp_path, moved):
+    """Killed after ``moved`` of three files have replaced the old ones."""
+    source = str(Path(trunnion.__file__).parents[1])
+    for name in ("a", "b"):
+        (tmp_path / name).write_text("old")
+    run = [sys.executable, "-c", KILLED, str(tmp_path), str(moved)]
+    assert subprocess.run(run, env={**os.environ, "PYTHONPATH": source}).returncode == 9
+    contents = [(tmp_path / name).read_text() for name in ("a", "b")]
+    assert contents == ["new"] * min(moved, 2) + ["old"] * (2 - min(moved, 2))
+    if moved < 2:
+        os.utime(tmp_path / "b", (4e9, 4e9))  # the user put something newer there
+    with written_whole(tmp_path / "other") as temporary:
+        temporary.write_text("1")
+    assert everything(tmp_path) == ["a", "b", "c", "other"]
+    contents = [(tmp_path / name).read_text() for name in ("a", "b", "c")]
+    assert contents == (["new", "old", "new"] if moved < 2 else ["new"] * 3)
+
+
+@pytest.mark.parametrize("moved", range(3))
+def test_a_move_that_fails_is_undone(tmp_path, moved, monkeypatch):
+    """As where another program holds one of the files open on Windows."""
+    for name in ("a", "b"):
+        (tmp_path / name).write_text("old")
+    replace = os.replace
+
+    def held(source, target):
+        if str(target).endswith("abc"[moved]) and "new" in str(source):
+            raise PermissionError(13, "Permission denied", str(source))
+        replace(source, target)
+
+    monkeypatch.setattr("os.replace", held)
+    with pytest.raises(InputError, match="Permission denied"), folder_written_whole(tmp_path) as temporary:
+        for name in ("a", "b", "c"):
+            (temporary / name).write_text("new")
+    assert everything(tmp_path) == ["a", "b"]
+    assert (tmp_path / "a").read_text() == (tmp_path / "b").read_text() == "old"
