@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import random
 import warnings
-from pathlib import Path
 
 import pytest
+from hurry import hurried
+from seed_files import texts
 
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.files import loads
-from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.kinds import KINDS
 from trunnion.errors import InputRemark, TrunnionError
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
-TEXTS = [*map(starter, STARTERS), *(path.read_text(encoding="utf-8") for path in EXAMPLES)]
 VALUES = [
     "0",
     "-1",
@@ -37,7 +37,7 @@ VALUES = [
 def mutated(seed: int) -> str:
     """One of the files with one to four lines or characters changed."""
     rng = random.Random(seed)
-    lines = rng.choice(TEXTS).splitlines()
+    lines = rng.choice(texts()).splitlines()
     for _ in range(rng.randint(1, 4)):
         place = rng.randrange(len(lines))
         key, equals, _ = lines[place].partition("=")
@@ -60,16 +60,26 @@ def mutated(seed: int) -> str:
 
 
 def judged(seed: int) -> str:
-    """What became of one file."""
-    with warnings.catch_warnings():
+    """What became of one file: refused by all, or computed by one analysis or two."""
+    done = "refused"
+    with warnings.catch_warnings(), hurried():
         warnings.simplefilter("error")
         warnings.simplefilter("ignore", InputRemark)
         try:
-            natural_frequencies(loads(mutated(seed), source="mutated.toml"))
+            line = loads(mutated(seed), source="mutated.toml")
+            natural_frequencies(line)
+            done = "frequencies"
+            if seed % 4 == 0:
+                stability(line, speed=None if line.operation and line.operation.speed else 150.0)
+                done = "stability"
         except TrunnionError as error:
-            assert all(len(line) < 600 for line in str(error).splitlines())
-            return "refused"
-    return "computed"
+            assert all(len(row) < 600 for row in str(error).splitlines())
+    return done
+
+
+def test_every_kind_of_element_is_mutated():
+    whole = "".join(texts())
+    assert [name for name in KINDS if f'type = "{name}"' not in whole] == []
 
 
 HUNDREDS = [*range(2), *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 200))]
@@ -83,4 +93,4 @@ def test_a_hundred_mutated_files(hundred):
             found.add(judged(seed))
         except (Exception, Warning) as error:
             raise AssertionError(f"seed {seed}") from error
-    assert found == {"refused", "computed"}
+    assert found == {"refused", "frequencies", "stability"}
