@@ -266,6 +266,11 @@ PYTHON = [
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     # the line
     (lambda: Driveline([]), "driveline: has no elements", "tn.Driveline(["),
+    (
+        lambda: Driveline([Shaft(stiffness=1.0)] * 100_000),
+        "driveline: has 100000 elements, at most 2000 are taken; stability would need 1.6e+03 GB",
+        "join neighbouring parts",
+    ),
     (lambda: Driveline(3), "elements: must be a list, not a int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not a Disk", "tn.Driveline(["),
     (
@@ -442,6 +447,7 @@ FILES = [
     (HEAD + "[[elements]]\n", "bad.toml: elements = [{}]: unknown key", 'did you mean "element"?'),
     (HEAD, "bad.toml: element: has no elements", "[[element]]"),
     (HEAD + "element = []", "bad.toml: element: has no elements", "[[element]]"),
+    (HEAD + "[[element]]\n" * 100_000, "has 100000 elements, at most 2000 are taken", "join neighbouring parts"),
     (
         HEAD + DISK.replace("[[", "[").replace("]]", "]"),
         "bad.toml: element: is a single table",

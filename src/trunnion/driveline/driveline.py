@@ -21,6 +21,9 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.errors import InputError, InputRemark
 
+MOST_ELEMENTS = 2000
+"""Ten times the longest line of practice; its matrices fit into a gigabyte."""
+
 
 class Driveline(BaseModel):
     """A chain of elements from the drive to the load, with branches where an element says ``after``.
@@ -157,6 +160,23 @@ class Driveline(BaseModel):
     __str__ = __repr__
 
 
+def refuse_too_many(elements: int) -> None:
+    """Refuse what would fill the memory and the day before it is looked at.
+
+    Raises
+    ------
+    InputError : more than ``MOST_ELEMENTS``.
+    """
+    if elements > MOST_ELEMENTS:
+        # Of a chain of disks and shafts, with about twenty matrices of its states at a time.
+        memory = 20 * 8 * elements**2 / 1e9
+        raise InputError(
+            f"has {elements} elements, at most {MOST_ELEMENTS} are taken; stability would need {memory:.3g} GB",
+            element="driveline",
+            remedy="join neighbouring parts",
+        )
+
+
 def _checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     remedy = "write tn.Driveline([tn.ConstantSpeed(), tn.Shaft(...), tn.Disk(...)])"
     if isinstance(elements, Element) or not isinstance(elements, Iterable):
@@ -164,6 +184,7 @@ def _checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     checked = tuple(elements)
     if not checked:
         raise InputError("has no elements", element="driveline", remedy=remedy)
+    refuse_too_many(len(checked))
     wrong = [
         InputError("is not an element", element=f"element {i}", value=element, remedy=remedy)
         for i, element in enumerate(checked, start=1)

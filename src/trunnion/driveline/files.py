@@ -27,7 +27,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.driveline import Driveline, refuse_too_many
 from trunnion.driveline.elements import Disk, Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
 from trunnion.driveline.gears import MESH_KINDS
@@ -217,6 +217,7 @@ def _elements(tables: Any, source: str) -> list[Element]:
     if not isinstance(tables, list) or not tables:
         remedy = 'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
         raise InputError("has no elements", key="element", remedy=remedy)
+    refuse_too_many(len(tables))
     seen: Counter[str] = Counter()
     made: list[Element] = []
     wrong: list[InputError] = []

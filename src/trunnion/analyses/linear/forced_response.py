@@ -19,6 +19,7 @@ from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.topology import Topology
+from trunnion.errors import ComputationError
 from trunnion.numerics.chain.dense_monodromy import Propagation
 from trunnion.results.declared import Held, Result, axis, over, remark
 
@@ -29,6 +30,8 @@ LINEAR_RANGE = 0.1
 joint's law by 0.2 rad, an error of the order of 20 % in the excitation."""
 TIMES, PER_CYCLE = 128, 16
 """Points of the wave form: at least, and per cycle of the highest order."""
+MOST_NUMBERS = 20_000_000
+"""Of all channels over the period: 160 MB an array."""
 TURNS = 10
 """Length of the wave form where nothing is common."""
 
@@ -117,14 +120,25 @@ def periodic_states(run: Propagation) -> Array:
 
 
 def linear_response(assembly: Assembly, speed: float, *, statically_twisted: bool = True) -> LinearResponse:
-    """The steady response at input ``speed`` [rad/s]."""
+    """The steady response at input ``speed`` [rad/s].
+
+    Raises
+    ------
+    ComputationError : its period holds more cycles of the fastest excitation than fit into memory.
+    """
     topo = assembly.topology
     spectrum = order_spectrum(assembly, np.array([speed]), statically_twisted=statically_twisted)
     places = spectrum.channels
     low, high = (part[0] for part in extremes(spectrum, spectrum.amplitude, spectrum.mean))
     turns = float(common_turns(spectrum) or (TURNS if spectrum.order else 1))
     cycles = max(np.abs(spectrum.angular_frequency).max(initial=speed) / speed * turns, 1.0)
-    tau = np.linspace(0.0, 2 * np.pi * turns, int(np.ceil(max(TIMES, PER_CYCLE * cycles))) + 1)
+    times = np.ceil(max(TIMES, PER_CYCLE * cycles))
+    if times * spectrum.mean.shape[1] > MOST_NUMBERS:
+        raise ComputationError(
+            f"the forced response needs {times:.3g} points over {turns:g} turns: the highest frequency of an "
+            f"excitation is {np.abs(spectrum.angular_frequency).max() / speed:.3g} times the speed; raise the speed or lower it"
+        )
+    tau = np.linspace(0.0, 2 * np.pi * turns, int(times) + 1)
     seen = wave(spectrum, 0, spectrum.amplitude[0], spectrum.mean[0], tau / speed)
     return LinearResponse(
         tau=tau,

@@ -73,8 +73,8 @@ def propagate(
     steps = max(steps, least_steps)
     if steps >= MOST_STEPS:
         raise ComputationError(
-            f"the fastest motion needs {steps} steps a period, more than {MOST_STEPS}: a stiffness is very large or an "
-            "inertia very small beside the others; join the parts rigidly, or raise the speed"
+            f"the fastest motion needs {steps:.3g} steps a period, more than {MOST_STEPS}: a stiffness is very large or "
+            "an inertia very small beside the others; join the parts rigidly, or raise the speed"
         )
     problem = _Problem(coefficients, period, size, scale)
     everything = np.concatenate([np.eye(2 * size), np.zeros((2 * size, 1))], axis=1)
@@ -118,9 +118,9 @@ def _scales(coefficients: CoefficientFunction, period: float, size: int) -> tupl
     square = np.linalg.norm(solved[..., :size] * ratio, axis=(1, 2)).max()
     rate = np.linalg.norm(solved[..., size:] * ratio, axis=(1, 2)).max()
     frequency = max(np.sqrt(square), 2 * np.pi / period)
-    steps = int(np.ceil(period * max(frequency, rate) / 2)) + 8
+    steps = np.ceil(np.log2(period * max(frequency, rate) / 2 + 8))  # may be past what an integer of the machine holds
     scale = np.concatenate([1 / root, frequency / root])
-    return scale, 1 << max(4, int(np.ceil(np.log2(steps))))
+    return scale, 1 << max(4, int(steps))
 
 
 @dataclass(frozen=True)
