@@ -447,7 +447,11 @@ FILES = [
     (HEAD + "[[elements]]\n", "bad.toml: elements = [{}]: unknown key", 'did you mean "element"?'),
     (HEAD, "bad.toml: element: has no elements", "[[element]]"),
     (HEAD + "element = []", "bad.toml: element: has no elements", "[[element]]"),
-    (HEAD + "[[element]]\n" * 100_000, "has 100000 elements, at most 2000 are taken", "join neighbouring parts"),
+    (
+        HEAD + "[[element]]\n" * 100_000,
+        "bad.toml: driveline: has 100000 elements, at most 2000 are taken",
+        "join neighbouring parts",
+    ),
     (
         HEAD + DISK.replace("[[", "[").replace("]]", "]"),
         "bad.toml: element: is a single table",

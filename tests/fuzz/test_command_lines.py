@@ -32,7 +32,7 @@ OUTPUTS = [
     "out.svg",
 ]
 AXES = [
-    "speed:300rpm:2400rpm:12", "HookeJoint 1.angle:0deg:30deg:6", "HookeJoint *.angle", "speed", "load.inertia:1:2:5:log",
+    "speed:300rpm:2400rpm:12", "HookeJoint 1.angle:0deg:30deg:6", "HookeJoint *.angle", "speed", "load.inertia:1:2:5",
     "speed:1:1:5", "speed:2:1:5", "speed:1:2:999999999", "speed:1:nan:4", "none:1:2:3", ":::", "", "speed:-5:5:4:log",
     "Shaft 1.stiffness:1:1e30:4", "Shaft 1.stiffness:0:1:4", "1:2:3:4:5:6", "HookeJoint 1.plane:0deg:99999deg:4",
 ]  # fmt: skip
@@ -56,7 +56,7 @@ OPTIONS: dict[str, dict[str, list[str]]] = {
     "resonance-speeds": {"--orders": WHOLE, "--all": [], "--unit": ["rpm", "x"]},
     "kinetostatics": {
         **SPEED, **OUTPUT, "--elastic": [], "--inertia": [], "--output-torque": ["1", "150 N*m", "nan", "1e300", "x"],
-        "--friction": ["0.005:12mm:40mm", "0:0:0", "::", "nan:1:1", "1"], "--length": ["Shaft 2:0.8m", "Shaft 2:0", ":"],
+        "--friction": ["0.005:12mm:40mm", "0:0:0", "::", "nan:1:1", "1"], "--length": ["Shaft 2:0.8m", ":"],
         "--support": ["Shaft 1:-300mm:-100mm", "Shaft 1", "Shaft 1:1:1:1", ":"], "--limit": LENGTHS, "--phase": [],
         "--pitch": ["10 deg", "0", "1e-300", "nan", "x"], "--turns": WHOLE, "--points": WHOLE,
     },
@@ -68,7 +68,9 @@ OPTIONS: dict[str, dict[str, list[str]]] = {
                            "--method": ["averaging", "harmonic balance", "exact", "none", "all", ""]},
     "sweep": {**BAND, **OUTPUT, "--points": WHOLE, "--direction": ["up", "down", "both", "x"]},
     "lyapunov-spectrum": {**SPEED, **OUTPUT, **MOTION, **CHAOS},
-    "poincare-map": {**SPEED, **OUTPUT, **MOTION, **SECTION, "--points": WHOLE, "--every": LENGTHS, "--transient": WHOLE},
+    "poincare-map": {
+        **SPEED, **OUTPUT, **MOTION, **SECTION, "--points": WHOLE, "--every": LENGTHS, "--transient": WHOLE,
+    },
     "certify-chaos": {**SPEED, **OUTPUT, **MOTION, **SECTION, **CHAOS,
                       "--sweep": ["damping:0:1:3", "x:1:2:1e9", "x", ":::", "forcing:1:2:99999999"]},
     "reproduce": OUTPUT,

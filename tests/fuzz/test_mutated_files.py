@@ -13,7 +13,8 @@ from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.files import loads
 from trunnion.driveline.kinds import KINDS
-from trunnion.errors import InputRemark, TrunnionError
+from trunnion.driveline.starter import starter
+from trunnion.errors import ComputationError, InputRemark, TrunnionError
 
 VALUES = [
     "0",
@@ -80,6 +81,19 @@ def judged(seed: int) -> str:
 def test_every_kind_of_element_is_mutated():
     whole = "".join(texts())
     assert [name for name in KINDS if f'type = "{name}"' not in whole] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "changed", "says"),
+    [
+        ("Shaft 1", {"stiffness": 1e30}, "the fastest motion needs .* steps a period"),
+        ("load", {"excitation": [{"frequency": 1e18, "amplitude": 1.0}]}, "the forced response needs .* points"),
+    ],
+)
+def test_a_period_that_holds_too_much_is_refused_before_it_is_stepped_through(name, changed, says):
+    line = loads(starter("two-shaft"))
+    with pytest.raises(ComputationError, match=says):
+        stability(line.replace(name, **changed))
 
 
 HUNDREDS = [*range(2), *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 200))]

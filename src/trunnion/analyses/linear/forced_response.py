@@ -136,7 +136,8 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
     if times * spectrum.mean.shape[1] > MOST_NUMBERS:
         raise ComputationError(
             f"the forced response needs {times:.3g} points over {turns:g} turns: the highest frequency of an "
-            f"excitation is {np.abs(spectrum.angular_frequency).max() / speed:.3g} times the speed; raise the speed or lower it"
+            f"excitation is {np.abs(spectrum.angular_frequency).max() / speed:.3g} "
+            "times the speed; raise the speed or lower it"
         )
     tau = np.linspace(0.0, 2 * np.pi * turns, int(times) + 1)
     seen = wave(spectrum, 0, spectrum.amplitude[0], spectrum.mean[0], tau / speed)

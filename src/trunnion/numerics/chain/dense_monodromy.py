@@ -73,8 +73,8 @@ def propagate(
     steps = max(steps, least_steps)
     if steps >= MOST_STEPS:
         raise ComputationError(
-            f"the fastest motion needs {steps:.3g} steps a period, more than {MOST_STEPS}: a stiffness is very large or "
-            "an inertia very small beside the others; join the parts rigidly, or raise the speed"
+            f"the fastest motion needs {steps:.3g} steps a period, more than {MOST_STEPS}: a stiffness is very large "
+            "or an inertia very small beside the others; join the parts rigidly, or raise the speed"
         )
     problem = _Problem(coefficients, period, size, scale)
     everything = np.concatenate([np.eye(2 * size), np.zeros((2 * size, 1))], axis=1)
