@@ -15,6 +15,7 @@ import trunnion as tn
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+ORDERS = (ROOT / "docs" / "orders.md").read_text(encoding="utf-8")
 FIRST = (ROOT / "docs" / "first-driveline.md").read_text(encoding="utf-8")
 
 
@@ -36,6 +37,21 @@ def test_the_commands_run(run, command):
     assert words.pop(0) == "trunnion"
     if words[0] == "stability-chart":
         words = [w.replace(":150:", ":4:") for w in words] + ["--points", "4x3"]
+    result = run(*words)
+    assert result.exit_code == 0, result.stderr
+
+
+def test_the_example_of_orders_runs():
+    (code,) = blocks(ORDERS, "python")
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        exec(code, {})
+    assert "coupling: torque up to" in printed.getvalue() and "rpm" in printed.getvalue()
+
+
+@pytest.mark.parametrize("command", [c[2:] for c in blocks(ORDERS, "console")[0].splitlines()])
+def test_the_commands_of_orders_run(run, command):
+    words = [w.replace("examples", str(ROOT / "examples")) for w in shlex.split(command)]
+    assert words.pop(0) == "trunnion"
     result = run(*words)
     assert result.exit_code == 0, result.stderr
 

@@ -50,6 +50,37 @@ def test_undamped_resonance_is_refused_at_its_speed() -> None:
     assert any("No steady state exists" in f.sentence and "125 rad/s" in f.sentence for f in r.findings)
 
 
+def test_unstable_speeds_are_named_and_agree_with_stability() -> None:
+    line = tn.catalogue("two-shaft-cardan").replace("HookeJoint 1", angle=0.4)
+    speed = np.linspace(1.4, 1.8, 9)
+    r = tn.order_response(line, speed)
+    assert [bool(u) for u in r.unstable] == [tn.stability(line, s).verdict == 1 for s in speed]
+    assert r.unstable.any() and not r.unstable.all()
+    (said,) = [f for f in r.findings if "unstable" in f.sentence]
+    low, high = speed[r.unstable][[0, -1]]
+    assert str(said.gravity) == "danger" and f"{low:.6g}" in said.sentence and f"{high:.6g} rad/s" in said.sentence
+    calm = tn.order_response(line, [1.4, 1.8])
+    assert not calm.unstable.any() and not any("unstable" in f.sentence for f in calm.findings)
+
+
+def test_a_drive_that_grows_with_the_speed_makes_a_straight_line_unstable() -> None:
+    """J q'' + (c + v) q' + k q = 0 grows where the slope v of the drive is below −c."""
+
+    def line(slope: float) -> tn.Driveline:
+        disk = tn.Disk(inertia=0.5, viscous_load=slope, excitation=[{"order": 1, "amplitude": 1.0}])
+        return tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e3, damping=2.0), disk])
+
+    assert tn.order_response(line(-2.1), [10.0, 20.0]).unstable.all()
+    assert not tn.order_response(line(-1.9), [10.0, 20.0]).unstable.any()
+
+
+def test_stability_behind_a_loss_factor_is_said_not_to_be_judged() -> None:
+    line = tn.catalogue("two-shaft-cardan").replace("HookeJoint 1", angle=0.4)
+    line = line.replace("Shaft 1", damping=0.0, loss_factor=0.02)
+    r = tn.order_response(line, [1.0])
+    assert any("not judged" in f.sentence for f in r.findings) and not r.unstable.any()
+
+
 def branched(rng: np.random.Generator) -> tn.Driveline:
     def shaken() -> list[dict[str, float]]:
         return [

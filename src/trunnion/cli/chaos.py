@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.motion import START, Set, Tolerance, _check, _print, _state, _write
+from trunnion.cli.motion import START, Set, Tolerance, _state
 from trunnion.cli.options import Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.places import check_places, print_result, write_result
 from trunnion.cli.study import DEFAULT_FOLDER
 from trunnion.errors import InputError
 
@@ -72,7 +73,7 @@ def lyapunov_spectrum(
         )  # fmt: skip
     written = _files(to, _stem(file), "exponents", result.data, lambda: result.plot())
     if not as_json:
-        _print(str(result), written)
+        print_result(str(result), written)
         output.finish(result.outcome, written)
         return
     content = {
@@ -124,7 +125,7 @@ def poincare_map(
     written = _files(to, _stem(file), "map", result.data, lambda: result.plot())
     if not as_json:
         output.finish(result.outcome, written)
-        _print(str(result), written)
+        print_result(str(result), written)
         return
     content = {
         "system": system.name,
@@ -174,7 +175,7 @@ def certify_chaos(
         )  # fmt: skip
     written = _files(to, _stem(file), "certificate", result.data, lambda: result.plot())
     if not as_json:
-        _print(str(result), written)
+        print_result(str(result), written)
         return
     content = {
         "system": system.name,
@@ -262,7 +263,7 @@ def _stem(file: str) -> str:
 
 
 def _check_endings(to: list[Path] | None) -> None:
-    """As ``_check``, for commands that write no tables."""
+    """As ``check_places``, for commands that write no tables."""
     for path in to or []:
         if path.suffix.lower() not in ENDINGS and not path.is_dir():
             raise InputError(
@@ -271,7 +272,7 @@ def _check_endings(to: list[Path] | None) -> None:
                 value=str(path),
                 remedy=f"end it in one of {', '.join(ENDINGS)}",
             )
-    _check(to)
+    check_places(to)
 
 
 def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
@@ -279,9 +280,9 @@ def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callabl
     from trunnion.writing import folder_written_whole
 
     if to:
-        return [_write(path, data, draw) for path in to]
+        return [write_result(path, data, draw) for path in to]
     with folder_written_whole(DEFAULT_FOLDER) as temporary:
         names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
         for name in names:
-            _write(name, data, draw)
+            write_result(name, data, draw)
     return [DEFAULT_FOLDER / name.name for name in names]

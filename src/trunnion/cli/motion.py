@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,7 +22,7 @@ from trunnion.cli.options import (
     read_unit,
     reference_systems,
 )
-from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.cli.places import check_places, print_result, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -74,22 +73,22 @@ def simulate(
         if system is not None:
             _only_for_lines(("--speed", speed), ("--to-speed", to_speed), ("--load-case", load_case))
             _only_for_lines(("--turns", turns), remedy="use --duration, in seconds")
-            _check(to)
+            check_places(to)
             seconds = 100.0 if duration is None else duration
             result: Any = compute(system, seconds, start=_state(start), tolerance=tolerance)
-            written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot())
+            written = write_results(to, file_stem(file), "motion", result.data, lambda: result.plot())
         else:
             line = read_line(file, load_case, reference_systems())
             unit = read_unit(line, unit)
-            _check(to)
+            check_places(to)
             profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
             length = None if duration is not None else 20.0 if turns is None else turns
             result = compute(line, duration, speed=profile, turns=length, start=_state(start), tolerance=tolerance)
-            written = _written(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
+            written = write_results(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
     if as_json:
         output.write_json("simulate", _simulation_json(result, written))
     else:
-        _print(str(result), written)
+        print_result(str(result), written)
     output.finish(result.outcome, written)
 
 
@@ -121,7 +120,7 @@ def periodic_response(
         if system is not None:
             _only_for_lines(("--speed", speed), ("--load-case", load_case))
             guess = read_time(period, "--period")
-            _check(to)
+            check_places(to)
             result = compute(system, start=_state(start), period=guess, periods=periods)
         else:
             line = read_line(file, load_case, reference_systems())
@@ -129,12 +128,12 @@ def periodic_response(
             if period is not None:
                 remedy = "leave it out; the speed of a driveline gives it"
                 raise InputError("belongs to reference systems", key="--period", value=period, remedy=remedy)
-            _check(to)
+            check_places(to)
             result = compute(line, read_speed(speed, unit), start=_state(start), periods=periods)
     result.outcome.require()
     shown = unit or "rad/s"
     of_line = isinstance(result, PeriodicResponse)
-    written = _written(
+    written = write_results(
         to, file_stem(file), "periodic-response", result.data,
         lambda: result.plot(unit=shown) if of_line else result.plot(),
     )  # fmt: skip
@@ -144,7 +143,7 @@ def periodic_response(
     if isinstance(result, PeriodicResponse):
         _print_response(result, shown, written)
     else:
-        _print(str(result), written)
+        print_result(str(result), written)
 
 
 def run_up(
@@ -183,21 +182,21 @@ def run_up(
             torque = parse(float(limit) if is_number(limit) else limit, TORQUE)
         except InputError as error:
             raise InputError(error.problem, key="--limit", value=limit, remedy=error.remedy) from None
-    _check(to)
+    check_places(to)
     with output.compile_notice():
         result = compute(line, low, high, acceleration=rate, ramp=ramp)
         safe = None
         if torque is not None:
             tried = (rate / 4, rate * 4)
             safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
-    written = _written(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
+    written = write_results(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
     if as_json:
         content = _run_up_json(result, written)
         if safe is not None:
             content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
         output.write_json("run-up", content)
         return
-    _print(result.describe(unit) + (f"\n  {safe}" if safe is not None else ""), written)
+    print_result(result.describe(unit) + (f"\n  {safe}" if safe is not None else ""), written)
 
 
 def _system(name: str, parameters: list[str] | None) -> System | None:
@@ -253,75 +252,6 @@ def _range(line: Driveline, first: float | None, last: float | None) -> tuple[fl
         return first, last
     low, high = speed_range(assemble(line, tripods=True))
     return first or low, last or high
-
-
-def _check(to: list[Path] | None) -> None:
-    from trunnion.cli.files import check_folder, check_outputs
-
-    if to:
-        check_outputs(to)
-    else:
-        check_folder(DEFAULT_FOLDER)
-
-
-def _written(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
-    """The files asked for, or a picture and the data in the default folder."""
-    from trunnion.writing import folder_written_whole
-
-    if to:
-        return [_write(path, data, draw) for path in to]
-    with folder_written_whole(DEFAULT_FOLDER) as temporary:
-        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
-        for name in names:
-            _write(name, data, draw)
-    return [DEFAULT_FOLDER / name.name for name in names]
-
-
-def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
-    from trunnion.plots.style import save
-    from trunnion.results.files import save_dataset
-    from trunnion.writing import written_whole
-
-    ending = path.suffix.removeprefix(".").lower()
-    if ending == "nc":
-        save_dataset(data, path)
-    elif ending == "csv":
-        with written_whole(path) as temporary:
-            _write_table(temporary, data)
-    else:
-        save(draw().figure.figure, path)
-    return path
-
-
-def _write_table(path: Path, data: Any) -> None:
-    """What runs along the first dimension of a dataset, a column per shaft or state."""
-    import csv
-
-    axis = next(d for d in ("time", "turn") if d in data.sizes)
-    index = data[axis].values if axis in data.coords else range(data.sizes[axis])
-    columns = {"time [s]" if axis == "time" else axis: index}
-    for name, part in data.variables.items():
-        if not part.dims or part.dims[0] != axis or name == axis:
-            continue
-        unit = part.attrs.get("units", "1")
-        head = str(name) if unit == "1" else f"{name} [{unit}]"
-        if len(part.dims) == 1:
-            columns[head] = part.values
-        else:
-            labels = data[part.dims[1]].values
-            columns |= {f"{label}: {head}": v for label, v in zip(labels, part.values.T, strict=True)}
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow(columns)
-        table.writerows(zip(*columns.values(), strict=True))
-
-
-def _print(text: str, written: list[Path]) -> None:
-    from trunnion.cli.report import print_written
-
-    out = output.console()
-    out.print(text, soft_wrap=True)
-    print_written(out, written)
 
 
 def _print_response(result: PeriodicResponse, unit: str, written: list[Path]) -> None:

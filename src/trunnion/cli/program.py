@@ -23,6 +23,7 @@ from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.motion import periodic_response, run_up, simulate
+from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
 from trunnion.errors import InputRemark, TrunnionError, short
@@ -168,6 +169,9 @@ app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)
 app.command("resonance-speeds")(study.resonance_speeds)
 app.command("kinetostatics")(kinetostatics)
+app.command("order-response")(order_response)
+app.command("speed-sweep")(speed_sweep)
+app.command("stable-limit")(stable_limit)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)
 app.command("run-up")(run_up)

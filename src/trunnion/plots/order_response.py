@@ -5,21 +5,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from trunnion.analyses.orders.result import OrderResponse
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE
+from trunnion.analyses.orders.result import OrderResponse, order_name
 from trunnion.driveline.operation import Operation
 from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+Array = NDArray[np.float64]
 MOST_ORDERS = 6
 """Curves of single orders drawn, the largest of them."""
-DECADES = 4.0
-"""Smallest amplitude shown, in decades below the largest."""
+DECADES = 3.0
+"""Orders whose peak is farther below the largest are not drawn."""
+LIMIT = "#a50026"
 
 
 def draw(
@@ -29,6 +33,7 @@ def draw(
     spring: str | None = None,
     unit: str | None = None,
     operating: Operation | None = None,
+    limit: float | None = None,
 ) -> Axes:
     """Torque amplitude of each order [N m] and vibratory torque, on a logarithmic axis.
 
@@ -37,6 +42,7 @@ def draw(
     spring : name of a shaft or mesh; by default the one with the largest vibratory torque.
     unit : of the speed; by default the one of the driveline's description.
     operating : its speed is marked.
+    limit : vibratory torque [N m] that the spring bears, as a line across.
 
     Raises
     ------
@@ -49,18 +55,28 @@ def draw(
     whole = result.vibratory_torque[:, column]
     size = np.abs(result.torque[:, :, column])
     strongest = np.argsort(-np.nan_to_num(size).max(axis=0, initial=0.0))[:MOST_ORDERS]
-    largest = np.nanmax(whole, initial=0.0)
+    peaks = np.nanmax(np.nan_to_num(size), axis=0, initial=0.0)
+    largest = float(np.nanmax(np.nan_to_num(whole), initial=0.0))
     words = "all together, at most" if result.sum_is_bound else "all together (half peak to peak)"
-    axes.plot(x, whole, color=INK, lw=2.2, label=words)
-    for i, k in enumerate(sorted(strongest)):
-        if np.nanmax(size[:, k]) > largest / 10**DECADES:
-            look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.4}
-            axes.plot(x, size[:, k], label=_name(result, int(k)), **look)
+    axes.plot(x, whole, color=INK, lw=2.2, label=words, marker="o" if len(x) == 1 else None)
+    drawn = [int(k) for k in sorted(strongest) if peaks[k] > largest / 10**DECADES]
+    for i, k in enumerate(drawn, start=1):
+        look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.5}
+        axes.plot(
+            x,
+            size[:, k],
+            label=order_name(float(result.order[k]), float(result.frequency[k])),
+            marker="o" if len(x) == 1 else None,
+            **look,
+        )
+    if limit is not None:
+        axes.axhline(limit, color=LIMIT, lw=1.8, label=f"limit {limit:.4g} N·m")
     if largest > 0:
-        axes.set_yscale("log")
-        axes.set_ylim(max(np.nanmin(whole) / 20, largest / 10**DECADES), 2 * largest)
+        low = min([float(np.nanmin(whole)), *(float(peaks[k]) for k in drawn)])
+        _logarithmic(axes, max(low / 2, largest / 10 ** (DECADES + 0.5)), 2 * max(largest, limit or 0.0))
     if len(x) > 1:
         axes.set_xlim(x[0], x[-1])
+    _beyond_the_linear_range(axes, x, result)
     if operating and operating.speed and x[0] <= operating.speed * speed_factor(unit) <= x[-1]:
         axes.axvline(
             operating.speed * speed_factor(unit), color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"
@@ -70,23 +86,50 @@ def draw(
     axes.set_ylabel("vibratory torque [N·m]", fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False, handlelength=2.6)
+    words_are_long = not np.all(result.linear)
+    axes.figure.figure.legend(
+        loc="outside lower left", ncols=2 if words_are_long else 3, fontsize=SMALL, frameon=False, handlelength=2.6
+    )
     return axes
+
+
+def _logarithmic(axes: Axes, low: float, high: float) -> None:
+    """Numbers as a reader writes them, 0.1 and 20 rather than powers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axes.set_yscale("log")
+    axes.set_ylim(low, high)
+    digits = (1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)
+    axes.yaxis.set_major_locator(LogLocator(subs=digits))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _beyond_the_linear_range(axes: Axes, x: Array, result: OrderResponse) -> None:
+    """Hatched where joints swing too far for linear theory, and where no steady motion exists."""
+    lost = ~np.all(np.isfinite(result.mean_torque) & np.isfinite(result.vibratory_torque), axis=1)
+    if np.any(~result.linear & ~lost) and len(x) > 1:
+        axes.fill_between(
+            x, 0, 1, where=~result.linear & ~lost, transform=axes.get_xaxis_transform(), step="mid",
+            facecolor="#e2e2e2", edgecolor="#8a8a8a", hatch="////", lw=0, zorder=0,
+            label=f"a joint swings by more than {LINEAR_RANGE:g} rad: indication only",
+        )  # fmt: skip
+    if np.any(result.unstable) and len(x) > 1:
+        axes.fill_between(
+            x, 0, 1, where=result.unstable, transform=axes.get_xaxis_transform(), step="mid",
+            facecolor="#b9a7ad", lw=0, zorder=0, label="unstable: not reached",
+        )  # fmt: skip
+    for i, at in enumerate(x[lost]):
+        label = "no steady motion: undamped resonance" if i == 0 else None
+        axes.axvline(at, color=LIMIT, ls=(0, (1, 1)), lw=1.4, label=label)
 
 
 def _column(result: OrderResponse, spring: str | None) -> int:
     if spring is None:
-        return int(np.nanargmax(np.nan_to_num(result.vibratory_torque).max(axis=0)))
+        return int(np.argmax(np.nan_to_num(result.vibratory_torque).max(axis=0)))
     if spring not in result.springs:
         raise InputError(
             "is not a shaft or mesh of this result", key="spring", value=spring,
             remedy=f"there are {', '.join(result.springs)}",
         )  # fmt: skip
     return result.springs.index(spring)
-
-
-def _name(result: OrderResponse, k: int) -> str:
-    if not result.frequency[k]:
-        return f"order {result.order[k]:.4g}"
-    side = f" {result.order[k]:+g} per turn" if result.order[k] else ""
-    return f"{show_speed(result.frequency[k], 'Hz')}{side}"

@@ -42,6 +42,11 @@ def axis(name: str, values: Any, unit: str = "", about: str = "") -> Held:
     return Held(name, values, (name,), _attributes(unit, about), coordinate=True)
 
 
+def along(axis: str, name: str, values: Any, unit: str = "", about: str = "") -> Held:
+    """A second labelling of an axis, such as the orders of ``order_number``."""
+    return Held(name, values, (axis,), _attributes(unit, about), coordinate=True)
+
+
 def over(axes: str, name: str, values: Any, unit: str = "", about: str = "", **more: Any) -> Held:
     """Values over ``axes`` (names with blanks between; "" for one number); complex ones as two parts.
 

@@ -12,7 +12,7 @@ far the series has converged. ``stability(...).response`` finds the same by inte
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotatio
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.orders.response import order_response, without_excitation
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.exciters import exciters
@@ -32,11 +33,12 @@ from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
+from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -54,8 +56,8 @@ CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0
 """Extra speeds about each resonance of the forced response, in half-widths of its peak."""
 
 
-@dataclass(frozen=True)
-class SpeedSweep:
+@dataclass(frozen=True, repr=False)
+class SpeedSweep(Result):
     """Linear forced response over speed.
 
     speed (speed,) of the input [rad/s]; twist_amplitude (speed, shaft) [rad] and torque_amplitude (speed,
@@ -73,6 +75,7 @@ class SpeedSweep:
     cut_off: Array
     shafts: tuple[str, ...]
     findings: tuple[Finding, ...] = ()
+    unit: str = "rad/s"
 
     @property
     def linear(self) -> NDArray[np.bool_]:
@@ -85,40 +88,38 @@ class SpeedSweep:
         at = int(np.nanargmax(column))
         return float(column[at]), float(self.speed[at])
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        per_shaft = ("speed", "shaft")
-        return xr.Dataset(
-            {
-                "twist_amplitude": (per_shaft, self.twist_amplitude, {"units": "rad"}),
-                "torque_amplitude": (per_shaft, self.torque_amplitude, {"units": "N*m"}),
-                "torque_mean": (per_shaft, self.torque_mean, {"units": "N*m"}),
-                "joint_rotation": ("speed", self.joint_rotation, {"units": "rad"}),
-                "linear": ("speed", self.linear.astype(np.int8)),
-                "cut_off": ("speed", self.cut_off, {"units": "1"}),
-            },
-            coords={"speed": ("speed", self.speed, {"units": "rad/s"}), "shaft": list(self.shafts)},
-            attrs={"linear_range": LINEAR_RANGE},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Amplitudes over (speed, shaft)."""
+        yield axis("speed", self.speed, "rad/s")
+        yield axis("shaft", list(self.shafts))
+        yield over("speed shaft", "twist_amplitude", self.twist_amplitude, "rad")
+        yield over("speed shaft", "torque_amplitude", self.torque_amplitude, "N*m")
+        yield over("speed shaft", "torque_mean", self.torque_mean, "N*m")
+        yield over("speed", "joint_rotation", self.joint_rotation, "rad")
+        yield over("speed", "linear", self.linear.astype(np.int8))
+        yield over("speed", "cut_off", self.cut_off, "1")
+        yield remark("linear_range", LINEAR_RANGE)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def __str__(self) -> str:
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
         rows = [f"linear forced response at {len(self.speed)} speeds"]
         for shaft in self.shafts:
             torque, at = self.peak(shaft)
-            rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {at:.6g} rad/s")
+            rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {show_speed(at, unit)}")
         beyond = np.count_nonzero(~self.linear)
         if beyond:
             rows.append(
                 f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only"
             )
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+
+    def __str__(self) -> str:
+        return self.describe()
 
 
 def speed_sweep(
@@ -146,6 +147,7 @@ def speed_sweep(
             found.cut_off,
             found.springs,
             found.remarks,
+            found.unit,
         )
     speed = np.atleast_1d(np.asarray(speeds, dtype=float))
     if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
@@ -177,7 +179,8 @@ def speed_sweep(
             progress(min(1.0, (start + BATCH) / len(speed)))
     twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
     said = (*left_out("speed_sweep", assembly.line), *without_excitation(assembly))
-    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly), said)
+    unit = speed_unit(assembly.line)
+    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly), said, unit)
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:

@@ -12,6 +12,7 @@ order, as all that linear theory leaves out.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.orders.spectrum import OrderSpectrum, order_spectrum
+from trunnion.analyses.orders.stable_speeds import verdicts_at
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
@@ -76,7 +78,8 @@ def order_response(
     refuse_own_motion(assembly, "use tn.periodic_response, or put a ConstantSpeed in front")
     wanted = None if orders is None else _checked_orders(orders)
     spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
-    return _result(assembly, spectrum, wanted)
+    judged = partial(verdicts_at, assembly, speed, statically_twisted=statically_twisted)
+    return _result(assembly, spectrum, judged, wanted)
 
 
 def without_excitation(assembly: Assembly, *, errors_counted: bool = False) -> tuple[Finding, ...]:
@@ -118,7 +121,9 @@ def _checked_orders(orders: Iterable[float]) -> Array:
     return np.unique(wanted)
 
 
-def _result(assembly: Assembly, spectrum: OrderSpectrum, wanted: Array | None) -> OrderResponse:
+def _result(
+    assembly: Assembly, spectrum: OrderSpectrum, judged: Callable[[], NDArray[np.int8]], wanted: Array | None
+) -> OrderResponse:
     places, topo = spectrum.channels, assembly.topology
     size = np.abs(spectrum.amplitude[..., places.torque])
     if wanted is None:
@@ -147,6 +152,7 @@ def _result(assembly: Assembly, spectrum: OrderSpectrum, wanted: Array | None) -
         joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
         stress_factor=_stress_factor(assembly),
         spectrum=spectrum,
+        judged=judged,
         remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
         unit=speed_unit(assembly.line),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -13,18 +13,20 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.spectrum import OrderSpectrum
 from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
+from trunnion.results.declared import Held, Result, along, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 WAVE_POINTS = 64
 """Points of a wave form per cycle of its highest order."""
+MOST_STRETCHES = 4
 WORTH_SHOWING = 1e-6
 """Share of the largest torque below which an order is counted in the sums, but not listed by itself."""
 
@@ -46,8 +48,8 @@ class OrderWave:
     inertias: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class OrderResponse:
+@dataclass(frozen=True, repr=False)
+class OrderResponse(Result):
     """Linear steady response by order and speed.
 
     speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input. An excitation fixed in time
@@ -58,7 +60,8 @@ class OrderResponse:
     rotation is the deviation from uniform rotation, joints' own included. mean_torque (speed, spring) [N m].
 
     The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
-    exists: an undamped resonance. remarks: what excites the line and what was left out, in sentences.
+    exists: an undamped resonance. ``verdict`` says where the motion is stable; it is computed when asked for first, by
+    ``judged``. remarks: what excites the line and what was left out, in sentences.
     """
 
     speed: Array
@@ -74,6 +77,7 @@ class OrderResponse:
     joints: tuple[str, ...]
     stress_factor: Array
     spectrum: OrderSpectrum
+    judged: Callable[[], NDArray[np.int8]]
     remarks: tuple[Finding, ...]
     unit: str
 
@@ -168,6 +172,16 @@ class OrderResponse:
         """Where the amplitudes can be trusted (speed,): joints' inputs stay within ``linear_range``."""
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
 
+    @cached_property
+    def verdict(self) -> NDArray[np.int8]:
+        """Stability of the motion (speed,), codes of ``Verdict``; FAILED where it cannot be judged."""
+        return self.judged()
+
+    @property
+    def unstable(self) -> NDArray[np.bool_]:
+        """Where a small disturbance grows (speed,), so that the steady motion is not reached."""
+        return np.asarray(self.verdict == Verdict.UNSTABLE)
+
     @property
     def cut_off(self) -> Array:
         """Size of the outermost harmonics kept, relative to the largest torque (speed,); 0 on straight lines."""
@@ -212,61 +226,78 @@ class OrderResponse:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first; speeds in rad/s."""
-        return self.findings_in("rad/s")
+        """What to read first, gravest first; speeds in the unit of the line's description."""
+        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
         return by_gravity([*_findings(self, unit), *self.remarks])
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units; complex numbers as real and imaginary parts."""
-        import xarray as xr
-
-        def parts(values: Complex) -> Array:
-            return np.stack([values.real, values.imag], axis=-1)
-
-        by_order, of_spring, of_inertia = ("speed", "order_number"), ("speed", "spring"), ("speed", "inertia")
-        return xr.Dataset(
-            {
-                "torque": ((*by_order, "spring", "part"), parts(self.torque), {"units": "N*m"}),
-                "twist": ((*by_order, "spring", "part"), parts(self.twist), {"units": "rad"}),
-                "rotation": ((*by_order, "inertia", "part"), parts(self.rotation), {"units": "rad"}),
-                "mean_torque": (of_spring, self.mean_torque, {"units": "N*m"}),
-                "peak_torque": (of_spring, self.peak_torque, {"units": "N*m"}),
-                "vibratory_torque": (of_spring, self.vibratory_torque, {"units": "N*m"}),
-                "vibratory_twist": (of_spring, self.vibratory_twist, {"units": "rad"}),
-                "vibratory_stress": (of_spring, self.vibratory_stress, {"units": "Pa"}),
-                "peak_stress": (of_spring, self.peak_stress, {"units": "Pa"}),
-                "heat": (of_spring, self.heat, {"units": "W"}),
-                "rotation_amplitude": (of_inertia, self.rotation_amplitude, {"units": "rad"}),
-                "speed_fluctuation": (of_inertia, self.speed_fluctuation, {"units": "rad/s"}),
-                "acceleration": (of_inertia, self.acceleration, {"units": "rad/s^2"}),
-                "joint_rotation": ("speed", self.joint_rotation, {"units": "rad"}),
-                "linear": ("speed", self.linear.astype(np.int8)),
-                "cut_off": ("speed", self.cut_off, {"units": "1"}),
-            },
-            coords={
-                "speed": ("speed", self.speed, {"units": "rad/s"}),
-                "order": ("order_number", self.order, {"units": "1", "long_name": "cycles per turn of the input"}),
-                "frequency": ("order_number", self.frequency, {"units": "rad/s", "long_name": "beside the order"}),
-                "spring": list(self.springs),
-                "inertia": list(self.inertias),
-                "part": ["real", "imaginary"],
-            },
-            attrs={"linear_range": LINEAR_RANGE, "sum_is_bound": int(self.sum_is_bound)},
-        )
+    def declared(self) -> Iterator[Held]:
+        """Amplitudes over (speed, order, element) and their sums over the cycle over (speed, element)."""
+        yield axis("speed", self.speed, "rad/s")
+        yield along("order_number", "order", self.order, "1", "cycles per turn of the input")
+        yield along("order_number", "frequency", self.frequency, "rad/s", "beside the order")
+        yield axis("spring", list(self.springs))
+        yield axis("inertia", list(self.inertias))
+        yield over("speed order_number spring", "torque", self.torque, "N*m")
+        yield over("speed order_number spring", "twist", self.twist, "rad")
+        yield over("speed order_number inertia", "rotation", self.rotation, "rad")
+        for name, unit in (
+            ("mean_torque", "N*m"),
+            ("peak_torque", "N*m"),
+            ("vibratory_torque", "N*m"),
+            ("vibratory_twist", "rad"),
+            ("vibratory_stress", "Pa"),
+            ("peak_stress", "Pa"),
+            ("heat", "W"),
+        ):
+            yield over("speed spring", name, getattr(self, name), unit)
+        for name, unit in (("rotation_amplitude", "rad"), ("speed_fluctuation", "rad/s"), ("acceleration", "rad/s^2")):
+            yield over("speed inertia", name, getattr(self, name), unit)
+        yield over("speed", "joint_rotation", self.joint_rotation, "rad")
+        yield over("speed", "linear", self.linear.astype(np.int8))
+        yield over("speed", "cut_off", self.cut_off, "1")
+        yield remark("linear_range", LINEAR_RANGE)
+        yield remark("sum_is_bound", int(self.sum_is_bound))
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Torque by order over speed of the most loaded spring; see ``plots.order_response.draw``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """The result in a few lines, speeds in ``unit``."""
+    @property
+    def headline(self) -> str:
+        """What was computed."""
         count = f"{len(self.order)} order{'' if len(self.order) == 1 else 's'}"
         many = "1 speed" if len(self.speed) == 1 else f"{len(self.speed)} speeds"
-        rows = [f"linear steady response at {many} to {count}"]
+        return f"linear steady response at {many} to {count}"
+
+    def table(self, unit: str | None = None) -> list[dict[str, object]]:
+        """One row per spring: its largest torques [N m] and its largest order, each at its speed in ``unit``."""
+        unit = unit or self.unit
+        rows: list[dict[str, object]] = []
+        for s, spring in enumerate(self.springs):
+            column = self.peak_torque[:, s]
+            at = int(np.nanargmax(column)) if np.any(np.isfinite(column)) else 0
+            order, speed, size = self.leading_order(spring)
+            factor = speed_factor(unit)
+            rows.append(
+                {
+                    "spring": spring,
+                    "peak torque [N m]": float(column[at]),
+                    f"at [{unit}]": float(self.speed[at] * factor),
+                    "vibratory [N m]": float(self.vibratory_torque[at, s]),
+                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0)),
+                    "of it [N m]": size,
+                    f"at [{unit}] ": speed * factor,
+                }
+            )
+        return rows
+
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
+        rows = [self.headline]
         for s, spring in enumerate(self.springs):
             column = self.peak_torque[:, s]
             if not np.any(np.isfinite(column)):
@@ -285,13 +316,45 @@ class OrderResponse:
         if not size > 0:
             return ""
         k = int(np.flatnonzero(self.order == order)[0])
-        name = f"order {order:.6g}" if not self.frequency[k] else f"{show_speed(self.frequency[k], 'Hz')} excitation"
+        name = order_name(order, self.frequency[k])
         return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
 
     def __str__(self) -> str:
-        return self.describe(self.unit)
+        return self.describe()
 
-    __repr__ = __str__
+
+def order_name(order: float, frequency: float) -> str:
+    """``order 2``, ``77.7 Hz``, or the sideband of a fixed frequency: ``77.7 Hz -2 per turn``."""
+    if not frequency:
+        return f"order {order:.6g}"
+    return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
+
+
+def _stability(result: OrderResponse, unit: str) -> Iterable[Finding]:
+    """Where the steady motion is not reached, in stretches of neighbouring speeds."""
+    if np.any(result.verdict == Verdict.FAILED):
+        yield Finding(
+            Gravity.NOTE,
+            "Whether the motion is stable was not judged: a loss factor that holds at all frequencies has no equations "
+            "in time; give a loss_factor_frequency and ask stability().",
+        )
+    order = np.argsort(result.speed)
+    speed, unstable = result.speed[order], result.unstable[order]
+    if not unstable.any():
+        return
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], unstable, [False]]).astype(int)))
+    stretches = [
+        show_speed(speed[a], unit)
+        if b == a + 1
+        else f"{speed[a] * speed_factor(unit):.6g} to {show_speed(speed[b - 1], unit)}"
+        for a, b in zip(edges[::2], edges[1::2], strict=True)
+    ]
+    more = f" and {len(stretches) - MOST_STRETCHES} more stretches" if len(stretches) > MOST_STRETCHES else ""
+    yield Finding(
+        Gravity.DANGER,
+        f"The steady motion is unstable at {', '.join(stretches[:MOST_STRETCHES])}{more}: a small disturbance grows, "
+        "and the amplitudes given there are not reached; ask stability() why, or tn.periodic_branch where it goes.",
+    )
 
 
 def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
@@ -303,6 +366,7 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
             Gravity.DANGER,
             f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
         )
+    yield from _stability(result, unit)
     if result.sum_is_bound:
         yield Finding(
             Gravity.NOTE,

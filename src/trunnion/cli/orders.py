@@ -1,0 +1,346 @@
+"""The commands over speed: order-response, speed-sweep, stable-limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.motion import Output
+from trunnion.cli.options import (
+    File,
+    Json,
+    LoadCase,
+    Unit,
+    file_stem,
+    is_number,
+    read_axis,
+    read_line,
+    read_speed,
+    read_unit,
+)
+from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from trunnion.analyses.charts.stable_limit import StableLimit
+    from trunnion.analyses.linear.speed_sweep import SpeedSweep
+    from trunnion.analyses.orders.result import OrderResponse
+    from trunnion.equations.coefficients import Assembly
+    from trunnion.results.finding import Finding
+
+    Array = NDArray[np.float64]
+
+Speeds = Annotated[
+    str | None,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="LOW:HIGH[:POINTS]",
+        help='Input speeds: "300rpm:2400rpm", "300:2400:201" in --unit, or one speed; default: the file\'s range.',
+    ),
+]
+SPEED_EXAMPLE = 'write "300rpm:2400rpm" or "300rpm:2400rpm:201"'
+FEW = 61
+"""Speeds of a stable limit, each of which is a scan."""
+
+
+def order_response(
+    file: File,
+    speeds: Speeds = None,
+    orders: Annotated[
+        str | None,
+        typer.Option("--orders", metavar="K,K,…", help="Cycles per turn of the input to list: 0.5,1,2; default: all."),
+    ] = None,
+    spring: Annotated[
+        str | None, typer.Option("--spring", help="Shaft or mesh to draw; default: the one that swings most.")
+    ] = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Vibratory torque of every shaft and mesh over speed, order by order, with stress, heat and speed fluctuation.
+
+    Example: trunnion order-response truck.toml --load-case climb --speed 300rpm:2400rpm -o truck.png -o truck.csv
+    """
+    from trunnion.analyses.orders.response import order_response as compute
+
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    from trunnion.equations.coefficients import assemble
+
+    assembly = assemble(line)
+    at, wanted = _speeds(assembly, speeds, unit), _orders(orders)
+    _known(assembly, spring)
+    check_places(to)
+    with output.progress("order response") as advance:
+        result = compute(assembly, at, wanted, progress=advance)
+        findings = result.findings_in(unit)
+    written = write_results(
+        to, file_stem(file), "order-response", result.data,
+        lambda: result.plot(spring=spring, unit=unit, operating=line.operation), _by_order(result, unit),
+    )  # fmt: skip
+    if as_json:
+        output.write_json("order-response", _response_json(result, findings, unit, written))
+        return
+    _print_response(result, findings, unit, written)
+
+
+def speed_sweep(
+    file: File,
+    speeds: Speeds = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Torque and twist amplitude of every shaft over speed, all orders together; takes bent lines that start free.
+
+    Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png
+    """
+    from trunnion.analyses.linear.speed_sweep import speed_sweep as compute
+    from trunnion.equations.coefficients import assemble
+
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    assembly = assemble(line)
+    at = _speeds(assembly, speeds, unit)
+    check_places(to)
+    with output.progress("torque over speed") as advance:
+        result = compute(assembly, at, progress=advance)
+    written = write_results(
+        to, file_stem(file), "speed-sweep", result.data, lambda: result.plot(unit=unit, operating=line.operation),
+        _in_unit(result.data, unit),
+    )  # fmt: skip
+    if as_json:
+        output.write_json("speed-sweep", _sweep_json(result, unit, written))
+        return
+    print_result(result.describe(unit), written)
+
+
+def stable_limit(
+    file: File,
+    parameter: Annotated[
+        str,
+        typer.Option(
+            "--parameter",
+            "-p",
+            metavar="PARAMETER:LOW:HIGH:STEPS",
+            help="What is raised until the line is unstable, or PARAMETER alone for angles: 0 to the file's range.",
+        ),
+    ] = "HookeJoint *.angle",
+    speeds: Speeds = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """The largest value of a parameter up to which the line is stable, over speed.
+
+    Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
+    """  # fmt: skip
+    from trunnion.analyses.charts.stable_limit import SCAN
+    from trunnion.analyses.charts.stable_limit import stable_limit as compute
+    from trunnion.equations.coefficients import assemble
+
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    assembly = assemble(line)
+    label, low, high, points, *scale = read_axis(parameter, assembly, unit, SCAN + 1, "--parameter")
+    if "log" in scale:
+        raise InputError("is scanned evenly", key="--parameter", value=parameter, remedy="leave out :log")
+    at = _speeds(assembly, speeds, unit, points=FEW, even=True)
+    check_places(to)
+    assert isinstance(label, str) and isinstance(low, float) and isinstance(high, float) and isinstance(points, int)
+    with output.progress("stable limit") as advance:
+        result = compute(assembly, label, at, low=low, high=high, scan=points - 1, progress=advance)
+    written = write_results(
+        to, file_stem(file), "stable-limit", result.data, lambda: result.plot(unit=unit, operating=line.operation),
+        _in_unit(result.data, unit),
+    )  # fmt: skip
+    if as_json:
+        output.write_json("stable-limit", _limit_json(result, unit, written))
+        return
+    print_result(_limit_text(result, unit), written)
+
+
+def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
+    """Speeds asked for [rad/s]; without a number of them closer together about the resonances, unless ``even``."""
+    import numpy as np
+
+    from trunnion.analyses.linear.speed_sweep import sweep_speeds
+    from trunnion.reporting.overview import speed_range
+
+    if text is None:
+        low, high = speed_range(assembly)
+    else:
+        ends, counted = text.split(":"), None
+        if len(ends) > 3:
+            raise InputError("is no range", key="--speed", value=text, remedy=SPEED_EXAMPLE)
+        if len(ends) == 3:
+            counted = ends.pop()
+        read = [_speed(end, unit) for end in ends]
+        if len(read) == 1 and not even:
+            return np.array(read)
+        if len(read) == 1 or not read[0] < read[1]:
+            raise InputError("is no rising range", key="--speed", value=text, remedy=SPEED_EXAMPLE)
+        low, high = read
+        if counted is not None:
+            if not counted.isdecimal() or not 2 <= int(counted) <= 100_000:
+                problem = "must end in a whole number of speeds, 2 to 100 000"
+                raise InputError(problem, key="--speed", value=text, remedy=SPEED_EXAMPLE)
+            return np.linspace(low, high, int(counted))
+    return np.linspace(low, high, points) if even else sweep_speeds(assembly, low, high, points)
+
+
+def _speed(text: str, unit: str) -> float:
+    speed = read_speed(text.strip(), unit)
+    assert speed is not None
+    return speed
+
+
+def _orders(text: str | None) -> list[float] | None:
+    if text is None:
+        return None
+    parts = text.split(",")
+    if not all(is_number(part) and 0 < float(part) < float("inf") for part in parts):
+        raise InputError("is no list of orders", key="--orders", value=text, remedy='write "0.5,1,2"')
+    return [float(part) for part in parts]
+
+
+def _known(assembly: Assembly, spring: str | None) -> None:
+    from trunnion.analyses.linear.forced_response import shaft_names
+    from trunnion.driveline.refusals import nearest
+
+    names = shaft_names(assembly)
+    if spring is not None and spring not in names:
+        remedy = nearest(spring, list(names))
+        raise InputError("is no shaft or mesh of the line", key="--spring", value=spring, remedy=remedy)
+
+
+def _in_unit(data: Any, unit: str) -> Any:
+    from trunnion.results.speeds import speed_factor
+
+    return data.assign_coords(speed=("speed", data.speed.values * speed_factor(unit), {"units": unit}))
+
+
+def _by_order(result: OrderResponse, unit: str) -> Any:
+    """What a table shows: sums over the cycle, then amplitude and phase of every order."""
+    import numpy as np
+
+    from trunnion.analyses.orders.result import order_name
+
+    data = _in_unit(result.data, unit)
+    kept = data[["mean_torque", "peak_torque", "vibratory_torque", "vibratory_stress", "heat"]]
+    labels = [order_name(o, f) for o, f in zip(result.order, result.frequency, strict=True)]
+    axes = ("speed", "order_number", "spring")
+    parts = {
+        "torque_amplitude": (axes, np.abs(result.torque), {"units": "N*m"}),
+        "torque_phase": (axes, np.angle(result.torque), {"units": "rad"}),
+    }
+    moving = data[["rotation_amplitude", "speed_fluctuation", "acceleration"]]
+    return kept.assign(parts).assign(moving.data_vars).assign_coords(order_number=labels)
+
+
+def _print_response(result: OrderResponse, findings: Sequence[Finding], unit: str, written: list[Path]) -> None:
+    from trunnion.cli.report import print_written
+
+    out = output.console()
+    out.print(result.headline, soft_wrap=True)
+    output.table(out, result.table(unit))
+    output.heading(out, "Findings")
+    output.findings(out, findings)
+    print_written(out, written)
+
+
+def _response_json(
+    result: OrderResponse, findings: Sequence[Finding], unit: str, written: Sequence[Path]
+) -> dict[str, Any]:
+    """The largest of every spring; the numbers by speed and order are in the files written."""
+    keys = ("spring", "peak_torque", "speed", "vibratory_torque", "order", "order_amplitude", "order_speed")
+    return {
+        **_span(result.speed, unit),
+        "orders": [
+            {"order": o, "frequency": f} for o, f in zip(result.order.tolist(), result.frequency.tolist(), strict=True)
+        ],
+        "sum_is_bound": result.sum_is_bound,
+        "springs": [dict(zip(keys, row.values(), strict=True)) for row in result.table(unit)],
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in findings],
+        "written": [str(path) for path in written],
+    }
+
+
+def _span(speed: Array, unit: str) -> dict[str, Any]:
+    from trunnion.results.speeds import speed_factor
+
+    factor = speed_factor(unit)
+    return {
+        "speed_unit": unit,
+        "speeds": {"low": float(speed.min()) * factor, "high": float(speed.max()) * factor, "points": len(speed)},
+    }
+
+
+def _sweep_json(result: SpeedSweep, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+    from trunnion.results.speeds import speed_factor
+
+    peaks = {shaft: result.peak(shaft) for shaft in result.shafts}
+    return {
+        **_span(result.speed, unit),
+        "shafts": [
+            {"shaft": shaft, "torque_amplitude": torque, "speed": at * speed_factor(unit)}
+            for shaft, (torque, at) in peaks.items()
+        ],
+        "linear": bool(result.linear.all()),
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
+        "written": [str(path) for path in written],
+    }
+
+
+def _limit_json(result: StableLimit, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+    from trunnion.analyses.charts.stable_limit import LimitKind
+    from trunnion.results.speeds import speed_factor
+
+    at = result.critical_speed
+    return {
+        **_span(result.speed, unit),
+        "parameter": result.parameter,
+        "unit": result.unit,
+        "smallest": result.smallest,
+        "critical_speed": None if at is None else at * speed_factor(unit),
+        "speed": result.speed * speed_factor(unit),
+        "limit": result.limit,
+        "kind": [LimitKind(int(kind)).name.lower() for kind in result.kind],
+        "intervals": result.intervals,
+        "scan": {"low": result.low, "high": result.high, "step": result.step, "accuracy": result.accuracy},
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
+        "written": [str(path) for path in written],
+    }
+
+
+def _limit_text(result: StableLimit, unit: str) -> str:
+    from trunnion.plots.quantity_axes import quantity_axis
+    from trunnion.results.speeds import show_speed, speed_factor
+
+    shown, factor = quantity_axis(result.parameter, result.unit, unit), speed_factor(unit)
+    span = (
+        f"{len(result.speed)} speeds from {result.speed.min() * factor:.6g} to {result.speed.max() * factor:.6g} {unit}"
+    )
+    at, several = result.critical_speed, int((result.intervals > 1).sum())
+    ends = shown.said(result.limit.take([result.limit.argmin(), result.limit.argmax()]))
+    steps = round((result.high - result.low) / result.step)
+    lines = [
+        f"no instability at {span} up to {shown.value(result.high)}, the end of the scan"
+        if at is None
+        else f"stable at all {span} up to {shown.value(result.smallest)}, set at {show_speed(at, unit)}",
+        f"  limit over speed: {ends}; first crossing of a scan in {steps} steps",
+    ]
+    if several:
+        lines.append(f"  at {several} speeds the line is stable again above the limit, and unstable once more")
+    return "\n".join([*lines, *(f"  {finding}" for finding in result.findings)])
