@@ -18,11 +18,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class AlignedMatrices:
-    """M (case, n) diagonal [kg m²], C and K (case, n, n) [N m s/rad, N m/rad] in absolute rotations."""
+    """M (case, n) diagonal [kg m²], C and K (case, n, n) [N m s/rad, N m/rad] in absolute rotations.
+
+    ``loss`` H (case, n, n) [N m/rad] damps at all frequencies alike: K + i sgn(ν) H at the frequency ν.
+    """
 
     mass: Array
     damping: Array
     stiffness: Array
+    loss: Array
 
 
 def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedMatrices:
@@ -33,13 +37,14 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
         c = topo.coordinate[topo.group_of(s)]
         if c >= 0:
             mass[:, c] += coefficients.inertia[:, s] * relative_ratio(topo, s) ** 2
-    damping, stiffness = np.zeros((cases, n, n)), np.zeros((cases, n, n))
+    damping, stiffness, loss = (np.zeros((cases, n, n)) for _ in range(3))
     for e in range(len(topo.compliances)):
         direction = elongation(topo, e)
         outer = np.outer(direction, direction)
         damping += coefficients.damping[:, e, None, None] * outer
         stiffness += coefficients.stiffness[:, e, None, None] * outer
-    return AlignedMatrices(mass, damping, stiffness)
+        loss += coefficients.loss[:, e, None, None] * outer
+    return AlignedMatrices(mass, damping, stiffness, loss)
 
 
 def elongation(topo: Topology, compliance: int) -> Array:

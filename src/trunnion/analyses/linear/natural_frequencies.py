@@ -89,32 +89,34 @@ class NaturalFrequencies(Result):
 def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     """Natural frequencies of ``line`` with all joint angles zero.
 
-    M q̈ + C q̇ + K q = 0 in absolute rotations, ratios at their constant speed ratio; a ConstantSpeed end does
-    not vibrate. Joint angles change these frequencies only at second order; resonance speeds are named
-    after them.
+    M q̈ + C q̇ + (K + iH) q = 0 in absolute rotations, H from loss factors that hold at all frequencies: a mode whose
+    energy is all in such springs has the damping ratio sin(½ arctan η), nearly η/2. Ratios turn at their constant speed
+    ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order; resonance
+    speeds are named after them.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
     topo = assembly.topology
-    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1)))
+    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), any_frequency=True))
     mass, damping, stiffness = matrices.mass[0], matrices.damping[0], matrices.stiffness[0]
     root = np.sqrt(mass)
     found = frequencies(matrices, free=topo.free)[0]
     _, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
     shape = vectors / root[:, None]
     shape = shape / shape[np.abs(shape).argmax(0), np.arange(len(mass))]
-    ratio = _damping_ratios(damping / np.outer(root, root), stiffness / np.outer(root, root), vectors, found)
+    scaled = (part / np.outer(root, root) for part in (damping, stiffness, matrices.loss[0]))
+    ratio = _damping_ratios(*scaled, vectors, found)
     said = left_out("natural_frequencies", assembly.line)
     return NaturalFrequencies(found, ratio, shape, topo.names, topo.free, said)
 
 
-def _damping_ratios(damping: Array, stiffness: Array, vectors: Array, frequency: Array) -> Array:
+def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Array, frequency: Array) -> Array:
     """−Re λ/|λ| of the damped modes; by modal projection where a mode does not oscillate."""
     n = len(frequency)
-    modal = np.einsum("im,ij,jm->m", vectors, damping, vectors)
-    ratio = np.divide(modal, 2 * frequency, out=np.zeros(n), where=frequency > 0)
+    modal, lost = (np.einsum("im,ij,jm->m", vectors, part, vectors) for part in (damping, loss))
+    ratio = np.divide(modal * frequency + lost, 2 * frequency**2, out=np.zeros(n), where=frequency > 0)
     if np.any(np.abs(ratio) >= 0.9):
         return ratio
-    system = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
+    system = np.block([[np.zeros((n, n)), np.eye(n)], [-(stiffness + 1j * loss), -damping]])
     values = np.linalg.eigvals(system)
     above = values[values.imag > 1e-9 * frequency.max()]
     oscillating = frequency > 0
