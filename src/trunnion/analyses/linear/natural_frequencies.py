@@ -103,8 +103,8 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     _, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
     shape = vectors / root[:, None]
     shape = shape / shape[np.abs(shape).argmax(0), np.arange(len(mass))]
-    scaled = (part / np.outer(root, root) for part in (damping, stiffness, matrices.loss[0]))
-    ratio = _damping_ratios(*scaled, vectors, found)
+    c, k, h = (part / np.outer(root, root) for part in (damping, stiffness, matrices.loss[0]))
+    ratio = _damping_ratios(c, k, h, vectors, found)
     said = left_out("natural_frequencies", assembly.line)
     return NaturalFrequencies(found, ratio, shape, topo.names, topo.free, said)
 
