@@ -159,7 +159,7 @@ def free_findings(assembly: Assembly, limits: tuple[float, float], unit: str) ->
     unstable, failed = [], []
     for speed in speeds:
         try:
-            found = stability(assembly, float(speed))
+            found = stability(assembly, float(speed), tolerance=1e-8)
         except ComputationError:
             failed.append(_speed(float(speed), unit))
             continue

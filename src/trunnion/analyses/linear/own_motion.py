@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.forced_response import LinearResponse
 from trunnion.analyses.linear.mode_content import ModeMotion
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
-from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.equations.aligned import aligned_matrices, frequencies
@@ -63,8 +63,10 @@ class OwnMotion:
         return ModeMotion(samples, exponent, turn, mean.mass[0].mean(0), mean.stiffness[0].mean(0))
 
 
-def own_motion(line: Driveline, speed: float) -> OwnMotion:
+def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -> OwnMotion:
     """The periodic motion of a free line at mean input ``speed`` [rad/s], its disks not excited.
+
+    ``tolerance`` : of its integration.
 
     Raises
     ------
@@ -73,7 +75,7 @@ def own_motion(line: Driveline, speed: float) -> OwnMotion:
     """
     prepared = line_system(assemble(_quiet(line)), speed)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
-    found = kept_speed_orbit(prepared)
+    found = kept_speed_orbit(prepared, tolerance=tolerance)
     orbit = found.orbit
     if not orbit.outcome.ok:
         raise ComputationError(f"no periodic motion of the free line was found to judge: {orbit.outcome}")

@@ -159,7 +159,9 @@ def speed_sweep(
     require_steady_base(assembly, every)
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
-    joints, mesh = _harmonics(assembly) * float(half_turns), topo.fastest * float(half_turns) / 2
+    # Two cycles a turn of the fastest joint: behind a reduction, fewer in the period than of one at input speed.
+    turning = max((abs(float(topo.speed_ratio[j])) for j in topo.joints), default=1.0)
+    joints, mesh = _harmonics(assembly) * turning * float(half_turns), topo.fastest * float(half_turns) / 2
     tried = (int(np.ceil(joints) + np.ceil(kept * mesh)) for kept in (MESH_HARMONICS if mesh else (0,)))
     harmonics = next((count for count in tried if (2 * count + 1) * topo.size <= MOST_UNKNOWNS), None)
     if harmonics is None:

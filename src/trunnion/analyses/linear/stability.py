@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
+OWN = 0.1
+"""Tolerance of the motion that a free line is judged about, over that of its multipliers."""
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -201,7 +203,7 @@ def stability(
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
-        found = _about_own_motion(assembly, float(table[0, 0]))
+        found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
         said = without_excitation(assembly, errors_counted=True)
         return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
@@ -215,11 +217,11 @@ def stability(
     return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
 
 
-def _about_own_motion(assembly: Assembly, speed: float) -> Stability:
+def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability:
     """Of a free line with bent joints, which no motion of rigid shafts stands for."""
     topo = assembly.topology
     turns = require_period(assembly.line, topo)
-    motion = own_motion(assembly.line, speed)
+    motion = own_motion(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)
     values, vectors = np.linalg.eig(orbit.monodromy)

@@ -10,7 +10,8 @@ of the inertia torque, cos(ωT/2)/((ωT/π)² − 1) without damping.
 
 The acceleration is that of the drive. Where a line starts free, nothing turns at a prescribed speed: its disks with a
 drive_share carry the torque that balances the loads at each speed and accelerates the whole inertia, were it rigid and
-its joints straight. What dampers, bent joints and vibration take beyond that makes it lag, see ``RunUp.lag``.
+its joints straight. What dampers, bent joints and vibration take beyond that makes it lag, and a
+resonance that takes more than what accelerates holds it back (Sommerfeld's effect), see ``RunUp.lag``.
 
 ``safe_accelerations`` finds how fast and how slowly a line may be run up for a torque that must not be exceeded.
 """
