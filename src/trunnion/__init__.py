@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         phase_forks,
     )
     from trunnion.analyses.linear.bending import bending_speeds
+    from trunnion.analyses.linear.campbell_diagram import campbell_diagram
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
     from trunnion.analyses.linear.resonance_speeds import resonance_speeds
     from trunnion.analyses.linear.speed_sweep import speed_sweep, sweep_speeds
@@ -138,6 +139,7 @@ _HOME = {
     "pack": "trunnion.driveline.parameters",
     # analyse
     "assess": "trunnion.analyses.assessment.assess",
+    "campbell_diagram": "trunnion.analyses.linear.campbell_diagram",
     "natural_frequencies": "trunnion.analyses.linear.natural_frequencies",
     "resonance_speeds": "trunnion.analyses.linear.resonance_speeds",
     "stability": "trunnion.analyses.linear.stability",

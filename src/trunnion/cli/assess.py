@@ -1,8 +1,11 @@
-"""The command ``assess``: is the line fit for its speeds, and what binds."""
+"""The commands ``assess`` and ``campbell-diagram``: is the line fit for its speeds, what meets which mode."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from trunnion.cli import output
 from trunnion.cli.options import File, Json, LoadCase, Unit, read_line, read_unit
@@ -12,6 +15,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from trunnion.analyses.assessment.result import Assessment
+
+DIAGRAM_POINTS = 201
+"""Speeds at which the modes of a diagram are computed."""
 
 
 def assess(
@@ -31,6 +37,41 @@ def assess(
         output.write_json("assess", assessment_json(result))
         return
     print_assessment(output.console(), result)
+
+
+def campbell_diagram(
+    file: File,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    picture: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Picture ending in .png, .pdf or .svg.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Modes of the loaded line over its speed range, what excites them, and where the two meet."""
+    import numpy as np
+
+    from trunnion.equations.coefficients import assemble
+
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    from trunnion.analyses.linear.campbell_diagram import campbell_diagram as diagram
+    from trunnion.plots.style import check_format, save
+    from trunnion.reporting.overview import speed_range
+
+    if picture is not None:
+        check_format(picture)
+    assembly = assemble(line)
+    result = diagram(assembly, np.linspace(*speed_range(assembly), DIAGRAM_POINTS))
+    if picture is not None:
+        save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
+    if as_json:
+        output.write_json("campbell-diagram", result.to_dict())
+        return
+    out = output.console()
+    out.print(result.describe(unit), soft_wrap=True)
+    if picture is not None:
+        out.print(f"  written: {picture}", soft_wrap=True)
 
 
 def print_assessment(out: Console, result: Assessment) -> None:

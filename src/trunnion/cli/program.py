@@ -18,7 +18,7 @@ from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, study
-from trunnion.cli.assess import assess
+from trunnion.cli.assess import assess, campbell_diagram
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
@@ -164,6 +164,7 @@ def _root(
 
 app.command("analyze")(study.analyze)
 app.command("assess")(assess)
+app.command("campbell-diagram")(campbell_diagram)
 app.command("stability")(study.stability)
 app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)

@@ -3,6 +3,7 @@
 DRAWINGS = {
     # linear
     "NaturalFrequencies.plot": "trunnion.plots.mode_shapes:draw",
+    "CampbellDiagram.plot": "trunnion.plots.campbell_diagram:draw",
     "OrderResponse.plot": "trunnion.plots.order_response:draw",
     "SpeedSweep.plot": "trunnion.plots.torque_over_speed:draw",
     "StabilityChart.plot": "trunnion.plots.stability_chart:draw",

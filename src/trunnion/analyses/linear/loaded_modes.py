@@ -49,8 +49,8 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     squares, reference = np.linalg.eigh(matrices.stiffness[0] / scale)
     elastic = squares > (RIGID**2) * max(squares.max(initial=0.0), 0.0)
     last = reference[:, elastic].astype(complex)
-    found = np.full((len(speeds), last.shape[1]), np.nan, dtype=complex)
-    shapes = np.full((len(speeds), n, last.shape[1]), np.nan, dtype=complex)
+    found = np.full((len(speeds), last.shape[1]), complex(np.nan, np.nan))
+    shapes = np.full((len(speeds), n, last.shape[1]), complex(np.nan, np.nan))
     for i in range(len(speeds)):
         system = np.zeros((2 * n, 2 * n), dtype=complex)
         system[:n, n:] = np.eye(n)

@@ -1,0 +1,109 @@
+"""Campbell diagram: modes with their margin over speed, excitation lines, crossings by amplification."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trunnion.analyses.linear.campbell_diagram import CampbellDiagram
+from trunnion.driveline.operation import Operation
+from trunnion.plots.resonance_marks import spread
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+VERMILION = "#d55e00"
+BAND = "#dde6ee"
+HEADROOM = 1.35
+"""Height of the picture over the highest mode that is crossed, or else the lowest mode."""
+
+
+def draw(
+    result: CampbellDiagram,
+    axes: Axes | None = None,
+    *,
+    unit: str | None = None,
+    frequency_unit: str = "Hz",
+    operating: Operation | None = None,
+) -> Axes:
+    """Draw ``result``: input speed in ``unit`` (default: the description's) across, frequency up.
+
+    The area of a crossing's mark grows with its amplification.
+    """
+    unit = unit or result.unit
+    axes = axes or new_axes(7.2, 4.6)
+    x, y = speed_factor(unit), speed_factor(frequency_unit)
+    speed = result.speed
+    top = _top(result)
+    axes.set_xlim(speed[0] * x, speed[-1] * x)
+    axes.set_ylim(0, top * y)
+    for m in range(len(result.mode)):
+        w = result.frequency[:, m]
+        label: dict[str, Any] = {"label": "mode"} if m == 0 else {}
+        around: dict[str, Any] = {"label": f"±{100 * result.margin:.3g} % of it"} if m == 0 else {}
+        low, high = (1 - result.margin) * w * y, (1 + result.margin) * w * y
+        axes.fill_between(speed * x, low, high, color=BAND, lw=0, zorder=1, **around)
+        axes.plot(speed * x, w * y, color=INK, lw=1.3, zorder=3, **label)
+    for i, line in enumerate(result.lines):
+        ends = line.order * speed[[0, -1]] + line.frequency
+        label = {"label": "excitation"} if i == 0 else {}
+        axes.plot(speed[[0, -1]] * x, ends * y, color=VERMILION, lw=1.2, zorder=2, **label)
+    for i, c in enumerate(result.crossings):
+        if c.frequency <= top:
+            size = 5 + 2.2 * min(np.log2(max(c.amplification, 1.0)), 6.0)
+            label = {"label": "crossing, larger with 1/(2ζ)"} if i == 0 else {}
+            axes.plot(
+                c.speed * x, c.frequency * y, "o", ms=size, mfc="white", mec=VERMILION, mew=1.5, zorder=5, **label
+            )
+    _name_lines(axes, result, top, x, y)
+    _name_modes(axes, result, top, y, frequency_unit)
+    if operating and operating.speed and speed[0] <= operating.speed <= speed[-1]:
+        axes.axvline(operating.speed * x, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
+    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
+    axes.set_ylabel(f"frequency [{frequency_unit}]", fontsize=TEXT, color=INK)
+    plain(axes)
+    axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
+    return axes
+
+
+def _top(result: CampbellDiagram) -> float:
+    crossed = [c.frequency for c in result.crossings]
+    lowest = float(np.nanmin(result.frequency)) if np.any(np.isfinite(result.frequency)) else float(result.speed[-1])
+    reach = max((line.order * result.speed[-1] + line.frequency for line in result.lines), default=lowest)
+    return HEADROOM * max([lowest, *crossed]) if crossed else 1.06 * max(lowest, min(reach, HEADROOM * lowest))
+
+
+def _name_lines(axes: Axes, result: CampbellDiagram, top: float, x: float, y: float) -> None:
+    """Each line's name near where it leaves the picture, lines of one slope together."""
+    for line in result.lines:
+        end = float(result.speed[-1])
+        if line.order and line.order * end + line.frequency > top:
+            end = (top - line.frequency) / line.order
+        if end <= result.speed[0]:
+            continue
+        at = result.speed[0] + 0.93 * (end - result.speed[0])
+        text = line.name.removeprefix("order ") if not line.frequency else line.name
+        axes.annotate(
+            text, (at * x, (line.order * at + line.frequency) * y), fontsize=SMALL, color=VERMILION, ha="center",
+            va="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=6,
+        )  # fmt: skip
+
+
+def _name_modes(axes: Axes, result: CampbellDiagram, top: float, y: float, unit: str) -> None:
+    """Numbers and frequencies at the right edge, pushed apart where modes are close."""
+    last = result.frequency[-1]
+    seen = [m for m in np.argsort(last) if last[m] < top]
+    if not seen:
+        return
+    height = 72 * axes.get_window_extent().height / axes.figure.dpi
+    places = spread(np.array([last[m] for m in seen]) / top, 1.25 * SMALL / max(0.8 * height, 1.0))
+    for m, place in zip(seen, places, strict=True):
+        axes.annotate(
+            f"{result.mode[m]}:  {last[m] * y:.4g} {unit}",
+            xy=(1.0, last[m] / top), xycoords="axes fraction", xytext=(1.025, place), textcoords="axes fraction",
+            fontsize=SMALL, color=INK, va="center", annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": FAINT, "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
+        )  # fmt: skip
