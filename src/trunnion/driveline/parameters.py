@@ -16,15 +16,17 @@ Paths
 from __future__ import annotations
 
 import difflib
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
-from trunnion.errors import InputError
+from trunnion.errors import InputError, InputRemark
 
 SPEED = "speed"
 UNITS = {
@@ -143,9 +145,32 @@ class PackedLine:
         first = columns.index[0]
         return float((self.values[first] - columns.offset[0]) / columns.slope[0])
 
+    def line_at(self, values: NDArray[np.float64]) -> Driveline:
+        """The line with the numbers of ``values`` (columns,), checked as one written by hand; the speed is left out.
+
+        Raises
+        ------
+        InputError : a number that its element or the line refuses.
+        """
+        changed: dict[int, dict[str, float]] = {}
+        for (element, key), column in self.place.items():
+            if key != SPEED and values[column] != self.values[column]:
+                changed.setdefault(element, {})[key] = float(values[column])
+        line = self.line
+        own = changed.pop(-1, {})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputRemark)  # odd values are allowed along an axis
+            for element, numbers in changed.items():
+                line = line.replace(line.names[element], **_fields(line.elements[element], numbers))
+            return Driveline(**{**{key: getattr(line, key) for key in type(line).model_fields}, **own}) if own else line
+
     def _resolve_path(self, path: str) -> Columns:
         factor = path.startswith("factor of ")
         found = np.array(self._find(path.removeprefix("factor of ")), dtype=np.intp)
+        if factor and 0 in found:
+            raise InputError(
+                "belongs to the analysis, so a line has no speed to multiply", key=path, remedy=f'vary "{SPEED}" itself'
+            )
         if not factor:
             return Columns(path, self.units[found[0]], found, np.ones(len(found)), np.zeros(len(found)))
         slope = self.values[found]
@@ -241,6 +266,22 @@ def _numbers(element: Element) -> Iterator[tuple[str, float]]:
     for name, (single, _) in _LISTS.items():
         for i, number in enumerate(getattr(element, name, ()), start=1):
             yield f"{single} {i}", float(number)
+
+
+def _fields(element: Element, numbers: dict[str, float]) -> dict[str, Any]:
+    """The fields of an element that hold ``numbers`` by their keys, those in lists in their places."""
+    fields: dict[str, Any] = {}
+    for key, number in numbers.items():
+        owner, _, rest = key.partition(" ")
+        if not rest:
+            fields[key] = number
+            continue
+        place, _, part = rest.partition(" ")
+        name = owner if owner in _HARMONICS else next(n for n, (single, _) in _LISTS.items() if single == owner)
+        every = fields.setdefault(name, list(getattr(element, name)))
+        old = every[int(place) - 1]
+        every[int(place) - 1] = type(old)(**{**old.stated, part: number}) if part else number
+    return fields
 
 
 def default_names(line: Driveline) -> Sequence[str]:

@@ -17,6 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
+from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.drawing import drawing
 from trunnion.results.files import read_dataset, save_dataset
@@ -32,6 +33,10 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Resample = Callable[[Array, Array], tuple[Array, Array, Complex, NDArray[np.int8]]]
 FORMAT = "trunnion stability chart 3"
+
+
+BYTES_A_PIXEL = 64
+"""Radius, error, multiplier and verdict of a pixel, and what is held beside them while it is filled."""
 
 
 @dataclass(frozen=True)
@@ -128,10 +133,12 @@ class StabilityChart:
         Pixels are spaced as the chart's own, or as ``"linear"`` or ``"log"`` at the end says. Patches are only
         evaluated anew; nothing is integrated where there are patches.
         """
+        require_pixels(*(r[2] for r in (x, y) if len(r) > 2 and isinstance(r[2], int | float) and _is_number(r[2])))
         return self.on(_inside(self.x, x, self.x_label), _inside(self.y, y, self.y_label))
 
     def on(self, x: Array, y: Array) -> StabilityChart:
         """The same chart on pixels at rising values ``x`` and ``y`` inside its box."""
+        require_pixels(len(x), len(y))
         if self.resample is None:
             raise InputError("was read without its family and cannot be resampled", element="chart")
         radius, error, critical, verdict = self.resample(x, y)
@@ -248,6 +255,18 @@ class StabilityChart:
         )
 
     __repr__ = __str__
+
+
+def require_pixels(*points: float) -> None:
+    """Refuse a grid of that many points per axis where its arrays would not fit; before any is made.
+
+    Raises
+    ------
+    InputError : names the memory it would need.
+    """
+    needed = BYTES_A_PIXEL * float(np.prod([float(p) for p in points]))
+    shown = " x ".join(f"{p:g}" for p in points)
+    require_memory(needed, element="chart", key="points", value=shown, remedy="ask for fewer points, and zoom in later")
 
 
 def read_chart(path: str | os.PathLike[str]) -> StabilityChart:

@@ -20,10 +20,6 @@ AxisRequest = Sequence[object]
 MOST_CYCLES = 500
 """Cycles of the highest mode per turn of the input beyond which a speed counts as zero."""
 STEEPEST_ANGLE = np.deg2rad(89.0)
-POSITIVE = {
-    "stiffness", "inertia", "outer_diameter", "length", "thickness", "shear_modulus",
-    "damping_ratio_frequency", "loss_factor_frequency", "speed",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -207,27 +203,50 @@ def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -
 
 
 def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
-    """Refuse values that no line can have, by the columns they would fill."""
-    table = assembly.packed.table(len(values))
-    columns.put(table, values)
+    """Refuse values that no line can have: both ends must make a line that could be written by hand.
+
+    What elements ask of their numbers holds between two values wherever it holds at both.
+    """
+    ends = values[[0, -1]]
+    table = assembly.packed.table(2)
+    columns.put(table, ends)
     for c in columns.index:
         key = assembly.packed.labels[c].rpartition(".")[2]
-        worst = float(table[:, c].min())
-        if key in POSITIVE and worst <= 0:
-            raise InputError(
-                f"would make {assembly.packed.labels[c]} {worst:g}; it must be positive",
-                element=columns.label,
-                key="low",
-                value=float(values[0]),
-                remedy="raise the lower end of the axis",
-            )
         if key == "angle" and (steepest := np.abs(table[:, c])).max() >= np.pi / 2:
             raise InputError(
                 f"would bend {assembly.packed.labels[c].rpartition('.')[0]} by {np.rad2deg(steepest.max()):g}°; "
                 "it must stay below 90°",
-                element=columns.label, key="range", value=float(values[steepest.argmax()]),
+                element=columns.label, key="range", value=float(ends[steepest.argmax()]),
             )  # fmt: skip
-        if key == "inner_diameter":
-            outer = table[:, assembly.packed.labels.index(assembly.packed.labels[c].replace("inner", "outer"))]
-            if np.any(table[:, c] >= outer) or worst < 0:
-                raise InputError("must stay between 0 and the outer diameter", element=columns.label, key="range")
+    for row, value, key in zip(table, ends.tolist(), ("low", "high"), strict=True):
+        try:
+            assembly.packed.line_at(row)
+        except InputError as error:
+            raise _impossible(error.problems[0], columns.label, key, value) from None
+
+
+def check_corners(assembly: Assembly, x: Axis, y: Axis) -> None:
+    """Refuse two axes whose values are possible one by one and not together, as a bore wider than its tube.
+
+    Raises
+    ------
+    InputError : names both values and what the element says to them.
+    """
+    table = assembly.packed.table(4)
+    across, up = x.values[[0, 0, -1, -1]], y.values[[0, -1, 0, -1]]
+    x.columns.put(table, across)
+    y.columns.put(table, up)
+    for row, a, b in zip(table, across.tolist(), up.tolist(), strict=True):
+        try:
+            assembly.packed.line_at(row)
+        except InputError as error:
+            raise _impossible(error.problems[0], f"{x.label} and {y.label}", "range", (a, b)) from None
+
+
+def _impossible(said: InputError, label: str, key: str, value: object) -> InputError:
+    place = ".".join(part for part in (said.element, said.key) if part)
+    number = f" {said.value:g}" if isinstance(said.value, float) else ""
+    remedy = "let the axis end where the line is still possible"
+    return InputError(
+        f"would make {place}{number}, which {said.problem}", element=label, key=key, value=value, remedy=remedy
+    )

@@ -29,6 +29,8 @@ Progress = Callable[[float], None]
 
 SPOTS = 24
 """Random pixels at which a chart checks itself."""
+DIRECT_BYTES = 512 * 2**20
+"""Memory for matrices of points that are integrated by themselves together."""
 UNEVEN = 0.4713
 """Where boxes are divided for smaller patches: not in the middle, so that no node stands where one stood."""
 
@@ -180,8 +182,9 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
             left[rows, columns] = False
     on_threads(fill_strip, tasks, threads)
     r, c = np.nonzero(left)
-    for start in range(0, len(r), 65536):
-        here = (r[start : start + 65536], c[start : start + 65536])
+    at_once = int(np.clip(DIRECT_BYTES // (32 * (2 * family.size) ** 2), 1, 65536))
+    for start in range(0, len(r), at_once):
+        here = (r[start : start + at_once], c[start : start + at_once])
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
         found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.rigid_body)
         radius[here], error[here], critical[here], verdict[here] = (

@@ -9,13 +9,13 @@ check fails (see ``building``).
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, moves_nothing, own_axis
+from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
 from trunnion.analyses.charts.building import build, decide, family_for, fill, way_named
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of
@@ -28,7 +28,7 @@ from trunnion.equations.steady_base import refuse_own_motion, require_steady_bas
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.patches.patches import PatchedFunction
-from trunnion.results.chart import ChartPoint, StabilityChart
+from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
 
@@ -72,6 +72,7 @@ def stability_chart(
     ComputationError : the chart's check of itself fails in every way of building it.
     KeyboardInterrupt : passed on; nothing is kept.
     """
+    require_pixels(*(_points_of(request) for request in (x, y)))
     task = (
         _own_task(line, x, y)
         if isinstance(line, PeriodicLinearFamily)
@@ -115,6 +116,12 @@ def stability_chart(
     )
 
 
+def _points_of(request: AxisRequest) -> int:
+    """The points an axis asks for, as far as it can be read; what is wrong with it is said later."""
+    asked = request[3] if isinstance(request, Sequence) and not isinstance(request, str) and len(request) > 3 else 1
+    return int(asked) if isinstance(asked, int | np.integer) else 1
+
+
 @dataclass(frozen=True)
 class _Task:
     family: ChartFamily
@@ -138,6 +145,7 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
             key=name,
             remedy="give y a parameter that leaves it alone",
         )
+    check_corners(assembly, across, up)
     refuse_own_motion(
         assembly,
         "ask stability at single speeds, or put a ConstantSpeed in front for a chart",

@@ -33,6 +33,7 @@ from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
+from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
@@ -191,6 +192,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     An even grid alone would step over the peaks of lightly damped modes.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
+    require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")
     modes = natural_frequencies(assembly)
     topo = assembly.topology
     orders = {2.0 * m * abs(float(topo.speed_ratio[j])) for j in topo.joints for m in (1, 2, 3)}
