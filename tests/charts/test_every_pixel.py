@@ -47,7 +47,7 @@ def directly(chart: StabilityChart, rows: Any, columns: Any) -> Pixels:
     speed = float("nan") if chart.speed is None else chart.speed
     family = LineFamily(assembly, across, up, speed, chart.statically_twisted)
     values, bounds = quantities(*family.matrices(chart.x[columns], chart.y[rows], 1e-12, 2))
-    return judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
+    return judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside)
 
 
 def check(chart: StabilityChart, sample: int | None = None) -> None:

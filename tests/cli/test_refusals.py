@@ -64,7 +64,7 @@ CASES = [
     ((*CHART, "--x", "speed:nan:300rpm:4"), ("must be finite",)),
     ((*CHART, "--x", "speed:1:300"), ("--x = 'speed:1:300': needs a range", "speed:300rpm:2400rpm:400")),
     ((*CHART, "--x", "Shaft 1.stiffness"), ("needs a range",)),
-    ((*CHART, "--x", "Shaft 1.stiffness:0:1e4:4"), ("must be positive", "raise the lower end")),
+    ((*CHART, "--x", "Shaft 1.stiffness:0:1e4:4"), ("Shaft 1.stiffness 0, which must be positive", "let the axis end")),
     ((*CHART, "--x", "Shaft 1.stiffness:1 N*m:9 N*m:4"), ("N*m is not the unit", "N*m/rad")),
     ((*CHART, "--x", "speed:1:2:0"), ("must be a whole number of points",)),
     ((*CHART, "--x", "speed:1:2:many"), ("= 'many': must be a whole number of points",)),
@@ -73,6 +73,13 @@ CASES = [
     ((*CHART, "--y", "factor of Shaft *.damping:-1:1:3:log"), ("cannot start at or below zero",)),
     (("analyze", "line.toml", "--points", "many"), ("--points = 'many': is not a size", "200x150")),
     (("analyze", "line.toml", "--points", "1x5"), ("2 or more",)),
+    (
+        (*CHART[:2], "--points", "99999999x99999999"),
+        ("chart.points = '99999999 x 99999999': would need", "fewer points"),
+    ),
+    (("analyze", "line.toml", "--points", "99999999x99999999"), ("would need", "of memory", "fewer points")),
+    ((*CHART, "--x", "speed:100rpm:300rpm:99999999999"), ("would need", "of memory", "fewer points")),
+    ((*CHART, "--y", "factor of speed:1:2:3"), ("factor of speed: belongs to the analysis", 'vary "speed" itself')),
     # outputs
     ((*CHART, "-o", "folder"), ("--output = 'folder': is a folder",)),
     ((*CHART, "-o", "no/such/c.png"), ("lies in no folder", "create the folder no/such")),

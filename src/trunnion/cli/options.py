@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from trunnion.errors import InputError
+from trunnion.results.chart import require_pixels
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
@@ -153,7 +154,9 @@ def read_points(text: str) -> tuple[int, int]:
     parts = text.lower().replace("×", "x").split("x")
     if len(parts) != 2:
         raise InputError("is not a size", key="--points", value=text, remedy="write 200x150")
-    return _count(parts[0], "--points"), _count(parts[1], "--points")
+    across, up = _count(parts[0], "--points"), _count(parts[1], "--points")
+    require_pixels(across, up)
+    return across, up
 
 
 def _count(text: str, key: str) -> int:

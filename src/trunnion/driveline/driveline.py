@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, Self
 
@@ -142,14 +142,23 @@ class Driveline(BaseModel):
 
         ``line.replace("HookeJoint 1", angle="15 deg")``
         """
-        place = self.index(name)
-        old = self.elements[place]
-        stated = {key: value for key, value in {**old.stated, **changes}.items() if value is not None}
-        try:
-            new = type(old)(**stated)
-        except InputError as error:
-            raise about(error, name) from None
-        return self._but(elements=[*self.elements[:place], new, *self.elements[place + 1 :]])
+        return self.replace_all({name: changes})
+
+    def replace_all(self, changes: Mapping[str, Mapping[str, Any]], **own: Any) -> Driveline:
+        """The same line with fields of several elements, by name, and fields of its ``own`` changed together.
+
+        Nothing is checked until all are changed.
+        """
+        elements = list(self.elements)
+        for name, fields in changes.items():
+            place = self.index(name)
+            old = elements[place]
+            stated = {key: value for key, value in {**old.stated, **fields}.items() if value is not None}
+            try:
+                elements[place] = type(old)(**stated)
+            except InputError as error:
+                raise about(error, name) from None
+        return self._but(elements=elements, **own)
 
     def _but(self, **changes: Any) -> Driveline:
         return Driveline(**{**{key: getattr(self, key) for key in type(self).model_fields}, **changes})

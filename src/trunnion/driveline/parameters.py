@@ -156,13 +156,11 @@ class PackedLine:
         for (element, key), column in self.place.items():
             if key != SPEED and values[column] != self.values[column]:
                 changed.setdefault(element, {})[key] = float(values[column])
-        line = self.line
-        own = changed.pop(-1, {})
+        own, line = changed.pop(-1, {}), self.line
+        fields = {line.names[i]: _fields(line.elements[i], numbers) for i, numbers in changed.items()}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputRemark)  # odd values are allowed along an axis
-            for element, numbers in changed.items():
-                line = line.replace(line.names[element], **_fields(line.elements[element], numbers))
-            return Driveline(**{**{key: getattr(line, key) for key in type(line).model_fields}, **own}) if own else line
+            return line.replace_all(fields, **own)
 
     def _resolve_path(self, path: str) -> Columns:
         factor = path.startswith("factor of ")
@@ -280,7 +278,7 @@ def _fields(element: Element, numbers: dict[str, float]) -> dict[str, Any]:
         name = owner if owner in _HARMONICS else next(n for n, (single, _) in _LISTS.items() if single == owner)
         every = fields.setdefault(name, list(getattr(element, name)))
         old = every[int(place) - 1]
-        every[int(place) - 1] = type(old)(**{**old.stated, part: number}) if part else number
+        every[int(place) - 1] = {**old.stated, part: number} if part else number
     return fields
 
 

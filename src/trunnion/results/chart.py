@@ -265,7 +265,7 @@ def require_pixels(*points: float) -> None:
     InputError : names the memory it would need.
     """
     needed = BYTES_A_PIXEL * float(np.prod([float(p) for p in points]))
-    shown = " x ".join(f"{p:g}" for p in points)
+    shown = " x ".join(f"{p:.0f}" for p in points)
     require_memory(needed, element="chart", key="points", value=shown, remedy="ask for fewer points, and zoom in later")
 
 

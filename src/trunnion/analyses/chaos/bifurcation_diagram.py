@@ -17,6 +17,7 @@ from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, value
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -112,6 +113,8 @@ def bifurcation_diagram(
     whole_number("points", points, 8)
     if not directions or any(d not in DIRECTIONS for d in directions):
         raise InputError("is not a direction", key="directions", value=list(directions), remedy='write "up" or "down"')
+    needed = 8.0 * len(directions) * len(chosen) * points * system.size
+    require_memory(needed, key="points", value=points, remedy="ask for fewer values, or fewer points of each")
     first = first_starts(system, start, 1)[0]
     tell = progress or (lambda share: None)
     found = np.full((len(directions), len(chosen), points, system.size), np.nan)

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.numerics.memory import require_memory
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
@@ -117,6 +118,10 @@ def whole_number(key: str, value: object, least: int, most: int | None = None) -
     return int(value)
 
 
+BYTES_A_VALUE = 512
+"""What a value of a parameter holds: itself, its motion's request and what is found there."""
+
+
 def values_of(system: System, parameter: str, values: ArrayLike | tuple[float, float, int]) -> Array:
     """Rising values (m,) of one of the system's parameters, from (first, last, how many) or as they are.
 
@@ -130,6 +135,7 @@ def values_of(system: System, parameter: str, values: ArrayLike | tuple[float, f
     if isinstance(values, tuple) and len(values) == 3 and isinstance(values[2], int):
         low, high, count = values
         whole_number(parameter, count, 1)
+        require_memory(BYTES_A_VALUE * count, key=parameter, value=values, remedy="ask for fewer values")
         chosen = np.linspace(low, high, count)
     else:
         chosen = np.atleast_1d(np.asarray(values, dtype=float))

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
+from trunnion.analyses.chaos.chaos_subject import BYTES_A_VALUE, as_system, first_starts, values_of, whole_number
 from trunnion.analyses.chaos.lyapunov_result import shear_bound
 from trunnion.analyses.motion.long_motion import usual_time
 from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -187,6 +188,8 @@ def lyapunov_map(
     """
     system = as_system(subject, speed)
     columns, rows = values_of(system, x[0], x[1:]), values_of(system, y[0], y[1:])
+    needed = float(BYTES_A_VALUE) * len(rows) * len(columns)
+    require_memory(needed, key="x, y", value=f"{len(columns)} x {len(rows)}", remedy="ask for fewer values")
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     used = _threads(threads)
     mean, width, told = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)

@@ -21,6 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End, integrate
 from trunnion.numerics.integration.tangents import Motion
+from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -131,6 +132,8 @@ def poincare_map(
     """
     system = as_system(subject, speed)
     whole_number("points", points, 1)
+    needed = 16.0 * (points + transient) * (system.size + 1)
+    require_memory(needed, key="points", value=points, remedy="ask for fewer points")
     whole_number("transient", transient, 0)
     state = first_starts(system, start, 1)[0]
     if section is not None:

@@ -167,7 +167,7 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
 
     def fill_strip(task: tuple[Patch, Array, slice, slice]) -> None:
         patch, along, rows, columns = task
-        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.rigid_body)
+        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.set_aside)
         radius[rows, columns], error[rows, columns] = found.radius, found.error
         critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
 
@@ -186,7 +186,7 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
     for start in range(0, len(r), at_once):
         here = (r[start : start + at_once], c[start : start + at_once])
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
-        found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.rigid_body)
+        found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.set_aside)
         radius[here], error[here], critical[here], verdict[here] = (
             found.radius,
             found.error,
@@ -209,7 +209,7 @@ def spot_check(
     rows, columns = (shares[:, 0] * len(y)).astype(int), (shares[:, 1] * len(x)).astype(int)
     whole = family.over_whole_periods()
     values, bounds = whole.evaluate(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads)
-    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.rigid_body)
+    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside)
     off = np.abs(found.radius - pixels.radius[rows, columns])
     # Without error and without estimate is not off.
     ratio = off / np.maximum(pixels.error[rows, columns] + found.error, 1e-300)
@@ -226,7 +226,7 @@ def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: f
     still shows; there are few such pixels in most charts.
     """
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
-    if family.rigid_body or not 0 < len(rows) <= family.affordable:
+    if family.set_aside or not 0 < len(rows) <= family.affordable:
         return
     found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
     better = found.error < pixels.error[rows, columns]

@@ -44,8 +44,8 @@ class ChartFamily(Protocol):
         """Number of unknowns."""
 
     @property
-    def rigid_body(self) -> bool:
-        """Whether a rigid-body pair of multipliers is to be set aside."""
+    def set_aside(self) -> int:
+        """How many multipliers that are exactly 1 are to be set aside, as ``Stability.set_aside``."""
 
     @property
     def period(self) -> float:
@@ -106,9 +106,11 @@ class LineFamily:
         return self.assembly.topology.size
 
     @property
-    def rigid_body(self) -> bool:
-        """Whether a rigid-body pair of multipliers is to be set aside."""
-        return self.assembly.topology.free
+    def set_aside(self) -> int:
+        """Of a free line a turn of the whole line; its speed too where no load depends on it anywhere on the axes."""
+        if not self.assembly.topology.free:
+            return 0
+        return 1 if self._by_speed else 2
 
     @property
     def period(self) -> float:
@@ -122,8 +124,8 @@ class LineFamily:
     @cached_property
     def _by_speed(self) -> frozenset[int]:
         """Stations with loads that depend on the speed anywhere on the axes."""
-        ends = [np.array([a.values[0], a.values[-1]] * 2) for a in (self.x, self.y)]
-        return loaded_by_speed(self.assembly.topology, self._coefficients(*ends))
+        box = Box(*(float(a.values[i]) for a in (self.x, self.y) for i in (0, -1)))
+        return loaded_by_speed(self.assembly.topology, self._coefficients(*spread(box, 5)))
 
     @cached_property
     def program(self) -> ChainProgram:

@@ -26,21 +26,21 @@ class Pixels:
     verdict: NDArray[np.int8]
 
 
-def judge(values: Array, bounds: Array, size: int, rigid_body: bool) -> Pixels:
-    """Pixels from quantities (q, points) and their bounds (q, points).
+def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:
+    """Pixels from quantities (q, points) and their bounds (q, points), ``set_aside`` multipliers exactly 1 left out.
 
     See ``chart_families.quantities`` for what the quantities are.
     """
     m, trace = 2 * size, values[-1]
-    if m == 2 and rigid_body:
+    if m == set_aside:
         # One inertia that turns freely neither grows nor decays.
         one = np.where(np.isfinite(values[0]), 1.0, np.nan)
         radius, error, critical = one, 0.0 * one, one.astype(complex)
     elif m <= LARGEST:
         left = (values[:m], bounds[:m])
-        radius, error, critical = radii(*(without_ones(*left) if rigid_body else left))
+        radius, error, critical = radii(*(without_ones(*left, set_aside) if set_aside else left))
     else:
-        radius, error, critical = _largest(values.T, bounds.T, m, rigid_body)
+        radius, error, critical = _largest(values.T, bounds.T, m, set_aside)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
 
 
@@ -52,12 +52,12 @@ def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
     return Pixels(radius, off, critical, verdicts(radius, off, np.abs(trace) < 1e-12 * (matrix.shape[1] // 2)))
 
 
-def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_body: bool) -> Pixels:
+def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_aside: int) -> Pixels:
     """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
     m, shape = 2 * size, (len(v), len(u))
-    if m > LARGEST or rigid_body:
+    if m > LARGEST or set_aside:
         values, bounds = patch.rows(along, v), patch.error_grid(u, v)
-        found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, rigid_body)
+        found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, set_aside)
         return Pixels(
             found.radius.reshape(shape),
             found.error.reshape(shape),
@@ -72,20 +72,20 @@ def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, rigid_
     return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
 
 
-def multipliers_of(values: Array, size: int, rigid_body: bool) -> Complex:
+def multipliers_of(values: Array, size: int, set_aside: int) -> Complex:
     """All multipliers of one point from its quantities, by falling modulus."""
     m = 2 * size
     if m > LARGEST:
         found = np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
-    elif rigid_body:
-        elastic = without_ones(values[:m, None], np.zeros((m, 1)))[0][:, 0]
-        found = np.concatenate([np.ones(2), roots_of(elastic)])
+    elif set_aside:
+        left = without_ones(values[:m, None], np.zeros((m, 1)), set_aside)[0][: m - set_aside, 0]
+        found = np.concatenate([np.ones(set_aside), roots_of(left)])
     else:
         found = roots_of(values[:m])
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
-def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Array, Array, Complex]:
+def _largest(values: Array, bounds: Array, m: int, set_aside: int) -> tuple[Array, Array, Complex]:
     """Critical eigenvalue of interpolated matrices, with its own condition number.
 
     Eigenvectors of the critical multiplier alone come from two steps of inverse iteration; a full
@@ -96,8 +96,8 @@ def _largest(values: Array, bounds: Array, m: int, rigid_body: bool) -> tuple[Ar
     every = np.full((len(values), m), np.nan, dtype=complex)
     finite = np.isfinite(matrix).all(axis=(1, 2))
     every[finite] = np.linalg.eigvals(matrix[finite])
-    if rigid_body:
-        keep = np.argsort(np.abs(every - 1), axis=1)[:, 2:]
+    if set_aside:
+        keep = np.argsort(np.abs(every - 1), axis=1)[:, set_aside:]
         every = np.take_along_axis(every, keep, axis=1)
     which = np.abs(every).argmax(axis=1)[:, None]
     critical = np.take_along_axis(every, which, axis=1)[:, 0]

@@ -28,7 +28,7 @@ class OwnFamily:
     x_name: str
     y_name: str
     middle: tuple[float, float]
-    rigid_body: bool = False
+    set_aside: int = 0
     affordable: ClassVar[int] = 2_000
 
     @property
@@ -117,7 +117,7 @@ class PatchesAlone:
 
     size: int
     period: float
-    rigid_body: bool = False
+    set_aside: int = 0
     affordable: ClassVar[int] = 0
 
     @classmethod

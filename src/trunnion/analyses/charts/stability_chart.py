@@ -200,7 +200,7 @@ def _pointwise(
             )
         else:
             values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
-        found = judge(values, bounds, family.size, family.rigid_body)
+        found = judge(values, bounds, family.size, family.set_aside)
         grid = Pixels(found.radius[None], found.error[None], found.critical[None], found.verdict[None])
         decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
         found = Pixels(grid.radius[0], grid.error[0], grid.critical[0], grid.verdict[0])
@@ -210,7 +210,7 @@ def _pointwise(
             spectral_radius=float(found.radius[0]),
             error_estimate=float(found.error[0]),
             verdict=Verdict(int(found.verdict[0])),
-            multipliers=multipliers_of(values[:, 0], family.size, family.rigid_body),
+            multipliers=multipliers_of(values[:, 0], family.size, family.set_aside),
             interpolated=patch is not None,
         )
 

@@ -21,7 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.results.chart import StabilityChart
+from trunnion.results.chart import StabilityChart, require_pixels
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
@@ -151,6 +151,8 @@ def stable_limit(
         raise InputError(
             "must be two or more positive numbers", key="speeds", remedy="tn.rpm(np.linspace(300, 3000, 200))"
         )
+    if isinstance(scan, int) and scan > 0:
+        require_pixels(len(speed), scan + 1)
     across = ("speed", float(speed.min()), float(speed.max()), 2)
     chart = stability_chart(line, across, (parameter, low, high, scan + 1), tolerance=tolerance, progress=progress)
     return limit_of_chart(chart, speed)

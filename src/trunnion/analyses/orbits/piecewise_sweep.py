@@ -26,6 +26,7 @@ from trunnion.analyses.orbits.piecewise_orbit import (
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+from trunnion.numerics.memory import require_memory
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS, MOST_EVENTS, kernel
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
+BYTES_A_STEP, BYTES_A_START = 128.0, 64.0
+"""What one frequency holds for each number of the state, and what one start of a basin holds."""
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 
 
@@ -170,6 +173,10 @@ def sweep(
         raise InputError("must be positive numbers", key="frequencies", value=np.asarray(frequencies).tolist())
     if not 1 <= least <= most:
         raise InputError("must be from 1, and no less than least", key="least, most", value=[least, most])
+    line = oscillator.line if isinstance(oscillator, Assembly) else oscillator
+    states = 2 * len(line.elements) if isinstance(line, Driveline) else 2
+    needed = BYTES_A_STEP * states * len(omegas)
+    require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
     if isinstance(oscillator, Driveline | Assembly):
         return exact_sweep(
             oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same, measured=MEASURED
@@ -271,6 +278,10 @@ def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: Array
     """
     refuse_unbounded(oscillator)
     x, v = (np.atleast_1d(np.asarray(a, dtype=float)) for a in (position, velocity))
+    require_memory(
+        BYTES_A_START * float(len(x)) * len(v),
+        key="position, velocity", value=f"{len(x)} x {len(v)}", remedy="ask for fewer starts",
+    )  # fmt: skip
     starts = np.ascontiguousarray(np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2))
     k, tables = kernel(), oscillator.regimes
     ends, counts = np.empty_like(starts), np.zeros(len(starts), dtype=np.int64)

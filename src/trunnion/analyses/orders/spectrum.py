@@ -30,6 +30,7 @@ from trunnion.equations.exciters import (
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import Topology, require_period
+from trunnion.numerics.memory import require_memory
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -118,6 +119,8 @@ def order_spectrum(
         chunk = speed[done : done + case.batch]
         parts.append(case.solved(chunk))
         done += len(chunk)
+        if len(parts) == 1:
+            _require_room(assembly, parts[0][0], len(speed))
         if progress:
             progress(done / len(speed))
     channels, n = channels_of(assembly.topology), assembly.topology.size
@@ -143,6 +146,15 @@ def order_spectrum(
         damping=case.coefficients(speed[:1]).damping[0],
         loss=case.coefficients(speed[:1]).loss[0],
     )
+
+
+def _require_room(assembly: Assembly, first: _Sum, speeds: int) -> None:
+    """Refuse so many speeds that what the first of them show of the orders would not fit."""
+    numbers = len(set(first.amplitude) | set(first.base)) * (
+        channels_of(assembly.topology).count + assembly.topology.size
+    )
+    # Complex, and held twice while the parts are put together.
+    require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
 
 
 class _Case:

@@ -282,21 +282,25 @@ def _companion(e, roots):  # type: ignore[no-untyped-def]
         roots[i] = found[i]
 
 
-def without_ones(values: Array, bounds: Array) -> tuple[Array, Array]:
-    """Coefficients (m − 2, count) of the polynomial divided by (σ − 1)², and their bounds.
+def without_ones(values: Array, bounds: Array, count: int) -> tuple[Array, Array]:
+    """Coefficients of the polynomial divided by (σ − 1)^count, and their bounds; ``count`` 1 or 2.
 
-    A line that turns freely has that pair exactly. Near a whole number of elastic cycles four roots meet at 1, and
-    no choice among computed roots tells them apart.
+    A line that turns freely has as many multipliers that are exactly 1. Near a whole number of elastic cycles further
+    ones come there, and no choice among computed roots tells them apart. An odd number of coefficients gets a root 0
+    beside, which is never the largest: the result is (m − 2, points) for a pair and (m, points), the last 0, for one.
     """
-    m, count = values.shape
+    m, points = values.shape
     signs = (-1.0) ** np.arange(m + 1)[:, None]
-    quotient = signs * np.concatenate([np.ones((1, count)), values])
-    off = np.concatenate([np.zeros((1, count)), bounds])
-    for _ in range(2):
+    quotient = signs * np.concatenate([np.ones((1, points)), values])
+    off = np.concatenate([np.zeros((1, points)), bounds])
+    for _ in range(count):
         quotient, off = np.cumsum(quotient, axis=0), np.cumsum(off, axis=0)
-    left, uncertain = (signs * quotient)[1 : m - 1], off[1 : m - 1]
+    left, uncertain = (signs * quotient)[1 : m - count + 1], off[1 : m - count + 1]
     # Both have the same product of roots, which is known best.
     left[-1:], uncertain[-1:] = values[m - 1 : m], bounds[m - 1 : m]
+    if count % 2:
+        zero = np.zeros((1, points))
+        left, uncertain = np.concatenate([left, zero]), np.concatenate([uncertain, zero])
     return np.ascontiguousarray(left), np.ascontiguousarray(uncertain)
 
 
