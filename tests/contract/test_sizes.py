@@ -7,6 +7,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.numerics import memory
+from trunnion.systems.reference import duffing
 
 HUGE = 99_999_999
 LINE = tn.Driveline(
@@ -14,14 +15,7 @@ LINE = tn.Driveline(
      tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=0.5)]
 )  # fmt: skip
 SPEED, ANGLE = ("speed", 20.0, 80.0), ("HookeJoint 1.angle", 0.0, 0.5)
-PLAY = tn.PiecewiseOscillator(stiffness=1.0, damping=0.05, gap=0.5, force=1.0, frequency=1.0)
-
-
-def pendulum() -> tn.System:
-    return tn.System(
-        lambda t, x, a, w: [x[1], -np.sin(x[0]) - 0.1 * x[1] + a * np.cos(w * t)],
-        states=("x", "v"), parameters={"a": 0.5, "w": 1.0}, period=lambda p: 2 * np.pi / p["w"],
-    )  # fmt: skip
+PLAY = tn.PiecewiseOscillator.gap(half_gap=0.5, damping=0.05, force=1.0, frequency=1.0)
 
 
 def chart() -> tn.StabilityChart:
@@ -37,10 +31,13 @@ HUGE_ONES = {
     "stable_limit": (lambda: tn.stable_limit(LINE, "HookeJoint 1.angle", [20.0, 30.0], scan=HUGE), "chart.points"),
     "sweep_speeds": (lambda: tn.sweep_speeds(LINE, 10.0, 20.0, HUGE), "points"),
     "order_response": (lambda: tn.order_response(LINE, np.linspace(20, 80, 4_000_000)), "speeds"),
-    "lyapunov_map": (lambda: tn.lyapunov_map(pendulum(), ("a", 0, 1, 50_000), ("w", 1, 2, 50_000)), "x, y"),
-    "lyapunov_sweep": (lambda: tn.lyapunov_sweep(pendulum(), "a", (0, 1, HUGE)), "a"),
-    "bifurcation_diagram": (lambda: tn.bifurcation_diagram(pendulum(), "a", (0, 1, 100), points=HUGE), "points"),
-    "poincare_map": (lambda: tn.poincare_map(pendulum(), HUGE), "points"),
+    "lyapunov_map": (
+        lambda: tn.lyapunov_map(duffing(), ("force", 0, 1, 50_000), ("frequency", 1, 2, 50_000)),
+        "x, y",
+    ),
+    "lyapunov_sweep": (lambda: tn.lyapunov_sweep(duffing(), "force", (0, 1, HUGE)), "force"),
+    "bifurcation_diagram": (lambda: tn.bifurcation_diagram(duffing(), "force", (0, 1, 100), points=HUGE), "points"),
+    "poincare_map": (lambda: tn.poincare_map(duffing(), HUGE), "points"),
     "sweep": (lambda: tn.sweep(PLAY, np.full(HUGE // 10, 1.0)), "frequencies"),
     "basins": (lambda: tn.basins(PLAY, np.linspace(-1, 1, 9000), np.linspace(-1, 1, 9000)), "position, velocity"),
 }
