@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import trunnion as tn
+from trunnion.analyses.linear import speed_sweep
 
 
 def pair(angle: float = 0.0, damping: float = 4.0, **load: object) -> tn.Driveline:
@@ -137,3 +138,15 @@ def test_what_leaves_the_drive_open_is_refused() -> None:
         tn.harmonic_balance(pair(0.3), "speed", 60.0, 70.0)
     with pytest.raises(tn.InputError, match=r"periods"):
         tn.periodic_branch(pair(0.3), "speed", 60.0, 70.0, periods=2)
+
+
+def test_sweeps_behind_a_reduction_hold_what_twice_the_harmonics_give(monkeypatch) -> None:
+    line = tn.Driveline(
+        [tn.Disk(inertia=2.0, drive_share=1.0), tn.Ratio(ratio=3.5), *pair(0.2, load_torque=50.0).elements]
+    )
+    line = line.replace("Disk 2", drive_share=None)
+    few = tn.speed_sweep(line, [150.0, 300.0])
+    usual = speed_sweep._harmonics
+    monkeypatch.setattr(speed_sweep, "_harmonics", lambda assembly: 2 * usual(assembly))
+    many = tn.speed_sweep(line, [150.0, 300.0])
+    np.testing.assert_allclose(few.torque_amplitude, many.torque_amplitude, rtol=1e-6)

@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+FINE = 4096
+"""Times in a period at which extremes are looked for: good to 3e-7 h² of the harmonic h."""
 FEWEST, MOST = 6, 14
 """Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
 MESH_HARMONICS = (5, 4, 3, 2)
@@ -224,11 +226,20 @@ def _amplitudes(
     coarse = shaft_motion(
         topo, coefficients, tau, *_periodic(matrices, coefficients.speed, period, max(1, 2 * harmonics // 3), border)
     )[1]
-    amplitude = np.ptp(torque, axis=1) / 2
+    amplitude = _span(torque) / 2
     largest = np.maximum(amplitude.max(axis=1), 1e-300)
-    cut_off = np.abs(np.ptp(coarse, axis=1) / 2 - amplitude).max(axis=1) / largest
+    cut_off = np.abs(_span(coarse) / 2 - amplitude).max(axis=1) / largest
     rotation = joint_rotation(topo, coefficients, tau, x).max(axis=1, initial=0.0)
-    return np.ptp(twist, axis=1) / 2, amplitude, torque.mean(axis=1), rotation, cut_off
+    return _span(twist) / 2, amplitude, torque.mean(axis=1), rotation, cut_off
+
+
+def _span(curves: Array) -> Array:
+    """Largest minus smallest value of periodic ``curves`` (case, time, curve), between their samples too: as Fourier
+    series they are evaluated at FINE times at least."""
+    times = curves.shape[1]
+    fine = times * int(np.ceil(FINE / times))
+    spectrum = np.fft.rfft(curves, axis=1) * (fine / times)
+    return np.asarray(np.ptp(np.fft.irfft(spectrum, fine, axis=1), axis=1))
 
 
 @dataclass(frozen=True)
