@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.linear import periodic_linear_system
 
 
 def line(stiffness: list[float], damping: list[float], inertia: list[float], angle: list[float], fork: list[float]):
@@ -26,45 +28,125 @@ def test_one_tongue_has_one_name(speed: float) -> None:
     assert str(tn.stability(steep, speed).resonance) == "sum (ω₂+ω₄)/2"
 
 
-def participation(found: tn.Stability, modes: tn.NaturalFrequencies, mass: np.ndarray) -> np.ndarray:
-    """Shares of the energy by mode of the straight line, of the critical Floquet mode where the period begins."""
-    n = len(mass)
-    shapes = modes.shape / np.sqrt(np.einsum("im,i,im->m", modes.shape, mass, modes.shape))
-    state = found.floquet_modes[:, 0]
-    q, rate = shapes.T @ (mass * state[:n]), shapes.T @ (mass * state[n:]) * found.speed
-    held = np.abs(rate) ** 2 + np.abs(modes.frequency * q) ** 2
-    return np.asarray(held / held.sum())
+class Chain:
+    """The same line from Hooke's formula alone: ½ k (δ_e − η δ_{e−1})² about the motion of rigid shafts."""
+
+    def __init__(self, k: np.ndarray, c: np.ndarray, inertia: np.ndarray, angle: np.ndarray, fork: np.ndarray) -> None:
+        self.k, self.c, self.inertia, self.angle, self.fork = k, c, inertia, angle, fork
+
+    def line(self) -> tn.Driveline:
+        return line(*(list(map(float, part)) for part in (self.k, self.c, self.inertia, self.angle, self.fork)))
+
+    def matrices(self, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Σ k b bᵀ, Σ c b bᵀ and Σ c b b′ᵀ (time, n, n), b being the elongation by the rotations."""
+        n, turn, speed = len(self.inertia), tau + self.fork[0], np.ones_like(tau)
+        parts = np.zeros((3, len(tau), n, n))
+        for e in range(n):
+            b, slope = np.zeros((len(tau), n)), np.zeros((len(tau), n))
+            b[:, e] = 1
+            if e:
+                beta = self.angle[e - 1]
+                below = 1 - np.sin(beta) ** 2 * np.cos(turn) ** 2
+                eta = np.cos(beta) / below
+                b[:, e - 1] = -eta
+                slope[:, e - 1] = eta * np.sin(beta) ** 2 * np.sin(2 * turn) / below * speed
+                turn = np.arctan2(np.sin(turn), np.cos(turn) * np.cos(beta)) + np.pi / 2 + self.fork[e]
+                speed = speed * eta
+            parts[0] += self.k[e] * b[:, :, None] * b[:, None, :]
+            parts[1] += self.c[e] * b[:, :, None] * b[:, None, :]
+            parts[2] += self.c[e] * b[:, :, None] * slope[:, None, :]
+        return parts[0], parts[1], parts[2]
+
+    def modes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies and shapes of the mean stiffness, of unit modal mass."""
+        root = np.sqrt(self.inertia)
+        mean = self.matrices(np.pi * np.arange(512) / 512)[0].mean(0)
+        square, shape = np.linalg.eigh(mean / root[:, None] / root)
+        return np.sqrt(square), shape / root[:, None]
+
+    def participation(self, speeds: np.ndarray) -> list[tuple[float, np.ndarray]]:
+        """Of the mode that grows fastest at each speed: |multiplier| and how far every mode takes part in it.
+
+        Right and left vector of the multiplier are carried over the period, r(τ) = Φ r and l(τ) = l Φ⁻¹; in modal
+        places and rates l_m r_m add up to 1 at every τ. What is shaken beside its own frequency and takes no part in
+        the growth has mean 0: in an undamped line this is Krein's action, and the modes of a sum share it equally.
+        """
+        n, count = len(self.inertia), len(speeds)
+        frequency, shape = self.modes()
+        steps = 128 * int(np.ceil(max(256, 12 * np.pi * frequency[-1] / speeds.min()) / 128))
+        h, omega = np.pi / steps, speeds[:, None, None]
+        stiffness, damping, slip = self.matrices(h * np.arange(2 * steps + 1) / 2)
+        inertia = self.inertia[:, None]
+
+        def rate(i: int) -> np.ndarray:
+            a = np.zeros((count, 2 * n, 2 * n))
+            a[:, :n, n:] = np.eye(n)
+            a[:, n:, :n] = -(stiffness[i] / omega**2 + slip[i] / omega) / inertia
+            a[:, n:, n:] = -damping[i] / omega / inertia
+            return a
+
+        carried, path = np.tile(np.eye(2 * n), (count, 1, 1)), []
+        for m in range(steps):
+            if m % (steps // 128) == 0:
+                path.append(carried)
+            first, middle, last = rate(2 * m), rate(2 * m + 1), rate(2 * m + 2)
+            s1 = first @ carried
+            s2 = middle @ (carried + h / 2 * s1)
+            s3 = middle @ (carried + h / 2 * s2)
+            carried = carried + h / 6 * (s1 + 2 * s2 + 2 * s3 + last @ (carried + h * s3))
+        modal = np.kron(np.eye(2), shape.T * self.inertia)
+        found = []
+        for b in range(count):
+            values, vectors = np.linalg.eig(carried[b])
+            i, along = int(np.abs(values).argmax()), np.stack(path)[:, b]
+            left = np.linalg.inv(vectors)[i] @ np.linalg.inv(along) @ np.linalg.inv(modal)
+            share = np.mean(left * (along @ vectors[:, i] @ modal.T), axis=0)
+            found.append((float(np.abs(values[i])), np.abs((share[:n] + share[n:]).real)))
+        return found
 
 
-def check_names(points: int) -> None:
-    rng = np.random.default_rng(1)
-    seen = unnamed = 0
+def random_chain(rng: np.random.Generator) -> Chain:
+    n = int(rng.integers(2, 5))
+    return Chain(
+        10 ** rng.uniform(3, 5, n), 10 ** rng.uniform(-2, -0.5, n), 10 ** rng.uniform(-1.5, 0.2, n),
+        np.deg2rad(rng.uniform(20, 45, n - 1)), rng.uniform(0, 3, n),
+    )  # fmt: skip
+
+
+def names_against_participation(points: int, seed: int) -> tuple[int, int, int]:
+    """Unstable points, those without a name, and those whose name a mode that takes more part contradicts."""
+    rng = np.random.default_rng(seed)
+    seen = unnamed = contradicted = 0
     while seen < points:
-        n = int(rng.integers(2, 5))
-        inertia = 10 ** rng.uniform(-1.5, 0.2, n)
-        case = line(
-            list(10 ** rng.uniform(3, 5, n)), list(10 ** rng.uniform(-2, -0.5, n)), list(inertia),
-            list(np.deg2rad(rng.uniform(20, 45, n - 1))), list(rng.uniform(0, 3, n)),
-        )  # fmt: skip
-        modes = tn.natural_frequencies(case)
-        for speed in rng.uniform(0.3, 1.2, 6) * rng.choice(modes.frequency, 6):
-            found = tn.stability(case, float(speed))
-            if found.verdict.name != "UNSTABLE":
+        chain = random_chain(rng)
+        frequency = chain.modes()[0]
+        speeds = rng.uniform(0.3, 1.2, 12) * rng.choice(frequency, 12)
+        speeds = speeds[speeds > frequency[-1] / 60]
+        assembly = assemble(chain.line())
+        for speed, (radius, share) in zip(speeds, chain.participation(speeds) if len(speeds) else [], strict=True):
+            if radius < 1.0005:
                 continue
+            # The equations of the line without its forced response, which takes longer than all the rest.
+            found = tn.stability(periodic_linear_system(assembly, assembly.table(1, float(speed))))
+            assert found.spectral_radius == pytest.approx(radius, rel=1e-3)
             seen += 1
             if found.resonance is None:
                 unnamed += 1
                 continue
-            share = participation(found, modes, inertia)
             named = [m - 1 for m in found.resonance.modes]
-            # At one instant and by modes of the straight line, so roughly: by energy, or by energy over frequency.
-            # The modes of a sum hold energies as their frequencies.
-            action = share / modes.frequency / np.sum(share / modes.frequency)
-            least = 0.1 * modes.frequency[named] / modes.frequency[named].sum()
-            held = max(share[named].sum(), action[named].sum())
-            assert held > 0.4 and np.all(share[named] > least), (str(found.resonance), share)
-    assert unnamed <= 0.05 * seen
+            others = np.delete(share, named)
+            # What takes part by less than a tenth of the whole does not decide a name.
+            contradicted += share[named].min() < others.max(initial=0) - 0.1 * share.sum()
+    return seen, unnamed, contradicted
 
 
 def test_names_are_those_of_the_modes_that_grow() -> None:
-    check_names(25)
+    seen, unnamed, contradicted = names_against_participation(40, 4)
+    assert contradicted == 0 and unnamed < 0.1 * seen
+
+
+@pytest.mark.slow
+def test_names_are_those_of_the_modes_that_grow_at_two_thousand_points() -> None:
+    """Of 703 others 3 were contradicted and 5.7 % not named, where content is mixed or a slow mode grows aside."""
+    seen, unnamed, contradicted = names_against_participation(2000, 5)
+    assert contradicted <= 0.01 * seen and unnamed < 0.075 * seen

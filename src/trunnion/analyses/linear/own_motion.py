@@ -52,15 +52,16 @@ class OwnMotion:
         turn = self.speed * orbit.period
         mean = line_matrices(topo, co, turn * np.arange(SAMPLES) / SAMPLES)
         highest = float(frequencies(aligned_matrices(topo, co), free=True).max()) * orbit.period / (2 * np.pi)
+        scale = np.repeat([1.0, 1 / self.speed], topo.size)
         times = orbit.period * np.linspace(0, 1, max(SAMPLES, PER_CYCLE * int(np.ceil(highest))) + 1)
         block = np.stack([orbit.start, start.real, start.imag])
-        samples = np.empty((len(times) - 1, topo.size), dtype=complex)
+        samples = np.empty((len(times) - 1, 2 * topo.size), dtype=complex)
         for i, (now, after) in enumerate(zip(times[:-1], times[1:], strict=True)):
-            samples[i] = block[1, : topo.size] + 1j * block[2, : topo.size]
+            samples[i] = (block[1] + 1j * block[2]) * scale
             regime = system.regime_at(now, block[0])
             block = integrate(system.equations, now, after, block, regime=regime, tolerance=1e-8, dense=False).final
         exponent = np.log(multiplier) / turn
-        return ModeMotion(samples, exponent, turn, mean.mass[0].mean(0), mean.stiffness[0].mean(0))
+        return ModeMotion(samples, exponent, turn, mean.mass[0].mean(0), mean.stiffness[0].mean(0) / self.speed**2)
 
 
 def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -> OwnMotion:

@@ -268,12 +268,12 @@ def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
 
 def _mode_motion(system: PeriodicLinearSystem, run: Propagation, multiplier: complex, start: Complex) -> ModeMotion:
     """How the Floquet mode that is ``start`` (2n,) at τ = 0 moves over the period."""
-    n, at_rest = system.size, run.states(np.zeros(2 * system.size))
+    at_rest = run.states(np.zeros(2 * system.size))
     parts = [run.states(np.ascontiguousarray(part)) - at_rest for part in (start.real, start.imag)]
     mean = system.coefficients(run.tau[: -1 : max(1, len(run.tau) // 64)])
-    displacement = (parts[0] + 1j * parts[1])[:-1, :n]
+    states = (parts[0] + 1j * parts[1])[:-1]
     exponent = np.log(complex(multiplier)) / system.period
-    return ModeMotion(displacement, exponent, system.period, mean.mass.mean(0), mean.stiffness.mean(0))
+    return ModeMotion(states, exponent, system.period, mean.mass.mean(0), mean.stiffness.mean(0))
 
 
 def _judge(
