@@ -11,10 +11,13 @@ sidebands turn its sign, which equations in time cannot do.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.orders.straight import SINGULAR
+from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 
@@ -23,16 +26,56 @@ Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+NARROW = 1e-2
+"""Share of the speed below which a range is too narrow to be interpolated from its ends."""
 ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
 
 
-class HillBlocks:
-    """Fourier coefficients of a batch of lines over one period; solves any carrier and any span of harmonics."""
+@dataclass(frozen=True)
+class Nodes:
+    """Speeds at which the equations are written out, and ``weights`` (case, node) that carry them to every case.
 
-    def __init__(self, topo: Topology, matrices: LineMatrices, loss: Array, step: Array) -> None:
-        """``step`` (case,) is bΩ [rad/s]; loss (case, compliance) [N m/rad]."""
-        self.topo, self.loss, self.step = topo, loss, step
+    None where each case is its own node.
+    """
+
+    speed: Array
+    weights: Array | None
+
+    def everywhere(self, values: Complex) -> Complex:
+        """Values (node, …) of second degree in the speed, at every case (case, …)."""
+        if self.weights is None:
+            return values
+        flat = np.ascontiguousarray(values).reshape(len(values), -1)
+        if np.iscomplexobj(flat):  # weights are real: half the multiplications
+            found = (self.weights @ flat.view(float)).view(complex)
+        else:
+            found = self.weights @ flat
+        return np.asarray(found.reshape(-1, *values.shape[1:]))
+
+
+def nodes_of(speed: Array, co: LineCoefficients) -> Nodes:
+    """Three nodes where the coefficients ``co`` of ``speed`` (case,) are the same at all speeds, else all."""
+    parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, co.angle, co.shift, co.loss)
+    constant = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in parts)
+    low, high = speed.min(), speed.max()
+    if not constant or len(speed) <= 3 or high - low < NARROW * high or np.any(co.viscous) or np.any(co.quadratic):
+        return Nodes(speed, None)
+    nodes = np.array([low, (low + high) / 2, high])
+    a, b, c = (speed[:, None] - nodes).T / (high - low)
+    return Nodes(nodes, np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1))
+
+
+class HillBlocks:
+    """Fourier coefficients of a batch of lines over one period; solves any carrier and any span of harmonics.
+
+    Where nothing but the speed varies from case to case, every matrix is a polynomial of second degree in it: three
+    lines, at ``nodes`` of the speed, then stand for all cases.
+    """
+
+    def __init__(self, topo: Topology, matrices: LineMatrices, loss: Array, step: Array, nodes: Nodes) -> None:
+        """``step`` (node,) is bΩ [rad/s]; loss (node, compliance) [N m/rad]; ``matrices`` at the nodes."""
+        self.topo, self.loss, self.step, self.nodes = topo, loss, step, nodes
         self.times = matrices.mass.shape[1]
         self.mass, self.damping, self.stiffness, self.ratio = (
             np.fft.fft(part, axis=1) / self.times
@@ -42,14 +85,14 @@ class HillBlocks:
         self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
 
     def solve(self, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
-        """X (case, h, n) at ``harmonics`` (h,) of G (case, h, n); ``carrier`` (case,) is ω₀ [rad/s].
+        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n); ``carrier`` (node,) is ω₀ [rad/s].
 
         Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
-        cases, count, n = right.shape
+        count, n = right.shape[1:]
         frequency = carrier[:, None] + harmonics * self.step[:, None]
-        matrix = np.zeros((cases, count, n, count, n), dtype=complex)
+        matrix = np.zeros((len(right), count, n, count, n), dtype=complex)
         apart = (harmonics[:, None] - harmonics[None, :]) % self.times
         for d in np.intersect1d(apart, np.flatnonzero(self.kept)):
             rows, columns = np.nonzero(apart == d)
@@ -58,7 +101,8 @@ class HillBlocks:
             matrix[:, rows, :, columns, :] = block
         if self.loss.any():
             self._add_loss(matrix, apart, np.sign(frequency))
-        inner = np.flatnonzero(~rim)
+        matrix, right = self.nodes.everywhere(matrix), self.nodes.everywhere(right)
+        cases, inner = len(right), np.flatnonzero(~rim)
         inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
         size = len(inner) * n
         x = np.zeros((cases, count, n), dtype=complex)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.orders.channels import Channels, channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
-from trunnion.analyses.orders.hill import HillBlocks
+from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
 from trunnion.analyses.orders.straight import straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
@@ -167,6 +167,7 @@ class _Case:
         self.row = assembly.table(1)[0]
         self.varies = bent(assembly) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
+        self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         self.reach = _reach(one.angle)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         if self.varies:
@@ -233,32 +234,36 @@ class _Case:
         return total
 
     def _bent(self, speed: Array, reach: int) -> tuple[_Sum, Array]:
-        topo, table, co = self.topo, self._table(speed), self.coefficients(speed)
-        cycles = 1 / self.turns
+        topo, cycles = self.topo, 1 / self.turns
+        every = self.coefficients(speed)
+        nodes = Nodes(speed, None) if self.loss_in_time else nodes_of(speed, every)
+        table, co = self._table(nodes.speed), self.coefficients(nodes.speed)
         groups, layers, times = self._plan(reach)
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
-        matrices, base = line_matrices(topo, co, tau), self._base(speed, co, tau)
-        step = float(cycles) * speed
-        blocks = HillBlocks(topo, matrices, co.loss, step)
+        matrices, base = line_matrices(topo, co, tau), self._base(nodes.speed, co, tau)
+        step = float(cycles) * nodes.speed
+        blocks = HillBlocks(topo, matrices, co.loss, step, nodes)
+        alike = slice(0, 1) if nodes.weights is not None else slice(None)  # ratios do not depend on the speed
+        ratio, relative = matrices.ratio[alike], base.relative[alike]
         places = channels_of(topo)
         total = _Sum(len(speed), places.count, topo.size)
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in groups:
-            carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
+            carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * nodes.speed
             h, rim = group.harmonics(layers, reach)
             nu = carrier[:, None] + h * step[:, None]
             right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
-            least = np.maximum(least, 1e-6 * np.abs(right).max(axis=(1, 2)))
+            least = np.maximum(least, 1e-6 * np.abs(nodes.everywhere(right)).max(axis=(1, 2)))
             x = blocks.solve(carrier, h, rim, right)
-            seen = _seen(topo, x, h, times, matrices, base)
-            seen[..., places.twist] += error
-            self._add_torque(seen, co, nu)
-            self._add_waves(seen, co, h, matrices.wave, own=group.own)
+            seen = _seen(topo, x, h, times, ratio, relative)
+            seen[..., places.twist] += nodes.everywhere(error)
+            self._add_torque(seen, every, nodes.everywhere(nu))
+            self._add_waves(seen, every, h, matrices.wave[alike], own=group.own)
             last = np.maximum(last, np.abs(seen[:, rim, places.torque]).max(axis=(1, 2)))
             for j, harmonic in enumerate(h):
                 total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
-        self._add_base(total, base, cycles, max(layers))
-        self._add_static(total, co)
+        self._add_base(total, base.rotation[alike], cycles, max(layers))
+        self._add_static(total, every)
         largest = np.max([np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()], axis=0)
         largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
@@ -342,26 +347,24 @@ class _Case:
         total.mean[:, places.twist] += co.twist
         total.mean[:, places.torque] += co.torque
 
-    def _add_base(self, total: _Sum, base: BaseOfExcitation, cycles: Fraction, highest: int) -> None:
+    def _add_base(self, total: _Sum, rotation: Array, cycles: Fraction, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
         topo = self.topo
         first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        spectrum = np.fft.rfft(base.rotation[..., first], axis=1) / base.rotation.shape[1]
+        spectrum = np.fft.rfft(rotation[..., first], axis=1) / rotation.shape[1]
         least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
                 total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
 
 
-def _seen(
-    topo: Topology, x: Complex, h: Integers, times: int, matrices: LineMatrices, base: BaseOfExcitation
-) -> Complex:
+def _seen(topo: Topology, x: Complex, h: Integers, times: int, ratio: Array, relative: Array) -> Complex:
     """Channels (case, h, channel) without torque, of the unknowns' harmonics x (case, h, n)."""
     middle = int(h[len(h) // 2])
     spectrum = np.zeros((len(x), times, x.shape[2]), dtype=complex)
     spectrum[:, (h - middle) % times] = x
     grid = np.fft.ifft(spectrum, axis=1) * times
-    seen = motion_channels(topo, grid, matrices.ratio, base.relative)
+    seen = motion_channels(topo, grid, ratio, relative)
     return np.asarray(np.fft.fft(seen, axis=1)[:, (h - middle) % times] / times)
 
 
