@@ -12,6 +12,7 @@ sidebands turn its sign, which equations in time cannot do.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +43,7 @@ class Nodes:
     speed: Array
     weights: Array | None
 
-    def everywhere(self, values: Complex) -> Complex:
+    def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values (node, …) of second degree in the speed, at every case (case, …)."""
         if self.weights is None:
             return values
