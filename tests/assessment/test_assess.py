@@ -19,6 +19,7 @@ from trunnion.analyses.assessment.couplings import frequency_factor
 from trunnion.analyses.assessment.joint_angles import allowed_angle
 from trunnion.analyses.assessment.ship_shafts import barred_range, permissible_stress
 from trunnion.cli import app
+from trunnion.reporting.overview import overview
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
 
@@ -312,3 +313,10 @@ def test_the_command(tmp_path):
     assert content["checks"][0]["speed"] == pytest.approx(125.0 / (2 * math.pi), rel=0.01)
     text = CliRunner().invoke(app, ["assess", str(tmp_path / "line.toml")]).stdout
     assert text.startswith("exceeded: max torque of shaft") and "Hz" in text
+
+
+def test_the_verdict_stands_among_the_findings_of_an_overview():
+    with_limits = two_mass(tn.Limit(of="shaft", max_torque=100.0))
+    first = overview(with_limits, speed=125.0).findings[0]
+    assert str(first).startswith("danger: Limits exceeded: max torque of shaft")
+    assert not any("Limits" in str(f) for f in overview(two_mass(), speed=125.0).findings)

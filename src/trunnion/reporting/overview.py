@@ -22,6 +22,7 @@ from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.reporting.overview_findings import (
+    assessment_findings,
     chart_findings,
     free_findings,
     held_excitation,
@@ -114,6 +115,7 @@ def overview(
         chart = stability_chart(assembly, across, up, progress=progress)
     findings = [
         *(at_speed.findings_in(unit) if at_speed else ()),
+        *assessment_findings(line, (low, high), unit),
         *line_findings(line, speed),
         *(sweep_findings(assembly, sweep, unit) if sweep else ()),
         *resonance_findings(here, (low, high), speed, unit),

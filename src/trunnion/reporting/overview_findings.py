@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.analyses.assessment.assess import assess
+from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.resonance_speeds import Resonance, ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
@@ -40,6 +42,15 @@ def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
         f"{slowest * factor:.4g} {unit} a turn spans hundreds of cycles of its highest mode, resonances of such "
         "high order stay closed, and no chart is drawn.",
     )
+
+
+def assessment_findings(line: Driveline, limits: tuple[float, float], unit: str) -> Iterator[Finding]:
+    """The verdict of ``assess`` over the range, for a line that states limits."""
+    if not line.limits:
+        return
+    judged = assess(line, limits, unit=unit)
+    gravity = {Status.EXCEEDED: Gravity.DANGER, Status.NOT_JUDGED: Gravity.CAUTION}.get(judged.verdict, Gravity.NOTE)
+    yield Finding(gravity, f"Limits {judged.sentence}; trunnion assess shows every check.")
 
 
 def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:

@@ -51,7 +51,7 @@ def assess(
     >>> line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_torque=400.0)])
     >>> judged = tn.assess(line, (90.0, 110.0))
     >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
-    satisfied max torque of shaft 0.68
+    satisfied max torque of shaft 0.129
     """
     if load_case is not None:
         line = line.with_load(load_case)
