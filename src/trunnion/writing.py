@@ -73,6 +73,7 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     target = Path(folder)
     nearest = next(path for path in (target.absolute(), *target.absolute().parents) if path.is_dir())
     sweep(nearest)
+    sweep(target.absolute().parent)  # where a run that was to make the folder may have been killed
     temporary = nearest / _own_prefix()
     made = temporary / NEW
     try:

@@ -106,7 +106,7 @@ class Trial:
         os.kill(child, signal.SIGKILL)
         ended(child)
         self.old_or_new(f"killed after {after:.4f} s")
-        for folder in {Path(name).parent for name in self.results}:
+        for folder in {Path(), *(Path(name).parent for name in self.results)}:
             with writing.written_whole(folder / "next.toml") as temporary:  # the next run
                 temporary.write_bytes(b"\n")
             (folder / "next.toml").unlink()
