@@ -1,20 +1,39 @@
 """numba's ``njit`` with the machine code kept in the package's cache folder, or for this process alone.
 
 numba keeps it beside the source, which an installation by somebody else does not allow, and refuses to
-compile where it finds no place at all. Nothing of that kind stops a computation here: a folder that cannot be
-written and a disk that is full cost the time to compile, and a remark.
+compile where it finds no place at all. It also looks only at a function's own file, not at those of the functions
+that it calls: machine code is therefore kept in a folder named after all sources it may come from. A folder that
+cannot be written and a disk that is full stop nothing here: they cost the time to compile, and a remark.
 """
 
 from __future__ import annotations
 
+import hashlib
+import sys
 from collections.abc import Callable
+from functools import cache as once
+from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 
 import numba
+import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
+
+SOURCES = Path(__file__).parent
+"""The folder below which all functions decorated here stand."""
+
+
+@once
+def digest_of(folder: Path) -> str:
+    """A word for the sources below ``folder`` and for the versions that compile them."""
+    hashed = hashlib.sha256(f"{numba.__version__} {np.__version__} {sys.version}".encode())
+    for path in sorted(folder.rglob("*.py")):
+        hashed.update(path.relative_to(folder).as_posix().encode())
+        hashed.update(path.read_bytes())
+    return hashed.hexdigest()[:16]
 
 
 def njit(
@@ -27,7 +46,7 @@ def njit(
     """As numba's decorator of that name; ``cache`` is a wish."""
 
     def decorate(function: Callable[..., Any]) -> Any:
-        folder = cache_folder("package") if cache else None
+        folder = cache_folder(f"package-{digest_of(SOURCES)}") if cache else None
         made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model)(function)
         if folder is not None:
             _keep_in(str(folder), made)
