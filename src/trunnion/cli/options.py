@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from trunnion.errors import InputError
-from trunnion.results.chart import require_pixels
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
@@ -151,6 +150,8 @@ def read_axis(text: str, assembly: Assembly, unit: str, points: int, key: str) -
 
 def read_points(text: str) -> tuple[int, int]:
     """``200x150``."""
+    from trunnion.results.chart import require_pixels
+
     parts = text.lower().replace("×", "x").split("x")
     if len(parts) != 2:
         raise InputError("is not a size", key="--points", value=text, remedy="write 200x150")
