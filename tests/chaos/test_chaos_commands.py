@@ -57,7 +57,9 @@ def test_double_tripod_and_lines(run) -> None:  # type: ignore[no-untyped-def]
     code, out, _ = run("lyapunov-spectrum", "double-tripod:output", "--set", "damping_ratio=0.02", *words)
     assert code == 0 and json.loads(out)["sum"] == pytest.approx(-2 * 0.02 * 8771.0, rel=1e-4)
     code, out, _ = run("lyapunov-spectrum", "two-shaft-cardan", "--speed", "1.1 rad/s", "--periods", "100", "--json")
-    assert code == 0 and len(json.loads(out)["exponents"]) == 4
+    # So few periods cannot tell exponents of this size from what shear alone may show, and the answer says so.
+    found = json.loads(out)
+    assert code == 1 and found["outcome"] == "not converged" and len(found["exponents"]) == 4
     code, out, _ = run("catalogue", "double-tripod")
     assert code == 0 and "9633.73 rad/s" in out
 

@@ -44,7 +44,6 @@ CASES = [
     (("analyze", "bare-joint.toml"), ("HookeJoint 1: has no inertia", "put a Disk in front of HookeJoint 1")),
     (("natural-frequencies", "bare-joint.toml"), ("HookeJoint 1: has no inertia",)),
     (("stability", "ratio.toml", "-s", "100"), ("Ratio 1.ratio = 3.14159", "teeth_in and teeth_out")),
-    (("stability", "free.toml", "-s", "100"), ("starts free", "nothing drives", "drive_share = 1")),
     (("stability", "line.toml", "--load-case", "clim"), ("load_case = 'clim'", '"climb"')),
     # speeds and units
     (("stability", "line.toml", "--speed", "0"), ("--speed = '0': must be positive",)),

@@ -110,7 +110,7 @@ def drivelines(draw):
         )
     sprung = [n for n, e in zip(line.names, elements, strict=True) if isinstance(e, Shaft)]
     if sprung and draw(st.booleans()):
-        margin = draw(st.floats(0, 0.99))
+        margin = draw(st.just(0.0) | st.floats(1e-9, 0.99))
         rest["limits"] = [
             Limit(of=draw(st.sampled_from(sprung)), vibratory_torque=draw(positive), margin=margin),
             Limit(of="Shaft *", max_torque=draw(positive), max_twist=draw(positive)),

@@ -149,7 +149,6 @@ REFUSED = [
     (lambda: tn.periodic_branch(tn.reference_system("lorenz"), "rho", 1.0, 2.0), "autonomous"),
     (lambda: tn.periodic_branch(two_shafts(), "angle", 1.0, 2.0, speed=50.0), "not a parameter"),
     (lambda: tn.periodic_branch(two_shafts(), "HookeJoint 1.angle", 0.1, 0.2), "speed"),
-    (lambda: tn.periodic_branch(tn.Driveline(two_shafts().elements[2:]), "speed", 1.0, 2.0), "starts free"),
 ]
 
 

@@ -10,7 +10,7 @@ from gears import HALF_GAP, dead_zone, gear_pair
 
 import trunnion as tn
 from trunnion.analyses.orbits import harmonic_balance as balance_module
-from trunnion.analyses.orbits import periodic_branch as branch_module
+from trunnion.analyses.orbits import shooting as branch_module
 from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response, methods_of
 from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
 from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs

@@ -151,13 +151,13 @@ def response_findings(
     if not grave[which, shaft] > 0:
         return
     r, at = forced[which], float(places[which])
-    how = f"±{torque[which, shaft]:.4g} N·m" if sweep.linear[which] else "beyond linear theory"
+    how = f"to ±{torque[which, shaft]:.4g} N·m" if sweep.linear[which] else "beyond linear theory"
     outside = max(r.speed / high, low / r.speed) - 1
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
     yield Finding(
         Gravity.CAUTION,
         f"Joints force {r.formula} at {_speed(r.speed, unit)}{side}: by linear theory the torque of "
-        f"{sweep.shafts[shaft]} rises to {how} at {_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual one.",
+        f"{sweep.shafts[shaft]} rises {how} at {_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual one.",
     )
 
 

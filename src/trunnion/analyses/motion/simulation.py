@@ -82,9 +82,10 @@ class Simulation(Result):
     @cached_property
     def range(self) -> tuple[Array, Array]:
         """Smallest and largest value (n,) of every state from the first to the last of ``time``: found on the dense
-        output, or without it among the steps."""
+        output; among the steps without it, or where a right-hand side that fails left it without numbers."""
         run = self.trajectory
-        if not len(run.coefficients) or len(self.time) < 2:
+        dense = len(run.coefficients) > 0 and bool(np.isfinite(run.coefficients).all())
+        if not dense or len(self.time) < 2:
             return self.state.min(axis=0), self.state.max(axis=0)
         found = extremes_in(run.at, run.time_of_state, self.time[[0, -1]]).of(0)
         return found.low, found.high

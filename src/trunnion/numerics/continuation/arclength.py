@@ -148,11 +148,18 @@ def follow(
 
 
 def correct(
-    equations: Equations, predicted: Array, across: Array, *, scale: Array, tolerance: float = 1e-10
+    equations: Equations,
+    predicted: Array,
+    across: Array,
+    *,
+    scale: Array,
+    tolerance: float = 1e-10,
+    to_rounding: bool = False,
 ) -> CurvePoint | None:
     """The point of the curve in the plane through ``predicted`` whose normal is ``across`` (scaled units).
 
-    None where Newton's method does not get there. The tangent points to the side of ``across``.
+    None where Newton's method does not get there, or with ``to_rounding`` at least as far as rounding lets it. The
+    tangent points to the side of ``across``.
     """
     y = np.asarray(predicted, dtype=float) / scale
     target, before = float(across @ y), np.inf
@@ -173,8 +180,8 @@ def correct(
             return None
         y, before = y + change, size
         # Where the equations are ill-conditioned, steps stop shrinking at what the rounding of the residual makes.
-        settled = size < ILL_CONDITIONED and np.linalg.norm(residual) < ROUNDING * (1 + np.linalg.norm(y))
-        if size < tolerance or settled:
+        rounded = size < ILL_CONDITIONED and np.linalg.norm(residual) < ROUNDING * (1 + np.linalg.norm(y))
+        if size < tolerance or (to_rounding and rounded):
             return CurvePoint(y * scale, tangent / np.linalg.norm(tangent), count + 1)
     return None
 
@@ -202,7 +209,8 @@ def locate(
 
     def at(share: float) -> float:
         if share not in tried:
-            found = correct(equations, a.z + share * (b.z - a.z), across, scale=scale, tolerance=tolerance)
+            start = a.z + share * (b.z - a.z)
+            found = correct(equations, start, across, scale=scale, tolerance=tolerance, to_rounding=True)
             if found is None:
                 raise _LostError
             tried[share] = test(found), found
