@@ -54,7 +54,9 @@ def test_refused_before_anything_is_allocated(name: str) -> None:
 
 
 def test_what_fits_is_taken() -> None:
-    memory.require_memory(memory.MOST, key="points", value=1, remedy="")
+    assert memory.require_memory(memory.MOST, key="points", value=1, remedy="") is None
+    with pytest.raises(tn.InputError, match="would need"):
+        memory.require_memory(1.01 * memory.MOST, key="points", value=1, remedy="")
 
 
 @pytest.mark.parametrize(("size", "said"), [(2048, "2 kB"), (3.25 * 2**30, "3.25 GB"), (5e17, "444 PB")])
