@@ -19,7 +19,7 @@ def reproduce(
         str,
         typer.Argument(
             metavar="NAME",
-            help="two-shaft-cardan, three-shaft-cardan, bicardan-elastic, double-tripod or gear-rattle; or all.",
+            help="two-shaft-cardan, bicardan-elastic, three-shaft-cardan, double-tripod or gear-rattle; or all.",
         ),
     ],
     folder: Annotated[

@@ -11,8 +11,8 @@ from trunnion.studies.result import Reproduction, Reproductions
 
 PAPERS = {
     "two-shaft-cardan": "trunnion.studies.two_shaft_cardan.study:two_shaft_cardan",
-    "three-shaft-cardan": "trunnion.studies.three_shaft_cardan.study:three_shaft_cardan",
     "bicardan-elastic": "trunnion.studies.bicardan_elastic.study:bicardan_elastic",
+    "three-shaft-cardan": "trunnion.studies.three_shaft_cardan.study:three_shaft_cardan",
     "double-tripod": "trunnion.studies.double_tripod.study:double_tripod",
     "gear-rattle": "trunnion.studies.gear_rattle.study:gear_rattle",
 }
@@ -39,7 +39,7 @@ def reproduce(
 
     Parameters
     ----------
-    name : of the catalogue: "two-shaft-cardan", "three-shaft-cardan", "bicardan-elastic", "double-tripod" or
+    name : of the catalogue: "two-shaft-cardan", "bicardan-elastic", "three-shaft-cardan", "double-tripod" or
         "gear-rattle"; or "all".
     points : of the charts, along each axis.
     progress : called as progress(share done).

@@ -128,7 +128,7 @@ def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
     right.plot(x, sweep.exponents.sum(axis=1), color="#1a1a1a", lw=1.4)
     total = float(np.mean(sweep.exponents.sum(axis=1)))
     right.set_ylim(total - 0.1 * abs(total), total + 0.1 * abs(total))
-    left.legend(fontsize=9.5, frameon=False, loc="lower left")
+    left.legend(fontsize=9.5, frameon=False, loc="center right")
     _labels(left, "excitation frequency η/2π [Hz]", "exponent [1/s]")
     _labels(right, "excitation frequency η/2π [Hz]", "sum of the exponents [1/s]")
     for axes in (left, right):
