@@ -67,7 +67,7 @@ def test_exponents_of_rossler(b: float, published: tuple[float, ...], precision:
 
 @pytest.mark.slow
 def test_of_two_published_spectra_of_uedas_oscillator_one_is_excluded() -> None:
-    """0.1034, −0.1534 (Sprott's book) and 0.0999, −0.1499 (elsewhere) have the same sum; a long run tells them apart."""
+    """0.1034, −0.1534 (Sprott's book) and 0.0999, −0.1499 have the same sum; a long run tells them apart."""
     found = tn.lyapunov_spectrum(ueda(), periods=20_000)
     assert found.sum == pytest.approx(-0.05, abs=1e-9)
     assert abs(found.exponents[0] - 0.1034) < 2 * found.half_width[0]
