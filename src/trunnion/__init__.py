@@ -16,6 +16,7 @@ from trunnion._version import __version__
 
 if TYPE_CHECKING:
     from trunnion.analyses.assessment.assess import assess
+    from trunnion.analyses.assessment.remedies.remedies import remedies
     from trunnion.analyses.chaos.bifurcation_diagram import bifurcation_diagram
     from trunnion.analyses.chaos.certify_chaos import certify_chaos
     from trunnion.analyses.chaos.chaos_zero_one import zero_one_test
@@ -139,6 +140,7 @@ _HOME = {
     "pack": "trunnion.driveline.parameters",
     # analyse
     "assess": "trunnion.analyses.assessment.assess",
+    "remedies": "trunnion.analyses.assessment.remedies.remedies",
     "campbell_diagram": "trunnion.analyses.linear.campbell_diagram",
     "natural_frequencies": "trunnion.analyses.linear.natural_frequencies",
     "resonance_speeds": "trunnion.analyses.linear.resonance_speeds",

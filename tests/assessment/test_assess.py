@@ -292,11 +292,13 @@ PAGE = Path(__file__).parents[2] / "docs" / "assess.md"
 def test_the_page_shows_what_happens():
     page = PAGE.read_text(encoding="utf-8")
     pattern, flags = r"^```{}\n(.*?)^```", re.DOTALL | re.MULTILINE
-    (code,), (shown,) = (re.findall(pattern.format(lang), page, flags) for lang in ("python", "text"))
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(code, {})
-    assert printed.getvalue() == shown
+    blocks, texts = (re.findall(pattern.format(lang), page, flags) for lang in ("python", "text"))
+    names: dict[str, object] = {}
+    for code, shown in zip(blocks, texts, strict=True):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(code, names)
+        assert printed.getvalue() == shown
 
 
 def test_the_command(tmp_path):

@@ -211,6 +211,23 @@ PYTHON = [
         "Shaft 1",
     ),
     (
+        lambda: tn.remedies(line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1)), (1, 2), near=1.0),
+        "near = 1: must be at least 0 and below 1",
+        "near=0.1",
+    ),
+    (
+        lambda: tn.remedies(line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1)), (1, 2), checks=["wear"]),
+        "checks = 'wear': is not a check of this line",
+        "nothing is judged",
+    ),
+    (
+        lambda: tn.remedies(
+            line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1)), (1, 2), checks=["torque without limit"]
+        ),
+        "checks = 'torque without limit': is not judged",
+        "limits",
+    ),
+    (
         lambda: Shaft(stiffness=1, loss_factor_frequency=3),
         "Shaft.loss_factor: is missing beside loss_factor_frequency",
         "0.02",

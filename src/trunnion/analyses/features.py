@@ -210,6 +210,7 @@ TABLE: dict[str, Row] = {
 NOT_ANALYSES = {
     "campbell_diagram": "natural frequencies and the orders of order_response in one picture",
     "assess": "judges by the analyses above, and prints what each of them says",
+    "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",

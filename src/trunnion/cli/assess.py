@@ -14,7 +14,9 @@ from trunnion.results.speeds import speed_factor
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from trunnion.analyses.assessment.remedies.result import Remedies
     from trunnion.analyses.assessment.result import Assessment
+    from trunnion.driveline.driveline import Driveline
 
 DIAGRAM_POINTS = 201
 """Speeds at which the modes of a diagram are computed."""
@@ -24,19 +26,36 @@ def assess(
     file: File,
     unit: Unit = None,
     load_case: LoadCase = None,
+    remedies: Annotated[
+        bool, typer.Option("--remedies", help="What would help: the smallest single changes for what is exceeded.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Judge every limit of the file and every rule that applies, over its speed range; the binding one first."""
     line = read_line(file)
     unit = read_unit(line, unit)
-    from trunnion.analyses.assessment.assess import assess as judge
+    helping = _helping(line, load_case, unit) if remedies else None
+    if helping is not None:
+        result = helping.assessment
+    else:
+        from trunnion.analyses.assessment.assess import assess as judge
 
-    with output.compile_notice():
-        result = judge(line, load_case=load_case, unit=unit)
+        with output.compile_notice():
+            result = judge(line, load_case=load_case, unit=unit)
     if as_json:
-        output.write_json("assess", assessment_json(result))
+        output.write_json("assess", assessment_json(result) | (remedies_json(helping) if helping else {}))
         return
-    print_assessment(output.console(), result)
+    out = output.console()
+    print_assessment(out, result)
+    if helping is not None:
+        print_remedies(out, helping)
+
+
+def _helping(line: Driveline, load_case: str | None, unit: str) -> Remedies:
+    from trunnion.analyses.assessment.remedies.remedies import remedies as look
+
+    with output.progress("remedies") as advance:
+        return look(line, load_case=load_case, unit=unit, progress=advance)
 
 
 def campbell_diagram(
@@ -94,6 +113,38 @@ def print_assessment(out: Console, result: Assessment) -> None:
         output.findings(out, result.findings)
 
 
+def print_remedies(out: Console, found: Remedies) -> None:
+    """What would help, and what each check follows most."""
+    output.heading(out, "What would help")
+    for sentence in (*found.sentences, *(s for check in found.checks for s in found.sensitivity_sentences(check))):
+        out.print(f"  {sentence}", soft_wrap=True)
+
+
+def remedies_json(found: Remedies) -> dict[str, Any]:
+    """Remedies by check, and how each value follows every design variable; angles per radian."""
+    return {
+        "remedies": [
+            {
+                "check": r.check,
+                "variable": r.variable,
+                "before": r.before,
+                "after": r.after,
+                "unit": r.unit,
+                "value": r.value,
+                "margin": r.margin,
+                "required_margin": r.required_margin,
+                "verdict": str(r.verdict),
+                "sentence": r.sentence,
+            }
+            for r in found.remedies
+        ],
+        "sensitivities": {
+            check: {v.path: s for v, s in zip(found.variables, row, strict=True)}
+            for check, row in zip(found.checks, found.sensitivity, strict=True)
+        },
+    }
+
+
 def assessment_json(result: Assessment) -> dict[str, Any]:
     """Verdict and checks; speeds in ``speed_unit``, values and limits in the SI unit of each check."""
     factor = speed_factor(result.unit)
@@ -121,6 +172,9 @@ def assessment_json(result: Assessment) -> dict[str, Any]:
                 "inputs": c.inputs,
                 "load_case": c.load_case,
                 "guideline": c.guideline,
+                "element": c.element,
+                "order": c.cause.order if c.cause else None,
+                "mode": c.cause.mode if c.cause and c.cause.mode else None,
             }
             for c in result.checks
         ],

@@ -14,7 +14,7 @@ from trunnion.analyses.assessment.parametric import parametric_stability
 from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.ship_shafts import ship_shafts
-from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.assessment.subject import POINTS, Case, Subject, cases_of
 from trunnion.analyses.assessment.uniformity import uniformity
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.driveline.driveline import Driveline
@@ -53,15 +53,31 @@ def assess(
     >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
     satisfied max torque of shaft 0.129
     """
+    subject = subject_of(line, speeds, load_case, unit)
+    return judgement(subject, checks_of(subject))
+
+
+def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
+    """What follows from the checks of a line."""
+    verdict, barred = verdict_of(checks, subject.speed)
+    findings = _findings(subject.cases, subject.unit)
+    return Assessment(verdict, checks, barred, subject.low, subject.high, subject.speed, subject.unit, findings)
+
+
+def subject_of(
+    line: Driveline, speeds: tuple[float, float] | None, load_case: str | None, unit: str | None, points: int = POINTS
+) -> Subject:
+    """What is judged: see ``assess``; ``points`` speeds besides those about the peaks."""
     if load_case is not None:
         line = line.with_load(load_case)
     low, high, speed = _range(line, speeds)
-    every = cases_of(line, low, high)
-    cases = every[:1] if load_case is not None else every
-    subject = Subject(line, low, high, speed, unit or speed_unit(line), cases)
-    checks = in_order([*worst(_by_case(subject)), *_of_line(subject)])
-    verdict, barred = verdict_of(checks, speed)
-    return Assessment(verdict, checks, barred, low, high, speed, subject.unit, _findings(cases, subject.unit))
+    every = cases_of(line, low, high, points)
+    return Subject(line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every)
+
+
+def checks_of(subject: Subject) -> tuple[Check, ...]:
+    """All checks in order, of each the load case that binds."""
+    return in_order([*worst(check for case in subject.cases for check in by_case(subject, case)), *of_line(subject)])
 
 
 def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:
@@ -78,17 +94,19 @@ def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, 
     return float(ends[0]), float(ends[1]), stated
 
 
-def _by_case(subject: Subject) -> Iterator[Check]:
-    for case in subject.cases:
-        yield from own_limits(subject, case)
-        yield from coupling_ratings(subject, case)
-        yield from ship_shafts(subject, case)
-        yield from separation(subject, case)
-        yield from gear_hammer(subject, case)
+def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Check]:
+    """The checks of one load case; ``growth``: parametric stability too, which takes longest."""
+    yield from own_limits(subject, case)
+    yield from coupling_ratings(subject, case)
+    yield from ship_shafts(subject, case)
+    yield from separation(subject, case)
+    yield from gear_hammer(subject, case)
+    if growth:
         yield from parametric_stability(subject, case)
 
 
-def _of_line(subject: Subject) -> Iterator[Check]:
+def of_line(subject: Subject) -> Iterator[Check]:
+    """The checks that no load case changes."""
     assembly, turn = subject.cases[0].assembly, _turn(subject)
     yield from joint_angles(subject, assembly, turn)
     yield from uniformity(subject, turn)

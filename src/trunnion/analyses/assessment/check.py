@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from enum import Enum
 from math import inf, isfinite, nan
 
+from trunnion.analyses.assessment.cause import Cause
+
 
 class Status(Enum):
     """How a check ends."""
@@ -38,7 +40,8 @@ class Check:
 
     margin and required_margin [1], NaN where nothing is judged; value and limit in ``unit`` (SI); speed: of the input
     where it binds [rad/s]; because: one sentence; inputs: the numbers that went in; load_case: "" for the line as
-    stated; barred: speed ranges [rad/s] to pass quickly; guideline: a rule of practice, not a limit or rating.
+    stated; barred: speed ranges [rad/s] to pass quickly; guideline: a rule of practice, not a limit or rating; cause:
+    the order that leads there and the mode that it is nearest to.
     """
 
     name: str
@@ -56,6 +59,7 @@ class Check:
     barred: tuple[tuple[float, float], ...] = ()
     guideline: bool = False
     element: str = ""
+    cause: Cause | None = None
 
     @property
     def spare(self) -> float:

@@ -76,12 +76,13 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
         said += f", S_f = {factors[at]:.4g}"
     value = float(values[at]) if np.isfinite(values[at]) else np.inf
     margin, required = below(value, rating), subject.required(name)
-    why = cause(case, at, by_order[at]) if key != "nominal_torque" else ""
+    why = cause(case, at, by_order[at]) if key != "nominal_torque" else None
     because = f"{value:.4g} {unit} against {rating:.4g} {unit} at {subject.shown(case.speeds[at])}, {percent(margin)}"
     return Check(
         f"rating: {key.replace('_', ' ')} of {name}", judged(margin, required), rule,
         because + (f", {why}" if why else "") + case.suffix, margin, required, value, rating, unit,
         float(case.speeds[at]), said, case.name, element=name,
+        cause=why,
     )  # fmt: skip
 
 

@@ -47,4 +47,5 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
         yield Check(
             title, judged(margin, required), RULE, because, margin, required, float(swing[at]), float(mean[at]), "N*m",
             float(case.speeds[at]), "", case.name, bands(case.speeds, swing, mean * (1 - required)), element=name,
+            cause=said,
         )  # fmt: skip

@@ -99,6 +99,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
         name, judged(margin, limit.margin), rule, because, margin, limit.margin, value, limit.value, kind.unit,
         float(case.speeds[at]), f"{len(values)} speeds, {subject.shown(case.speeds[0])} to "
         f"{subject.shown(case.speeds[-1])}", case.name, barred, element=limit.element,
+        cause=said,
     )  # fmt: skip
 
 

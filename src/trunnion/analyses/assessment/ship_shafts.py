@@ -89,7 +89,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
         because += "; bar " + " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in barred)
     yield Check(
         title, judged(margin, required), RULE, because, margin, required, float(stress[at]) * 1e6,
-        float(allowed[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name, barred, element=name,
+        float(allowed[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name, barred, element=name, cause=said,
     )  # fmt: skip
     if barred:
         yield _passing(subject, case, title, (speeds, ratio, stress), allowed, factor, inputs)

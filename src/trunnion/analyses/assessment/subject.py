@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
@@ -51,16 +52,20 @@ class Case:
     assembly: Assembly
     low: float
     high: float
+    points: int = POINTS
+    given: tuple[float, ...] = ()
 
     @cached_property
     def speeds(self) -> Array:
-        """Speeds [rad/s] from the lowest to the highest, closer about the peaks."""
+        """Speeds [rad/s] from the lowest to the highest, closer about the peaks; those ``given`` instead, if any."""
+        if self.given:
+            return np.array(self.given)
         if self.low == self.high:
             return np.array([self.low])
         low = max(self.low, lowest_speed(self.assembly), 1e-3 * self.high)
         if low >= self.high:
             return np.array([self.high])
-        return sweep_speeds(self.assembly, low, self.high, POINTS)
+        return sweep_speeds(self.assembly, low, self.high, self.points)
 
     @cached_property
     def answer(self) -> OrderResponse | str:
@@ -91,29 +96,24 @@ class Case:
         return f", load case {self.name}" if self.name else ""
 
 
-def cases_of(line: Driveline, low: float, high: float) -> tuple[Case, ...]:
+def cases_of(line: Driveline, low: float, high: float, points: int = POINTS) -> tuple[Case, ...]:
     """The line as stated and under each of its load cases."""
     named = [case.name for case in line.operation.load_cases] if line.operation else []
     return tuple(
-        Case(name, assemble(line.with_load(name) if name else line), low, high) for name in ("", *named)
-    )  # fmt: skip
+        Case(name, assemble(line.with_load(name) if name else line), low, high, points) for name in ("", *named)
+    )
 
 
-def cause(case: Case, at: int, size: Array) -> str:
+def cause(case: Case, at: int, size: Array) -> Cause | None:
     """Which order leads at speed number ``at``, of amplitudes ``size`` (order,), and the mode that it is nearest to."""
     response = case.response
     if response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
-        return ""
+        return None
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])
-    name = f"order {order:.4g}" if not extra else f"the excitation at {show_speed(extra, 'Hz')}"
     frequency = order * case.speeds[at] + extra
     modes = np.abs(case.modes[at])
     if not np.any(np.isfinite(modes)):
-        return f"led by {name}"
+        return Cause(order, extra)
     m = int(np.nanargmin(np.abs(np.log(modes / frequency))))
-    off = frequency / modes[m] - 1
-    side = f"{abs(100 * off):.2g} % {'above' if off > 0 else 'below'}" if abs(off) >= 5e-4 else "on"
-    if abs(off) > 3:
-        side = "far above"
-    return f"led by {name}, {side} mode {m + case.first} ({modes[m] / (2 * np.pi):.4g} Hz)"
+    return Cause(order, extra, m + case.first, float(modes[m]), float(frequency / modes[m] - 1))

@@ -51,7 +51,8 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     last = reference[:, elastic].astype(complex)
     found = np.full((len(speeds), last.shape[1]), complex(np.nan, np.nan))
     shapes = np.full((len(speeds), n, last.shape[1]), complex(np.nan, np.nan))
-    for i in range(len(speeds)):
+    alike = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in (damping, matrices.stiffness))
+    for i in range(min(len(speeds), 1) if alike else len(speeds)):
         system = np.zeros((2 * n, 2 * n), dtype=complex)
         system[:n, n:] = np.eye(n)
         system[n:, :n] = -(matrices.stiffness[i] + 1j * loss[i]) / scale
@@ -65,6 +66,8 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
         largest = turned[np.abs(turned).argmax(axis=0), np.arange(len(there))]
         shapes[i][:, here] = turned / largest
         last[:, here] = vectors[:, there]
+    if alike:
+        found[1:], shapes[1:] = found[:1], shapes[:1]
     return found, shapes
 
 

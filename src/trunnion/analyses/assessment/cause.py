@@ -1,0 +1,40 @@
+"""What leads where a check binds: an order, and the mode that it is nearest to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan, pi
+
+from trunnion.results.speeds import show_speed
+
+
+@dataclass(frozen=True)
+class Cause:
+    """The order that leads, and the mode that it is nearest to.
+
+    order [cycles per turn of the input] and frequency [rad/s] to add to it; mode: its number, 0 where there is none;
+    natural [rad/s] of the mode; off: what meets it over that, less 1.
+    """
+
+    order: float
+    frequency: float
+    mode: int = 0
+    natural: float = nan
+    off: float = nan
+
+    @property
+    def name(self) -> str:
+        """ "order 2", "the excitation at 25 Hz"."""
+        return f"the excitation at {show_speed(self.frequency, 'Hz')}" if self.frequency else f"order {self.order:.4g}"
+
+    @property
+    def critical(self) -> float:
+        """Input speed [rad/s] at which the order meets the mode; NaN for an excitation fixed in time."""
+        return (self.natural - self.frequency) / self.order if self.order and self.mode else nan
+
+    def __str__(self) -> str:
+        if not self.mode:
+            return f"led by {self.name}"
+        side = f"{abs(100 * self.off):.2g} % {'above' if self.off > 0 else 'below'}" if abs(self.off) >= 5e-4 else "on"
+        side = "far above" if self.off > 3 else side
+        return f"led by {self.name}, {side} mode {self.mode} ({self.natural / (2 * pi):.4g} Hz)"

@@ -1,0 +1,1 @@
+"""What would help: sensitivities, and the smallest single changes that satisfy a check."""

@@ -1,0 +1,161 @@
+"""What would help: the smallest single changes that satisfy a check which is exceeded or has little margin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
+from trunnion.analyses.assessment.check import Check
+from trunnion.analyses.assessment.remedies.result import Remedies, Remedy
+from trunnion.analyses.assessment.remedies.search import Found, Search, goals_of
+from trunnion.analyses.assessment.remedies.sensitivities import sensitivities
+from trunnion.analyses.assessment.remedies.trials import Trials
+from trunnion.analyses.assessment.remedies.variables import Design
+from trunnion.analyses.assessment.result import verdict_of
+from trunnion.analyses.assessment.subject import Subject
+from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import assemble
+from trunnion.errors import InputError
+
+NEAR = 0.1
+"""Spare margin below which a check is nearly binding."""
+MOST = 3
+MOVED = 0.02
+"""Share by which a critical speed has to move to be named in a sentence."""
+
+
+def remedies(
+    line: Driveline,
+    speeds: tuple[float, float] | None = None,
+    *,
+    load_case: str | None = None,
+    unit: str | None = None,
+    checks: Iterable[str] | None = None,
+    near: float = NEAR,
+    most: int = MOST,
+    progress: Callable[[float], None] | None = None,
+) -> Remedies:
+    """The smallest single changes of stiffness, inertia, damping, joint angle or phase that satisfy a check.
+
+    Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase,
+    and verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
+    worse. A range of values narrower than a step (3 to 10 %) can be missed. What is zero is not varied.
+
+    Parameters
+    ----------
+    line, speeds, load_case, unit : as of ``assess``.
+    checks : names of the checks to help; default all that are exceeded or have less than ``near`` to spare
+        (guidelines only where exceeded).
+    near : spare margin that a nearly binding check is to reach.
+    most : changes to find for each check.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : as of ``assess``; no such check, or one that is not judged.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0, name="shaft")
+    >>> line = tn.Driveline([engine, shaft, tn.Disk(inertia=0.8)], limits=[tn.Limit(of="shaft", max_torque=400.0)])
+    >>> print(tn.remedies(line, (90.0, 115.0), most=1).sentences[0])
+    max torque of shaft: shaft stiffer by 11 % (11.1 kN*m/rad) moves order 2 on mode 2 from 1194 rpm to 1258 rpm: \
+margin 1.52 %
+    """
+    subject = subject_of(line, speeds, load_case, unit)
+    base = checks_of(subject)
+    judged = judgement(subject, base)
+    goals = _goals(base, checks, near)
+    design = Design(subject.line)
+    by_name = {check.name: check for check in base}
+    targets = [by_name[name] for name in goals]
+    slopes = sensitivities(subject, design, targets)
+    found: list[Found] = []
+    lines = 4 * len(targets) * len(design.variables)
+    if goals:
+        trials = Trials(subject, base, design, targets)
+        found = Search(trials, goals, most, progress).run()
+        lines += trials.count
+    shape = (len(targets), len(design.variables))
+    return Remedies(
+        assessment=judged,
+        checks=tuple(goals),
+        variables=design.variables,
+        sensitivity=np.array([[s.slope for s in row] for row in slopes]).reshape(shape),
+        sensitivity_error=np.array([[s.error for s in row] for row in slopes]).reshape(shape),
+        sensitivity_speed=np.array([row[0].speed if row else np.nan for row in slopes]),
+        remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
+        lines=lines,
+    )
+
+
+def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) -> dict[str, float]:
+    if not 0 <= near < 1:
+        raise InputError("must be at least 0 and below 1", key="near", value=near, remedy="near=0.1, say")
+    if asked is None:
+        return goals_of(base, near)
+    known = goals_of(base, np.inf)
+    found = {}
+    for name in asked:
+        if name not in known:
+            problem = "is not judged" if any(check.name == name for check in base) else "is not a check of this line"
+            remedy = f"there are {', '.join(known)}" if known else "nothing is judged; state limits"
+            raise InputError(problem, key="checks", value=name, remedy=remedy)
+        found[name] = min(known[name], near)
+    return found
+
+
+def _remedy(subject: Subject, design: Design, before: Check, found: Found) -> Remedy:
+    variable, after = found.variable, found.after.get(before.name)
+    value, margin = (after.value, after.margin) if after else (np.nan, np.nan)
+    return Remedy(
+        check=before.name,
+        variable=variable.path,
+        before=variable.value,
+        after=found.value,
+        unit=variable.unit,
+        size=found.size,
+        value=value,
+        margin=margin,
+        required_margin=before.required_margin,
+        verdict=verdict_of(tuple(found.after.values()), subject.speed)[0],
+        sentence=_sentence(subject, design, before, after, found),
+    )
+
+
+def _sentence(subject: Subject, design: Design, before: Check, after: Check | None, found: Found) -> str:
+    change = found.variable.worded(found.value)
+    if after is None:
+        return f"{change} leaves nothing to pass quickly"
+    left = f"margin {100 * after.margin:.3g} %"
+    if before.required_margin:
+        left += f", {100 * before.required_margin:.3g} % required"
+    moved = _critical(subject, design, before, found)
+    if moved is not None and before.cause is not None:
+        here, there = moved
+        what = f"{before.cause.name} on mode {before.cause.mode}"
+        return f"{change} moves {what} from {subject.shown(here)} to {subject.shown(there)}: {left}"
+    unit = "" if before.unit == "1" else f" {before.unit}"
+    return f"{change} brings it from {before.value:.4g}{unit} to {after.value:.4g}{unit}: {left}"
+
+
+def _critical(subject: Subject, design: Design, before: Check, found: Found) -> tuple[float, float] | None:
+    """The speed at which the order that leads meets its mode, before and after; None where it hardly moves."""
+    cause = before.cause
+    if cause is None or not cause.mode or not abs(cause.off) < 0.5 or not np.isfinite(cause.critical):
+        return None
+    line = design.changed(found.variable, found.value)
+    assert line is not None
+    if before.load_case:
+        line = line.with_load(before.load_case)
+    assembly = assemble(line)
+    number = cause.mode - (2 if assembly.topology.free else 1)
+    natural = abs(loaded_modes(assembly, np.array([before.speed]))[0][0, number])
+    there = (natural - cause.frequency) / cause.order
+    here = cause.critical
+    return (here, float(there)) if np.isfinite(there) and abs(np.log(there / here)) > MOVED else None

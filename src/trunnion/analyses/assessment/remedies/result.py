@@ -1,0 +1,133 @@
+"""What ``remedies`` gives: changes that help, in sentences, and the sensitivities behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.check import Status
+from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
+from trunnion.analyses.assessment.result import Assessment
+from trunnion.driveline.quantities import DEGREE
+from trunnion.results.declared import Held, Result, axis, over, remark
+
+Array = NDArray[np.float64]
+STRONGEST = 3
+"""Sensitivities printed of each check."""
+STEPS = {
+    Scale.FACTOR: (0.01, "+1 %"),
+    Scale.BEND: (DEGREE, "+1 deg"),
+    Scale.PHASE: (10 * DEGREE, "+10 deg"),
+}
+"""Steps in which sensitivities are printed."""
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """One change that satisfies ``check`` and breaks no other.
+
+    variable: path of what changes, from ``before`` to ``after`` in ``unit``; size: |Δ ln p| of a factor, an angle over
+    30 deg of a joint and 257 deg of a phase; value, margin and required_margin: of the check after the change;
+    verdict: of the whole line after it.
+    """
+
+    check: str
+    variable: str
+    before: float
+    after: float
+    unit: str
+    size: float
+    value: float
+    margin: float
+    required_margin: float
+    verdict: Status
+    sentence: str
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+@dataclass(frozen=True, repr=False)
+class Remedies(Result):
+    """Smallest single changes for every check that is exceeded or has little margin, and what each check is
+    sensitive to.
+
+    checks: names of those checks; remedies: smallest change first for each of them; sensitivity (check, variable):
+    d ln(value)/d ln p, of angles d ln(value)/dφ [1/rad], with sensitivity_error; sensitivity_speed (check,) [rad/s]:
+    where it was taken; assessment: of the line as it is; lines: how many were judged.
+    """
+
+    assessment: Assessment
+    checks: tuple[str, ...]
+    variables: tuple[DesignVariable, ...]
+    sensitivity: Array
+    sensitivity_error: Array
+    sensitivity_speed: Array
+    remedies: tuple[Remedy, ...]
+    lines: int
+
+    def of(self, check: str) -> tuple[Remedy, ...]:
+        """What helps one check, smallest change first."""
+        return tuple(remedy for remedy in self.remedies if remedy.check == check)
+
+    def strongest(self, check: str, most: int = STRONGEST) -> list[tuple[DesignVariable, float]]:
+        """Variables that a check's value follows most, with its change [1] for +1 % of a factor, +1 deg of a joint's
+        angle, +10 deg of a phase."""
+        row = self.sensitivity[self.checks.index(check)]
+        scaled = np.array([s * STEPS[v.scale][0] for v, s in zip(self.variables, row, strict=True)])
+        order = np.argsort(-np.abs(np.nan_to_num(scaled)))[:most]
+        return [(self.variables[i], float(scaled[i])) for i in order if np.isfinite(scaled[i]) and scaled[i]]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """One sentence a remedy, or that there is none, for every check."""
+        if not self.checks:
+            return ("no check is exceeded or nearly binding: nothing to remedy",)
+        found = []
+        for check in self.checks:
+            known = self.of(check)
+            found += [f"{check}: {remedy.sentence}" for remedy in known]
+            if not known:
+                found.append(
+                    f"{check}: no single change of up to a factor of two, 21 deg of a joint or half a turn of a phase "
+                    "satisfies it and breaks no other check"
+                )
+        return tuple(found)
+
+    def declared(self) -> Iterator[Held]:
+        """Sensitivities over (check, variable), remedies along their own axis."""
+        yield axis("check", list(self.checks))
+        yield axis("variable", [v.path for v in self.variables])
+        yield over("variable", "present", [v.value for v in self.variables], about="in the unit of the variable")
+        yield over("variable", "variable_unit", [v.unit for v in self.variables])
+        about = "d ln(value)/d ln(variable), of angles per radian"
+        yield over("check variable", "sensitivity", self.sensitivity, about=about)
+        yield over("check variable", "sensitivity_error", self.sensitivity_error)
+        yield over("check", "sensitivity_speed", self.sensitivity_speed, "rad/s", "input speed where it was taken")
+        yield axis("remedy", [f"{r.check}: {r.variable}" for r in self.remedies])
+        for key in ("check", "variable", "before", "after", "unit", "size", "value", "margin", "required_margin"):
+            yield over("remedy", f"remedy_{key}", [getattr(r, key) for r in self.remedies])
+        yield over("remedy", "remedy_verdict", [str(r.verdict) for r in self.remedies])
+        yield over("remedy", "sentence", [r.sentence for r in self.remedies])
+        yield remark("verdict", str(self.assessment.verdict))
+        yield remark("lines", self.lines)
+
+    def __str__(self) -> str:
+        rows = [
+            f"remedies: {len(self.remedies)} single changes for {len(self.checks)} checks, {self.lines} lines judged"
+        ]
+        rows += [f"  {sentence}" for sentence in self.sentences]
+        for check in self.checks:
+            rows += [f"  {sentence}" for sentence in self.sensitivity_sentences(check)]
+        return "\n".join(rows)
+
+    def sensitivity_sentences(self, check: str) -> list[str]:
+        """What the value of a check follows most, in one sentence; none where it has no value."""
+        known = self.strongest(check)
+        if not known:
+            return []
+        parts = [f"{100 * change:+.3g} % for {STEPS[v.scale][1]} of {v.path}" for v, change in known]
+        return [f"{check} follows most: {', '.join(parts)}"]

@@ -1,0 +1,159 @@
+"""The smallest single changes that satisfy a check and break no other.
+
+Every variable is moved away from its value step by step (``SIZES``, up and down) until enough of them satisfy the
+check, then each is drawn back between the last step that failed and the first that did not, rounded to what a drawing
+would say, and judged wholly. A window of values narrower than a step can be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.assessment.remedies.trials import Checks, Trials
+from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
+
+SIZES = (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7)
+"""Sizes of changes tried; the largest is a factor of two."""
+PROBES = (0.2, 0.7)
+"""Sizes at which a variable shows whether it matters at all."""
+IDLE = 0.02
+"""Share of the way to the goal that a variable has to move a margin to count as one that matters."""
+DRAWN = 5
+"""Halvings between a step that fails and one that does not."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A change that satisfies ``check`` and breaks nothing: the variable, its new value, all checks after it."""
+
+    check: str
+    variable: DesignVariable
+    value: float
+    after: Checks
+
+    @property
+    def size(self) -> float:
+        """|size| of the change."""
+        return abs(self.variable.size(self.value))
+
+
+class Search:
+    """Looks for changes of one line that satisfy its ``goals``: by check, the spare margin to reach."""
+
+    def __init__(self, trials: Trials, goals: dict[str, float], most: int, progress: Callable[[float], None] | None):
+        self.trials, self.goals, self.most, self.progress = trials, goals, most, progress
+        self.variables = trials.design.variables
+
+    def run(self) -> list[Found]:
+        """The smallest changes for every goal, smallest first; of each variable the smaller direction."""
+        matter = self._that_matter()
+        passed: dict[str, dict[str, Found]] = {name: {} for name in self.goals}
+        last = 0.0
+        for step, size in enumerate(SIZES):
+            open_goals = [name for name in self.goals if len(passed[name]) < self.most]
+            if not open_goals:
+                break
+            for name in open_goals:
+                self._step(name, matter, last, size, passed[name])
+            last = size
+            self._tell((step + 2) / (len(SIZES) + 1))
+        self._tell(1.0)
+        return [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
+
+    def _tell(self, share: float) -> None:
+        if self.progress:
+            self.progress(share)
+
+    def _that_matter(self) -> list[DesignVariable]:
+        """Variables that move the margin of a goal; a nut that nothing hangs on is not turned twelve times."""
+        kept = []
+        for i, variable in enumerate(self.variables):
+            if any(self._moves(variable, sign * size) for size in PROBES for sign in (-1.0, 1.0)):
+                kept.append(variable)
+            self._tell((i + 1) / len(self.variables) / (len(SIZES) + 1))
+        return kept
+
+    def _moves(self, variable: DesignVariable, size: float) -> bool:
+        after = self._quick(variable, size)
+        for name, goal in self.goals.items():
+            before = self.trials.unchanged[name] if name in self.trials.unchanged else self.trials.base[name]
+            now = after.get(name) if after else None
+            if now is None and after:
+                return True
+            if now and not abs(now.spare - before.spare) <= IDLE * abs(goal - before.spare):
+                return True
+        return False
+
+    def _quick(self, variable: DesignVariable, size: float) -> Checks | None:
+        value = variable.at(size)
+        if variable.scale is Scale.BEND and value < 0:
+            return None
+        return self.trials.quick(variable, value)
+
+    def _step(
+        self, name: str, variables: list[DesignVariable], last: float, size: float, passed: dict[str, Found]
+    ) -> None:
+        """Add to ``passed`` what satisfies a goal with a change between the sizes ``last`` and ``size``, smallest
+        first, until there are enough."""
+        near = [
+            (self._drawn(name, variable, sign * last, sign * size), variable, sign * size)
+            for variable in variables
+            for sign in (-1.0, 1.0)
+            if variable.path not in passed and self._passes(name, self._quick(variable, sign * size), whole=False)
+        ]
+        for least, variable, far in sorted(near, key=lambda one: abs(one[0])):
+            if len(passed) >= self.most:
+                return
+            found = self._verified(name, variable, least, far) if variable.path not in passed else None
+            if found:
+                passed[variable.path] = found
+
+    def _drawn(self, name: str, variable: DesignVariable, fails: float, passes: float) -> float:
+        """The size nearest to ``fails`` that satisfies a goal as ``passes`` does."""
+        for _ in range(DRAWN):
+            middle = (fails + passes) / 2
+            if self._passes(name, self._quick(variable, middle), whole=False):
+                passes = middle
+            else:
+                fails = middle
+        return passes
+
+    def _verified(self, name: str, variable: DesignVariable, least: float, far: float) -> Found | None:
+        for value in self._written(variable, least, far):
+            after = self.trials.whole(variable, value)
+            if self._passes(name, after, whole=True):
+                assert after is not None
+                return Found(name, variable, value, after)
+        return None
+
+    def _written(self, variable: DesignVariable, size: float, far: float) -> Iterator[float]:
+        """Values to judge wholly: the smallest that passes, rounded away from the present one; then somewhat more."""
+        for share in (0.0, 0.3, 1.0):
+            value = variable.tidy(variable.at(size + share * (far - size)))
+            if variable.scale is not Scale.BEND or value >= 0:
+                yield value
+        yield variable.at(size)
+
+    def _passes(self, name: str, after: Checks | None, *, whole: bool) -> bool:
+        if after is None or self.trials.breaks(after, whole=whole):
+            return False
+        check = after.get(name)
+        if check is None:
+            return name.endswith(", passing")  # nothing is left to pass quickly
+        return check.status is Status.SATISFIED and bool(check.spare >= self.goals[name])
+
+
+def goals_of(checks: tuple[Check, ...], near: float) -> dict[str, float]:
+    """By check, the spare margin that a remedy has to reach: none for what is exceeded, ``near`` for what has less."""
+    found: dict[str, float] = {}
+    for check in checks:
+        if check.status is Status.EXCEEDED:
+            found[check.name] = 0.0
+        elif check.status is Status.SATISFIED and not check.guideline and np.isfinite(check.spare):
+            if check.spare < near:
+                found[check.name] = near
+    return found
