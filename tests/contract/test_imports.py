@@ -25,6 +25,7 @@ LAYERS = (
     {"plots"},
     {"reporting"},
     {"studies"},
+    {"app"},
     {"cli"},
     {"__main__"},
 )

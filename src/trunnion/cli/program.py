@@ -18,6 +18,7 @@ from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, study
+from trunnion.cli.app import app as serve_app
 from trunnion.cli.assess import assess, campbell_diagram
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.crash import crash_line
@@ -182,6 +183,7 @@ app.command("lyapunov-spectrum")(lyapunov_spectrum)
 app.command("poincare-map")(poincare_map)
 app.command("certify-chaos")(certify_chaos)
 app.command("reproduce")(reproduce)
+app.command("app")(serve_app)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)
 app.command("schema")(describe.schema)

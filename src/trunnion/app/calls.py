@@ -1,0 +1,121 @@
+"""A call of a public function as data: what a worker evaluates is what the exported Python says, word for word."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+LIBRARIES = ("tn", "np")
+GIVEN_BY_WORKER = ("progress", "threads")
+"""Arguments that change no number: the worker adds them, the exported Python leaves them out."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """Stands for the driveline in the arguments of a call."""
+
+
+LINE = Line()
+
+
+@dataclass(frozen=True)
+class Call:
+    """``function(*arguments, **keywords)``, the function as "tn.order_response" or "np.linspace".
+
+    Arguments are numbers, texts, tuples of them, ``LINE``, or further calls.
+    """
+
+    function: str
+    arguments: tuple[Any, ...] = ()
+    keywords: Mapping[str, Any] = field(default_factory=dict)
+
+    def evaluate(self, line: Any, given: Mapping[str, Any] | None = None) -> Any:
+        """What the call gives for ``line``; ``given`` adds those of its arguments that the outermost function takes."""
+        if self == THE_LINE:
+            return line
+        function = _function(self.function)
+        arguments = [_value(a, line) for a in self.arguments]
+        keywords = {key: _value(value, line) for key, value in self.keywords.items()}
+        if given:
+            taken = inspect.signature(function).parameters
+            keywords |= {key: value for key, value in given.items() if key in taken and key in GIVEN_BY_WORKER}
+        return function(*arguments, **keywords)
+
+    def text(self) -> str:
+        """The call as Python."""
+        parts = [_text(a) for a in self.arguments] + [f"{k}={_text(v)}" for k, v in self.keywords.items()]
+        return f"{self.function}({', '.join(parts)})"
+
+
+THE_LINE = Call("line")
+"""The driveline itself, where it is shown as it is."""
+
+
+def script(toml: str, results: Mapping[str, Call], title: str) -> str:
+    """Python that computes ``results``, by name, for the driveline ``toml``."""
+    body = [f"{name} = {call.text()}\nprint({name})" for name, call in results.items() if call != THE_LINE]
+    return "\n".join(
+        [
+            f'"""{title}: what the application showed."""',
+            "",
+            "import numpy as np" if any("np." in part for part in body) else "",
+            "import trunnion as tn",
+            "",
+            f"line = tn.loads({_block(toml)})",
+            "",
+            *body,
+            "",
+        ]
+    ).replace('"""\n\n\nimport', '"""\n\nimport')
+
+
+def _block(text: str) -> str:
+    """A text of many lines as Python, readable where it may be."""
+    plain = text.isprintable() or all(c.isprintable() or c == "\n" for c in text)
+    if not plain or "'''" in text or "\\" in text or text.endswith("'"):
+        return repr(text)
+    return f"'''\n{text}'''"
+
+
+def _function(name: str) -> Callable[..., Any]:
+    library, _, attribute = name.partition(".")
+    if library not in LIBRARIES or attribute.startswith("_"):
+        raise ValueError(f"no call of {name}")
+    if library == "np":
+        return getattr(np, attribute)  # type: ignore[no-any-return]
+    import trunnion as tn
+
+    return getattr(tn, attribute)  # type: ignore[no-any-return]
+
+
+def _value(argument: Any, line: Any) -> Any:
+    match argument:
+        case Line():
+            return line
+        case Call():
+            return argument.evaluate(line)
+        case tuple():
+            return tuple(_value(part, line) for part in argument)
+        case Mapping():
+            return {key: _value(part, line) for key, part in argument.items()}
+    return argument
+
+
+def _text(argument: Any) -> str:
+    match argument:
+        case Line():
+            return "line"
+        case Call():
+            return argument.text()
+        case tuple():
+            inside = ", ".join(_text(part) for part in argument)
+            return f"({inside},)" if len(argument) == 1 else f"({inside})"
+        case Mapping():
+            return "{" + ", ".join(f"{key!r}: {_text(part)}" for key, part in argument.items()) + "}"
+        case np.generic():
+            return repr(argument.item())
+    return repr(argument)

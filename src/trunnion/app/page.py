@@ -1,0 +1,172 @@
+"""The page around the views: header, choice of view, messages, progress, sliders, the place of the pictures."""
+
+from __future__ import annotations
+
+import html
+import time
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import panel as pn
+
+from trunnion.app.guard import POLICY
+
+if TYPE_CHECKING:
+    from trunnion.app.views.base import View
+
+MOST_OFTEN = 0.1
+"""Seconds between two reports of progress."""
+
+_TEMPLATE = """
+{% extends base %}
+{% block title %}Trunnion{% endblock %}
+{% block preamble %}
+<meta http-equiv="Content-Security-Policy" content="POLICY">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+{% endblock %}
+{% block postamble %}
+<style>
+body { margin: 0; font-family: system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: #1a1a1a; background: #fff;
+  font-size: 15px; }
+header { display: flex; align-items: center; gap: 4px 20px; flex-wrap: wrap; background: #12324a; color: #fff;
+  padding: 6px 16px; }
+header h1 { font-size: 19px; margin: 0; }
+.layout { display: grid; grid-template-columns: minmax(0, 1fr) 330px; gap: 0 18px; padding: 4px 16px 24px; }
+.side { border-left: 1px solid #d5d9de; padding-left: 14px; }
+h2 { font-size: 16px; margin: 10px 0 2px; }
+@media (max-width: 900px) {
+  .layout { grid-template-columns: minmax(0, 1fr); }
+  .side { border-left: 0; border-top: 1px solid #d5d9de; padding-left: 0; }
+}
+.skip { position: absolute; left: -999px; } .skip:focus { left: 8px; top: 8px; background: #fff; padding: 6px; }
+</style>
+{% endblock %}
+{% block contents %}
+<a class="skip" href="#main">to the pictures</a>
+<header><h1>Trunnion</h1>{{ embed(roots.navigation) }}</header>
+<div class="layout">
+<main id="main" tabindex="-1">{{ embed(roots.status) }}{{ embed(roots.main) }}</main>
+<aside class="side" aria-label="sliders and variants">{{ embed(roots.aside) }}</aside>
+</div>
+{{ embed(roots.location) }}
+{% endblock %}
+""".replace("POLICY", POLICY.replace("; frame-ancestors 'none'", ""))
+
+_STYLE = """
+table.plain { border-collapse: collapse; font-size: 14px; }
+table.plain th, table.plain td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid #d5d9de;
+  vertical-align: top; }
+.refusal, .refusal * { color: #8d0016; }
+.verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
+.verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
+a { color: #00558a; }
+:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
+"""
+
+
+class Page:
+    """Panel objects of the page; the session says what stands in them."""
+
+    def __init__(self, choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
+        from trunnion.app.views import VIEWS
+
+        pn.config.raw_css = [_STYLE]
+        names = {kind.title: kind.name for kind in VIEWS}
+        self._quiet = False
+        self.navigation = pn.widgets.RadioButtonGroup(
+            name="View", options=names, button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
+        )
+        self.navigation.param.watch(lambda event: choose(event.new) if not self._quiet else None, "value")
+        self.said = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 0), css_classes=["refusal"])
+        self.bar = pn.indicators.Progress(name="progress", value=0, max=100, width=220, active=False, margin=(8, 0))
+        self.state = pn.pane.HTML("", margin=(4, 10))
+        self.cancel_button = pn.widgets.Button(name="Cancel", width=80, disabled=True, margin=(2, 8))
+        self.cancel_button.on_click(lambda event: cancel())
+        self.status = pn.Column(
+            self.said, pn.Row(self.bar, self.cancel_button, self.state, margin=0), sizing_mode="stretch_width", margin=0
+        )
+        self.main = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.aside = pn.Column(sizing_mode="stretch_width", margin=0)
+        self._shown: tuple[Any, ...] = ()
+        self._told = 0.0
+        self.template = pn.Template(_TEMPLATE, location=True)
+        for name in ("navigation", "status", "main", "aside"):
+            self.template.add_panel(name, getattr(self, name))
+
+    def fill(self, sliders: Any, keep: Sequence[Any], difference: Any) -> None:
+        """What stands beside the pictures."""
+        self.aside.extend(
+            [
+                _heading("Move a number"),
+                sliders,
+                _heading("Two variants side by side"),
+                keep[0],
+                pn.Row(*keep[1:], margin=0),
+                difference,
+            ]
+        )
+
+    def show(self, view: View, sides: Sequence[tuple[str, Any]]) -> None:
+        """Put a view, with a picture for each variant, on the page."""
+        key = (view.name, tuple(name for name, _ in sides))
+        if key == self._shown:
+            return
+        self._shown = key
+        self._quiet = True
+        self.navigation.value = view.name
+        self._quiet = False
+        titles = {"kept": "the kept variant", "now": "now"}
+        pictures = [
+            pn.Column(
+                *([_heading(titles[name])] if len(sides) > 1 else []),
+                side.panel,
+                sizing_mode="stretch_width",
+                margin=0,
+                min_width=min(460, 900 // len(sides)),
+            )
+            for name, side in sides
+        ]
+        whole = pictures[0] if len(pictures) == 1 else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
+        about = pn.pane.HTML(f"<p style='margin:0'>{html.escape(view.about)}</p>", sizing_mode="stretch_width")
+        self.main.objects = [about, view.controls, whole, view.downloads]
+
+    def message(self, text: str) -> None:
+        """Say what went wrong, or nothing more."""
+        lines = [line for line in text.splitlines() if line]
+        body = "".join(f"<div>{html.escape(line)}</div>" for line in lines)
+        self.said.object = f"<div role='alert'>{body}</div>" if body else ""
+
+    def busy(self, share: float) -> None:
+        """A computation is under way."""
+        now = time.monotonic()
+        if self.cancel_button.disabled:
+            self.cancel_button.disabled = False
+        elif now - self._told < MOST_OFTEN:
+            return
+        self._told = now
+        self.bar.value = int(100 * min(1.0, max(0.0, share)))
+        self.state.object = "<span role='status' data-state='busy'>computing …</span>"
+
+    def idle(self, text: str = "", remarks: Sequence[str] = ()) -> None:
+        """Nothing is under way."""
+        self.bar.value = 0
+        self.cancel_button.disabled = True
+        said = html.escape(text or "ready")
+        extra = "".join(f"<div>remark: {html.escape(r)}</div>" for r in remarks)
+        self.state.object = f"<span role='status' data-state='idle'>{said}</span>{extra}"
+
+    def failed(self, text: str) -> None:
+        """A computation was refused or failed."""
+        self.idle("not computed")
+        self.message(text)
+
+
+_NAVIGATION = """
+.bk-btn { background: #12324a; color: #fff; border: 1px solid #6f8ba0; font-size: 15px; }
+.bk-btn.bk-active { background: #fff !important; color: #12324a !important; font-weight: 600; }
+.bk-btn:focus-visible { outline: 3px solid #f0b400; outline-offset: 1px; z-index: 2; }
+"""
+
+
+def _heading(text: str) -> Any:
+    return pn.pane.HTML(f"<h2 style='font-size:16px;margin:8px 0 0'>{html.escape(text)}</h2>", margin=(0, 5))

@@ -1,0 +1,185 @@
+"""Worker processes and who gets them: each job a process of its own while it runs, one more kept warm.
+
+A job that is not wanted any more is asked to leave, and its process ended where it does not leave in time.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+
+from trunnion.app.jobs import Answer, Job, Start, Stop, read_frame, write_frame
+from trunnion.errors import ComputationError, InputError
+
+GRACE = 0.25
+"""Seconds that a job has to leave by itself once it is cancelled."""
+PATIENCE = 3.0
+"""The same for a job that a newer one supersedes, which another worker computes meanwhile."""
+SUPERSEDED = "superseded"
+"""What a task is cancelled with where nobody waits for its end."""
+
+
+class Worker:
+    """One process. Answers arrive in the event loop."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, threads: int) -> None:
+        limits = {k: str(threads) for k in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+        environment = {**os.environ, **limits, "MPLBACKEND": "Agg"}
+        command = [sys.executable, "-m", "trunnion.app.worker", str(threads)]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+        self.loop = loop
+        self.number = 0
+        self.answered: asyncio.Future[Answer] | None = None
+        self.tell: Callable[[float], None] = _nobody
+        self.used_by: object = None
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    @property
+    def alive(self) -> bool:
+        return self.process.poll() is None
+
+    def begin(self, job: Job, tell: Callable[[float], None]) -> asyncio.Future[Answer]:
+        """Start a job; the future holds its last answer."""
+        self.number += 1
+        self.tell = tell
+        self.answered = self.loop.create_future()
+        try:
+            assert self.process.stdin
+            write_frame(self.process.stdin, Start(self.number, job))
+        except OSError:
+            self._ended()
+        return self.answered
+
+    def ask_to_stop(self) -> None:
+        with suppress(OSError):
+            assert self.process.stdin
+            write_frame(self.process.stdin, Stop(self.number))
+
+    def end(self) -> None:
+        """End the process, whatever it does."""
+        self.process.kill()
+        with suppress(OSError):
+            assert self.process.stdin
+            self.process.stdin.close()
+
+    def _listen(self) -> None:
+        assert self.process.stdout
+        with suppress(RuntimeError):  # the loop has closed
+            try:
+                while True:
+                    self.loop.call_soon_threadsafe(self._heard, read_frame(self.process.stdout))
+            except (EOFError, OSError, ValueError):
+                self.process.wait()
+                self.loop.call_soon_threadsafe(self._ended)
+
+    def _heard(self, answer: Answer) -> None:
+        if answer.number != self.number:
+            return
+        if answer.kind == "progress":
+            self.tell(answer.value)
+        elif self.answered and not self.answered.done():
+            self.answered.set_result(answer)
+
+    def _ended(self) -> None:
+        if self.answered and not self.answered.done():
+            self.answered.set_result(Answer(self.number, "failed", "the computing process ended; try fewer points"))
+
+
+def _nobody(share: float) -> None:
+    """Nobody wants to know the progress."""
+
+
+class Pool:
+    """As many workers as the machine bears, lent to whoever computes; the last user gets his again if it is free."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, threads: int, most: int | None = None) -> None:
+        self.loop, self.threads = loop, threads
+        self.most = most or max(3, min(6, os.cpu_count() or 1))
+        self.idle: list[Worker] = []
+        self.busy: set[Worker] = set()
+        self.freed = asyncio.Condition()
+        self.closed = False
+
+    def start(self, jobs: tuple[Job, ...]) -> None:
+        """Begin with two workers, one of them warmed by ``jobs`` so that kernels are compiled or loaded."""
+        self.idle = [Worker(self.loop, self.threads) for _ in range(2)]
+        self.warming = self.loop.create_task(self._warm(jobs))
+
+    async def _warm(self, jobs: tuple[Job, ...]) -> None:
+        for job in jobs:
+            with suppress(InputError, ComputationError):
+                await self.run(job, self)
+
+    async def run(self, job: Job, owner: object, tell: Callable[[float], None] = _nobody) -> Answer:
+        """The answer to a job. Cancelling the caller ends the job, soon where it is not SUPERSEDED.
+
+        Raises
+        ------
+        InputError, ComputationError : as the function raised them.
+        """
+        worker = await self._borrow(owner)
+        answered = worker.begin(job, tell)
+        try:
+            answer = await asyncio.shield(answered)
+        except asyncio.CancelledError as cancelled:
+            # Nobody waits for what follows: the worker comes back, or its successor does.
+            grace = PATIENCE if SUPERSEDED in cancelled.args else GRACE
+            task = self.loop.create_task(self._dismiss(worker, grace))
+            _LAST_TASKS.add(task)
+            task.add_done_callback(_LAST_TASKS.discard)
+            raise
+        await self._give_back(worker)
+        if answer.kind == "refused":
+            raise InputError(answer.value)
+        if answer.kind != "done":
+            raise ComputationError(str(answer.value))
+        return answer
+
+    async def _borrow(self, owner: object) -> Worker:
+        async with self.freed:
+            while True:
+                self.idle = [w for w in self.idle if w.alive]
+                if self.idle:
+                    own = [w for w in self.idle if w.used_by is owner]
+                    worker = (own or self.idle)[-1]
+                    self.idle.remove(worker)
+                    break
+                if len(self.busy) < self.most:
+                    worker = Worker(self.loop, self.threads)
+                    break
+                await self.freed.wait()
+            worker.used_by = owner
+            self.busy.add(worker)
+            return worker
+
+    async def _give_back(self, worker: Worker) -> None:
+        async with self.freed:
+            self.busy.discard(worker)
+            if worker.alive:
+                self.idle.append(worker)
+            self.freed.notify()
+
+    async def _dismiss(self, worker: Worker, grace: float) -> None:
+        worker.ask_to_stop()
+        assert worker.answered is not None
+        await asyncio.wait([worker.answered], timeout=grace)
+        if not worker.answered.done():
+            worker.end()
+            if not self.closed and len(self.idle) < 2:
+                self.idle.append(Worker(self.loop, self.threads))
+        await self._give_back(worker)
+
+    def close(self) -> None:
+        """End all of them."""
+        self.closed = True
+        for worker in (*self.idle, *self.busy):
+            worker.end()
+
+
+_LAST_TASKS: set[asyncio.Task[None]] = set()
+"""Tasks that nobody waits for; the loop itself keeps no strong reference."""

@@ -1,0 +1,261 @@
+"""One page in one browser: its line, what it looks at, and the computations under way for it."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import traceback
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import panel as pn
+from panel.io.state import set_curdoc
+
+from trunnion.app import address
+from trunnion.app.calls import LINE, Call, script
+from trunnion.app.document import Document
+from trunnion.app.jobs import Job
+from trunnion.app.page import Page
+from trunnion.app.pool import SUPERSEDED, Pool
+from trunnion.app.variants import Sliders, buttons, difference
+from trunnion.app.views import VIEWS
+from trunnion.app.views.base import Step, View, links
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError, TrunnionError
+
+QUIET = 0.05
+"""Seconds without a further change before a computation begins."""
+KEPT, NOW = "kept", "now"
+
+
+class Session:
+    """Everything of one page. ``changed`` functions are called in the event loop, with the document locked."""
+
+    def __init__(self, toml: str, pool: Pool, sessions: dict[str, Session]) -> None:
+        self.pool = pool
+        self.token = secrets.token_urlsafe(24)
+        self.document = Document(toml)
+        self.kept: str | None = None
+        self.task: asyncio.Task[None] | None = None
+        self.side_tasks: set[asyncio.Task[None]] = set()
+        query = _query()
+        failure = self._read_lines(query)
+        self.page = Page(self.show_view, self.cancel)
+        self.sliders = Sliders(self, self._slid)
+        self.keep_buttons = buttons(self._keep, self._drop, self._swap)
+        self.views: dict[str, View] = {kind.name: kind(self) for kind in VIEWS}
+        for view in self.views.values():
+            start = f"{view.name}."
+            view.read({k.removeprefix(start): v for k, v in query.items() if k.startswith(start)})
+        self.view = self.views.get(query.get("view", ""), next(iter(self.views.values())))
+        self.difference = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.page.fill(self.sliders.panel, self.keep_buttons, self.difference)
+        self.template = self.page.template
+        self.doc = pn.state.curdoc
+        self.location = pn.state.location
+        sessions[self.token] = self
+        pn.state.on_session_destroyed(lambda context: self._destroyed(sessions))
+        pn.state.onload(self._loaded)
+        self.page.message(failure)
+
+    def _read_lines(self, query: Mapping[str, str]) -> str:
+        for key in ("line", "kept"):
+            if key not in query:
+                continue
+            try:
+                text = address.unpack(query[key])
+                read = Document(text)
+            except InputError as error:
+                return f"The address holds no driveline that can be read: {error}"
+            if key == "line":
+                self.document = read
+            else:
+                self.kept = text
+        return ""
+
+    def _loaded(self) -> None:
+        self.guarded(self._line_changed)
+
+    def _destroyed(self, sessions: dict[str, Session]) -> None:
+        sessions.pop(self.token, None)
+        for task in (self.task, *self.side_tasks):
+            if task:
+                task.cancel()
+
+    # -- what the user does ---------------------------------------------------------------------------------------
+
+    def guarded(self, action: Callable[[], Any]) -> None:
+        """Do something the user asked for; a refusal or a failure becomes a message."""
+        try:
+            action()
+        except TrunnionError as error:
+            self.page.message(str(error))
+        except Exception as error:
+            traceback.print_exc()
+            self.page.message(f"unexpected {type(error).__name__}: {error}. The page goes on; undo the last change.")
+
+    def edit(self, change: Callable[[Document], Any]) -> None:
+        """Change the line, and everything that follows from it."""
+
+        def work() -> None:
+            self.page.message("")
+            change(self.document)
+            self._line_changed()
+
+        self.guarded(work)
+
+    def _slid(self, line: Driveline) -> None:
+        self.edit(lambda document: document.set_numbers(line, str(self.sliders.which.value)))
+
+    def _keep(self, event: Any) -> None:
+        self.kept = self.document.toml
+        self._line_changed()
+
+    def _drop(self, event: Any) -> None:
+        self.kept = None
+        self._line_changed()
+
+    def _swap(self, event: Any) -> None:
+        if self.kept is not None:
+            other, self.kept = self.kept, self.document.toml
+            self.edit(lambda document: document.replace_text(other))
+
+    def show_view(self, name: str) -> None:
+        """Look at another view."""
+        self.view = self.views[name]
+        self.page.message("")
+        self.guarded(self._view_changed)
+
+    def _line_changed(self) -> None:
+        self.sliders.adapt(self.document.line)
+        self.difference.object = difference(self.kept, self.document.line)
+        self.keep_buttons[1].disabled = self.keep_buttons[2].disabled = self.kept is None
+        self._view_changed()
+
+    def _view_changed(self) -> None:
+        self.view.adapt(self.document.line)
+        self.view.downloads.object = links(self.token, self.view, self.files(self.view))
+        self._look()
+
+    def setting_chosen(self) -> None:
+        """The user changed a setting of the visible view."""
+        self.page.message("")
+        self.guarded(self._look)
+
+    def _look(self) -> None:
+        """Compute what the visible view shows; whatever was under way for it is dropped."""
+        sides = [NOW] if self.kept is None else [KEPT, NOW]
+        self.page.show(self.view, [(side, self.view.of(side)) for side in sides])
+        self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
+        self.start(self._compute(sides))
+
+    # -- computations ---------------------------------------------------------------------------------------------
+
+    def start(self, work: Any) -> None:
+        """Begin the computation of the visible view in place of the one under way."""
+        if self.task and not self.task.done():
+            self.task.cancel(SUPERSEDED)
+        self.task = asyncio.get_event_loop().create_task(self._watched(work))
+
+    def beside(self, work: Any) -> None:
+        """Begin a small computation beside that of the view, for a click say."""
+        task = asyncio.get_event_loop().create_task(self._watched(work))
+        self.side_tasks.add(task)
+        task.add_done_callback(self.side_tasks.discard)
+
+    def cancel(self) -> None:
+        """End what is under way."""
+        for task in (self.task, *self.side_tasks):
+            if task and not task.done():
+                task.cancel()
+        self.page.idle("cancelled")
+
+    async def _watched(self, work: Any) -> None:
+        try:
+            await work
+        except asyncio.CancelledError:
+            raise
+        except Exception as error:
+            if not isinstance(error, TrunnionError):
+                traceback.print_exception(error)
+            self.locked(partial(self.page.failed, str(error) or type(error).__name__))
+
+    async def _compute(self, sides: list[str]) -> None:
+        await asyncio.sleep(QUIET)
+        view = self.view
+        lines = {side: self._toml(side) for side in sides}
+        from trunnion.driveline.files import loads
+
+        steps = {s: view.steps(self.document.line if s == NOW else loads(toml)) for s, toml in lines.items()}
+        self.locked(partial(self.page.busy, 0.0))
+        done, total = 0, sum(map(len, steps.values()))
+        remarks: list[str] = []
+        for place in range(max(map(len, steps.values()), default=0)):
+            for side in reversed(sides):
+                if place >= len(steps[side]):
+                    continue
+                step = steps[side][place]
+                answer = await self.pool.run(step.job(lines[side]), self, partial(self._progress, done, total))
+                remarks += answer.remarks
+                self.locked(partial(view.of(side).show, step.name, answer.value))
+                done += 1
+        self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
+
+    async def ask(self, call: Call, show: str, side: str, **options: Any) -> Any:
+        """What one further computation for a side gives."""
+        return (await self.pool.run(Job(self._toml(side), call, show, options), self)).value
+
+    def _toml(self, side: str) -> str:
+        return self.document.toml if side == NOW else self.kept or self.document.toml
+
+    def _progress(self, done: int, total: int, share: float) -> None:
+        self.locked(partial(self.page.busy, (done + share) / total))
+
+    def locked(self, action: Callable[[], Any]) -> None:
+        """Change the page from a task: in turn, with the document locked."""
+
+        def work() -> None:
+            with set_curdoc(self.doc):
+                self.guarded(action)
+
+        if self.doc.session_context is not None and not self.doc.session_context.destroyed:
+            self.doc.add_next_tick_callback(work)
+
+    # -- files ----------------------------------------------------------------------------------------------------
+
+    def files(self, view: View) -> list[tuple[Step, tuple[str, ...]]]:
+        """What of a view may be downloaded."""
+        found = {}
+        for step in view.steps(self.document.line):
+            endings = (("png", "svg") if step.picture else ()) + step.files
+            if endings and (step.picture or step.files):
+                found[step.title or step.name] = (step, endings)
+        return list(found.values())
+
+    async def file(self, view_name: str, name: str, ending: str) -> bytes:
+        """The content of a download. KeyError where there is none of that name."""
+        view, toml = self.views[view_name], self.document.toml
+        if (name, ending) == ("driveline", "toml"):
+            return toml.encode()
+        if (name, ending) == ("driveline", "html"):
+            call = Call("tn.report", (LINE,))
+            return await self._bytes(Job(toml, call, "report"))
+        steps = {step.name: step for step in view.steps(self.document.line)}
+        if (name, ending) == ("view", "py"):
+            calls = {step.name: step.call for step in steps.values()}
+            return script(toml, calls, f"{view.title} of {self.document.line.name or 'a driveline'}").encode()
+        step = steps[name]
+        drawn = ("png", "svg") if step.picture else ()
+        if ending not in (*drawn, *step.files):
+            raise KeyError(ending)
+        options = {"ending": ending, "method": step.picture, "options": dict(step.drawing), "columns": step.columns}
+        return await self._bytes(Job(toml, step.call, "file", options))
+
+    async def _bytes(self, job: Job) -> bytes:
+        body: bytes = (await self.pool.run(job, self)).value
+        return body
+
+
+def _query() -> dict[str, str]:
+    return {key: values[0].decode("utf-8", "replace") for key, values in pn.state.session_args.items() if values}

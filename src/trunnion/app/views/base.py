@@ -1,0 +1,233 @@
+"""What every view has: settings that its address keeps, controls, jobs, and a picture for each variant."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+import panel as pn
+
+from trunnion.app.calls import Call
+from trunnion.app.jobs import Job
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    from trunnion.app.session import Session
+
+Setting = str | float | int | bool
+NAMES = {
+    "png": "PNG", "svg": "SVG", "csv": "CSV", "nc": "netCDF", "html": "HTML", "py": "Python", "toml": "TOML",
+}  # fmt: skip
+MOST_POINTS = 400
+"""Points along an axis that the browser may ask for."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One computation of a view: its name, the call, what is shown of it, and what may be downloaded.
+
+    files: endings of its data; picture: method that draws it ("" for none); drawing: its arguments; columns: variables
+    that a CSV holds, for results of many axes; slow: seconds are to be expected.
+    """
+
+    name: str
+    call: Call
+    show: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    picture: str = "plot"
+    drawing: Mapping[str, Any] = field(default_factory=dict)
+    files: tuple[str, ...] = ("csv", "nc")
+    columns: tuple[str, ...] = ()
+    title: str = ""
+
+    def job(self, toml: str) -> Job:
+        """The computation for a line."""
+        return Job(toml, self.call, self.show, self.options)
+
+
+class Side(Protocol):
+    """The picture of one variant."""
+
+    panel: Any
+
+    def show(self, name: str, data: Any) -> None:
+        """Show what the step ``name`` gave."""
+
+    def clear(self) -> None:
+        """Show that there is nothing."""
+
+
+class View:
+    """One view of a session. A subclass says its settings, controls, steps and side."""
+
+    name = ""
+    title = ""
+    about = ""
+    defaults: Mapping[str, Setting] = {}
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.settings: dict[str, Setting] = dict(self.defaults)
+        self.widgets: dict[str, Any] = {}
+        self.sides: dict[str, Side] = {}
+        self._quiet = False
+        self.downloads = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.controls = self.make_controls()
+
+    # -- what a subclass writes -----------------------------------------------------------------------------------
+
+    def make_controls(self) -> Any:
+        """Widgets, made once."""
+        return pn.FlexBox()
+
+    def adapt(self, line: Driveline) -> None:
+        """Choices that depend on the line."""
+
+    def steps(self, line: Driveline) -> list[Step]:
+        """What is computed, in order."""
+        raise NotImplementedError
+
+    def side(self) -> Side:
+        """A picture."""
+        raise NotImplementedError
+
+    # -- what they share ------------------------------------------------------------------------------------------
+
+    def of(self, variant: str) -> Side:
+        """The picture of a variant, made when it is first needed."""
+        if variant not in self.sides:
+            self.sides[variant] = self.side()
+        return self.sides[variant]
+
+    def read(self, query: Mapping[str, str]) -> None:
+        """Take settings from an address; what does not fit is left at its default."""
+        for key, default in self.defaults.items():
+            if key in query:
+                try:
+                    self.settings[key] = _as(query[key], default)
+                except ValueError:
+                    continue
+        self.fill()
+
+    def query(self) -> dict[str, str]:
+        """Settings that differ from their defaults, for the address."""
+        return {k: str(v) for k, v in self.settings.items() if v != self.defaults[k]}
+
+    def fill(self) -> None:
+        """Show the settings in the controls."""
+        self._quiet = True
+        try:
+            for key, widget in self.widgets.items():
+                value = self.settings[key]
+                if widget.value != value:
+                    choices = getattr(widget, "options", None)
+                    if choices is not None and value not in (
+                        choices.values() if isinstance(choices, dict) else choices
+                    ):
+                        continue
+                    widget.value = value
+        finally:
+            self._quiet = False
+
+    def put(self, key: str, value: Setting) -> None:
+        """Change a setting as if it had been typed."""
+        self.settings[key] = value
+        self.fill()
+        self.session.setting_chosen()
+
+    def bind(self, key: str, widget: Any) -> Any:
+        """Tie a widget to a setting."""
+        self.widgets[key] = widget
+
+        def changed(event: Any) -> None:
+            if self._quiet or event.new is None:
+                return
+            self.settings[key] = event.new
+            self.session.setting_chosen()
+
+        widget.param.watch(changed, "value")
+        return widget
+
+    def choose(self, key: str, choices: list[str] | dict[str, str]) -> None:
+        """Give a widget its choices; a setting that is none of them becomes the first."""
+        values = list(choices.values()) if isinstance(choices, dict) else choices
+        self._quiet = True
+        try:
+            if self.settings[key] not in values and values:
+                self.settings[key] = values[0]
+            self.widgets[key].options = choices
+            if values:
+                self.widgets[key].value = self.settings[key]
+            self.widgets[key].disabled = not values
+        finally:
+            self._quiet = False
+
+
+def links(token: str, view: View, files: list[tuple[Step, tuple[str, ...]]]) -> str:
+    """Links to everything of a view that may be downloaded."""
+    rows = []
+    for step, endings in files:
+        parts = " ".join(_link(token, view.name, step.name, ending, NAMES[ending]) for ending in endings)
+        rows.append(f"<li>{html.escape(step.title or step.name)}: {parts}</li>")
+    rows.append(f"<li>Python that computes what is shown: {_link(token, view.name, 'view', 'py', 'Python')}</li>")
+    whole = [_link(token, view.name, "driveline", ending, NAMES[ending]) for ending in ("toml", "html")]
+    rows.append(f"<li>the driveline: {whole[0]}, its report: {whole[1]}</li>")
+    return f"<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{''.join(rows)}</ul>"
+
+
+def _link(token: str, view: str, name: str, ending: str, text: str) -> str:
+    return f"<a href='download/{token}/{view}/{name}.{ending}' download>{text}</a>"
+
+
+def _as(text: str, default: Setting) -> Setting:
+    if isinstance(default, bool):
+        return text == "True"
+    if isinstance(default, int):
+        return int(text)
+    if isinstance(default, float):
+        return float(text)
+    return text[:200]
+
+
+def select(label: str, **more: Any) -> Any:
+    """A drop-down list with its label."""
+    return pn.widgets.Select(name=label, width=more.pop("width", 220), **more)
+
+
+def number(label: str, value: float, **more: Any) -> Any:
+    """A field for a number, with its label."""
+    return pn.widgets.FloatInput(name=label, value=value, width=more.pop("width", 130), **more)
+
+
+def count(label: str, value: int, start: int, end: int) -> Any:
+    """A field for a whole number within bounds."""
+    return pn.widgets.IntInput(name=label, value=value, start=start, end=end, width=110)
+
+
+def unit_of(line: Driveline) -> tuple[str, float]:
+    """Unit of speeds, and how many of it a rad/s is."""
+    unit = speed_unit(line)
+    return unit, speed_factor(unit)
+
+
+def speed_range(line: Driveline) -> tuple[float, float]:
+    """Lowest and highest speed [rad/s] that the line's pictures cover."""
+    from trunnion.equations.coefficients import assemble
+    from trunnion.reporting.overview import speed_range as of_assembly
+
+    low, high = of_assembly(assemble(line))
+    return max(low, high / 1000), high
+
+
+def at_speed(line: Driveline, typed: float) -> float:
+    """The speed [rad/s] typed in the line's unit; 0 stands for the operating speed, or the middle of the range."""
+    if typed > 0:
+        return typed / unit_of(line)[1]
+    if line.operation and line.operation.speed:
+        return line.operation.speed
+    low, high = speed_range(line)
+    return (low + high) / 2

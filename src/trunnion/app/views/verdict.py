@@ -1,0 +1,160 @@
+"""Is the line fit for its speeds: every check with its margin, what binds, what would help."""
+
+from __future__ import annotations
+
+import html
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import panel as pn
+from bokeh.models import Span
+
+from trunnion.app import figures
+from trunnion.app.calls import LINE, Call
+from trunnion.app.views.base import Step, View, select, speed_range, unit_of
+from trunnion.driveline.driveline import Driveline
+
+if TYPE_CHECKING:
+    from trunnion.app.session import Session
+
+ALL = "as stated and every load case"
+
+
+class VerdictView(View):
+    """The assessment."""
+
+    name = "verdict"
+    title = "Verdict"
+    about = "Every limit of the line and every rule that applies, over its speeds; the check that binds comes first."
+    defaults = {"load": ALL}
+
+    def make_controls(self) -> Any:
+        """The load."""
+        return pn.FlexBox(self.bind("load", select("Load", options=[ALL])))
+
+    def adapt(self, line: Driveline) -> None:
+        """Load cases of the line."""
+        self.choose("load", [ALL, *load_cases(line)])
+
+    def steps(self, line: Driveline) -> list[Step]:
+        """The assessment, then the torques that its limits stand against."""
+        case = self.settings["load"]
+        keywords = {} if case == ALL else {"load_case": case}
+        low, high = speed_range(line)
+        speeds = Call("tn.sweep_speeds", (LINE, low, high))
+        return [
+            Step(
+                "assessment",
+                Call("tn.assess", (LINE,), keywords),
+                "assessment",
+                picture="",
+                files=("csv", "nc"),
+                title="checks",
+            ),
+            Step(
+                "torque",
+                Call("tn.order_response", (LINE, speeds), keywords),
+                "torque_limits",
+                picture="plot",
+                files=("nc",),
+                title="torque over speed",
+            ),
+        ]
+
+    def side(self) -> Any:
+        """Sentence, margins, table."""
+        return _Side(self.session)
+
+
+def load_cases(line: Driveline) -> list[str]:
+    """Names of the line's load cases."""
+    return [case.name for case in line.operation.load_cases] if line.operation else []
+
+
+class _Side:
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.sentence = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], tools="")
+        self.bars = figures.source(check=[], margin=[], colour=[], said=[])
+        bar = self.margins.hbar(
+            y="check", right="margin", height=0.6, color="colour", hatch_pattern="hatch", source=self.bars
+        )
+        self.bars.data = {"check": [], "margin": [], "colour": [], "hatch": [], "said": []}
+        self.margins.add_layout(Span(location=0, dimension="height", line_color=figures.INK))
+        figures.hover(self.margins, [bar], [("check", "@check"), ("margin", "@margin{0.0} %"), ("", "@said")])
+        self.torque = figures.plot("input speed", "torque [N·m]", height=300)
+        self.lines = figures.source(xs=[], ys=[], colour=[], dash=[], name=[])
+        drawn = self.torque.multi_line(
+            "xs", "ys", line_color="colour", line_dash="dash", line_width=2, source=self.lines
+        )
+        figures.hover(self.torque, [drawn], [("", "@name")])
+        self.table = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.help = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.panel = pn.Column(
+            self.sentence,
+            pn.pane.Bokeh(self.margins, sizing_mode="stretch_width"),
+            self.help,
+            pn.pane.Bokeh(self.torque, sizing_mode="stretch_width"),
+            self.table,
+            sizing_mode="stretch_width",
+            margin=0,
+        )
+        self.binding = ""
+
+    def show(self, name: str, data: Any) -> None:
+        """The verdict, or the torque of what binds."""
+        if name == "assessment":
+            self._verdict(data)
+        else:
+            self._torque(data)
+
+    def _verdict(self, data: Any) -> None:
+        self.binding = data["element"]
+        self.limit = (data["limit"], data["quantity"])
+        kind = html.escape(data["verdict"].replace(" ", "-"))
+        self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{html.escape(data['sentence'])}</p>"
+        rows = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True) if np.isfinite(m)][:14]
+        names = [f"{i + 1}. {r['check']}" for i, (r, _) in enumerate(rows)]
+        bad = [r["status"] == "exceeded" for r, _ in rows]
+        colours = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
+        self.margins.y_range.factors = names[::-1]
+        self.margins.height = 70 + 26 * len(rows)
+        self.margins.visible = bool(rows)
+        self.bars.data = {
+            "check": names,
+            "margin": [100 * max(-2.0, min(2.0, m)) for _, m in rows],
+            "colour": [colours.get(r["status"], "#b8bec5") for r, _ in rows],
+            "hatch": ["right_diagonal_line" if b else " " for b in bad],
+            "said": [r["because"] for r, _ in rows],
+        }
+        self.table.object = _table(data)
+
+    def _torque(self, data: Any) -> None:
+        unit, factor = unit_of(self.session.document.line)
+        self.torque.xaxis.axis_label = f"input speed [{unit}]"
+        springs = data["springs"]
+        shown = [springs.index(self.binding)] if self.binding in springs else list(range(len(springs)))
+        x = data["speed"] * factor
+        names = [f"{springs[i]}: vibratory torque" for i in shown] + [f"{springs[i]}: largest torque" for i in shown]
+        ys = [data["vibratory"][:, i] for i in shown] + [data["peak"][:, i] for i in shown]
+        colours = [figures.COLOURS[k % 7] for k in range(len(shown))] * 2
+        dashes = ["solid"] * len(shown) + ["dashed"] * len(shown)
+        limit, quantity = self.limit
+        if len(shown) == 1 and quantity == "N*m" and np.isfinite(limit):
+            names, ys = [*names, "limit"], [*ys, np.full(len(x), limit)]
+            colours, dashes = [*colours, figures.ORANGE], [*dashes, "dotted"]
+        self.lines.data = {"xs": [x] * len(ys), "ys": ys, "colour": colours, "dash": dashes, "name": names}
+        whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
+        self.torque.title.text = f"torque of {whose}: vibratory (solid), largest (dashed), limit (dotted)"
+
+
+def _table(data: Any) -> str:
+    unit = data["unit"]
+    head = "".join(f"<th>{h}</th>" for h in ("check", "status", "margin", f"speed [{unit}]", "because", "rule"))
+    body = "".join(
+        "<tr>" + "".join(f"<td>{html.escape(str(v))}</td>" for v in row.values()) + f"<td>{html.escape(rule)}</td></tr>"
+        for row, rule in zip(data["rows"], data["rules"], strict=True)
+    )
+    said = "".join(f"<li>{html.escape(f)}</li>" for f in data["findings"])
+    return f"<table class='plain'><tr>{head}</tr>{body}</table><ul>{said}</ul>"

@@ -1,0 +1,114 @@
+"""A process that computes: reads jobs from its standard input, answers on its standard output.
+
+It ends with the server, whose end of the pipe closes. Results stay here, the last few of them, so that a picture, a
+file or another set of pixels of what is on screen computes nothing anew.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import signal
+import sys
+import threading
+import warnings
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import IO, Any
+
+from trunnion.app.jobs import Answer, Job, Start, Stop, read_frame, write_frame
+from trunnion.errors import InputError, InputRemark, TrunnionError
+
+MOST_KEPT = 6
+
+
+class _Stopped(Exception):
+    """The job is not wanted any more."""
+
+
+class _Worker:
+    def __init__(self, inward: IO[bytes], outward: IO[bytes], threads: int) -> None:
+        self.inward, self.outward, self.threads = inward, outward, threads
+        self.jobs: queue.Queue[Start] = queue.Queue()
+        self.stopped: set[int] = set()
+        self.kept: OrderedDict[str, Any] = OrderedDict()
+
+    def run(self) -> None:
+        threading.Thread(target=self._listen, daemon=True).start()
+        self._say(Answer(0, "ready"))
+        while True:
+            start = self.jobs.get()
+            self._say(self._answer(start))
+
+    def _listen(self) -> None:
+        while True:
+            try:
+                message = read_frame(self.inward)
+            except (EOFError, OSError):
+                os._exit(0)  # the server has gone, whatever is being computed
+            if isinstance(message, Stop):
+                self.stopped.add(message.number)
+            else:
+                self.jobs.put(message)
+
+    def _say(self, answer: Answer) -> None:
+        write_frame(self.outward, answer)
+
+    def _answer(self, start: Start) -> Answer:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", InputRemark)
+            try:
+                value = self._compute(start.job, self._progress(start.number))
+            except _Stopped:
+                return Answer(start.number, "stopped", "stopped")
+            except InputError as error:
+                return Answer(start.number, "refused", str(error))
+            except TrunnionError as error:
+                return Answer(start.number, "failed", str(error))
+            except MemoryError:
+                return Answer(start.number, "failed", "not enough memory; ask for fewer points")
+            except Exception as error:
+                return Answer(start.number, "failed", f"unexpected {type(error).__name__}: {error}")
+        remarks = dict.fromkeys(str(w.message) for w in said if issubclass(w.category, InputRemark))
+        return Answer(start.number, "done", value, tuple(remarks))
+
+    def _progress(self, number: int) -> Callable[[float], None]:
+        def report(share: float) -> None:
+            if number in self.stopped:
+                self.stopped.discard(number)
+                raise _Stopped
+            self._say(Answer(number, "progress", float(share)))
+
+        return report
+
+    def _compute(self, job: Job, progress: Callable[[float], None]) -> Any:
+        from trunnion.app import shown
+
+        progress(0.0)
+        result = self._result(job, progress)
+        return getattr(shown, job.show)(result, **job.options)
+
+    def _result(self, job: Job, progress: Callable[[float], None]) -> Any:
+        from trunnion.driveline.files import loads
+
+        key = repr((job.toml, job.call))
+        if key in self.kept:
+            self.kept.move_to_end(key)
+            return self.kept[key]
+        result = job.call.evaluate(loads(job.toml), {"progress": progress, "threads": self.threads})
+        self.kept[key] = result
+        while len(self.kept) > MOST_KEPT:
+            self.kept.popitem(last=False)
+        return result
+
+
+def main() -> None:
+    """Entry of ``python -m trunnion.app.worker THREADS``."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's, which closes the pipe
+    outward = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever prints must not mix with the answers
+    _Worker(sys.stdin.buffer, outward, int(sys.argv[1])).run()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""A server in a process of its own, a browser, and a page with what it asked of whom."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+WAIT = 180_000
+"""Milliseconds until a page must have answered: machines that test are busy, and the first run compiles."""
+
+
+def browser_path() -> str | None:
+    """Chromium or Chrome of the system."""
+    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
+    return os.environ.get("TRUNNION_BROWSER") or next((p for n in names if (p := shutil.which(n))), None)
+
+
+@dataclass
+class Server:
+    """``trunnion app`` in a process of its own."""
+
+    address: str
+    process: subprocess.Popen[str]
+
+    @property
+    def host(self) -> str:
+        """Host and port."""
+        return self.address.removeprefix("http://").rstrip("/")
+
+
+def start_server(*arguments: str) -> Server:
+    """Start the command and wait for its address."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src"), "PYTHONUNBUFFERED": "1"}
+    command = [sys.executable, "-m", "trunnion", "app", "--no-browser", "--threads", "1", *arguments]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True, start_new_session=True)
+    assert process.stdout
+    found = re.search(r"http://\S+", process.stdout.readline())
+    assert found, "the command ended without an address"
+    return Server(found.group(), process)
+
+
+@dataclass
+class Look:
+    """A page, and what it asked of whom."""
+
+    page: Any
+    server: Server
+    outside: list[str] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
+
+    def at(self, query: str = "") -> Look:
+        """Open the page and wait until it has computed."""
+        self.page.goto(self.server.address + query)
+        self.settled()
+        return self
+
+    def settled(self) -> None:
+        """Wait until nothing is being computed."""
+        self.page.wait_for_selector("[data-state=idle]", timeout=WAIT)
+
+    def view(self, title: str) -> None:
+        """Choose a view by its button."""
+        self.page.get_by_role("button", name=title, exact=True).or_(
+            self.page.get_by_role("radio", name=title, exact=True)
+        ).first.click()
+
+    def type(self, label: str, text: str) -> None:
+        """Type into a field and leave it."""
+        box = self.page.get_by_label(label, exact=True)
+        box.fill(text)
+        box.press("Enter")
+        box.blur()
+
+
+def outside(url: str, server: Server) -> bool:
+    own = ("http://" + server.host, "ws://" + server.host, "blob:", "data:")
+    return not url.startswith(own)

@@ -1,0 +1,118 @@
+"""The line under edit: what is refused stands beside its field, and the views keep what was accepted."""
+
+from __future__ import annotations
+
+import pytest
+
+import trunnion as tn
+from trunnion.app.address import pack, unpack
+from trunnion.app.calls import LINE, Call, script
+from trunnion.app.document import Document, changes
+from trunnion.driveline.starter import STARTERS, starter
+from trunnion.errors import InputError
+
+
+def fields(document: Document) -> dict[tuple[str | int, ...], tuple[str, str]]:
+    """Text and message of every field, by its path."""
+    return {f.path: (f.text, f.message) for g in document.groups() for f in g.fields}
+
+
+@pytest.mark.parametrize("name", STARTERS)
+def test_every_field_reads_back_as_it_is_shown(name: str) -> None:
+    document = Document(starter(name))
+    line = document.line
+    for path, (text, message) in fields(document).items():
+        assert message == ""
+        document.set_text(path, text)
+    assert document.problems == ()
+    assert document.line == line
+
+
+def test_a_refused_text_stays_in_its_field_and_the_line_stays() -> None:
+    document = Document(starter("two-shaft"))
+    before = document.line
+    document.set_text(("element", 1, "stiffness"), "12 parsec")
+    text, message = fields(document)["element", 1, "stiffness"]
+    assert text == "12 parsec"
+    assert "unknown unit" in message
+    assert document.line is before
+    assert document.undo()
+    assert fields(document)["element", 1, "stiffness"] == ("12 kN*m/rad", "")
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        (("element", 1, "stiffness"), "-3 N*m/rad"),
+        (("element", 3, "angle"), ""),
+        (("element", 2, "name"), "load"),
+        (("operation", "speed"), "-5 rpm"),
+        (("operation", "speed_range", 0), "9000 rpm"),
+        (("element", 4, "after"), "nowhere"),
+    ],
+)
+def test_every_refusal_is_said_somewhere(path: tuple[str | int, ...], text: str) -> None:
+    document = Document(starter("two-shaft"))
+    document.set_text(path, text)
+    assert document.problems
+    said = [f.message for g in document.groups() for f in g.fields] + [g.message for g in document.groups()]
+    assert any(said)
+
+
+def test_slider_moves_are_undone_as_one() -> None:
+    document = Document(starter("two-shaft"))
+    start = document.line
+    for angle in (0.1, 0.2, 0.3):
+        document.set_numbers(start.replace("HookeJoint 1", angle=angle), "HookeJoint 1.angle")
+    assert document.line.elements[3].angle == 0.3
+    document.undo()
+    assert document.line == start
+
+
+def test_elements_are_added_moved_and_removed() -> None:
+    document = Document(starter("two-shaft"))
+    document.add_element(2, "Disk")
+    assert document.line.names[2] == "Disk 1"
+    document.remove(("element", 2))
+    document.move(1, 1)
+    document.undo()
+    document.undo()
+    document.undo()
+    assert document.line == Document(starter("two-shaft")).line
+
+
+def test_changes_are_named_with_units() -> None:
+    line = tn.loads(starter("two-shaft"))
+    rows = changes(line, line.replace("HookeJoint 1", angle="5 deg"))
+    assert rows == [("HookeJoint 1, angle", "12 deg", "5 deg")]
+
+
+def test_an_address_holds_the_line() -> None:
+    text = starter("truck")
+    assert unpack(pack(text)) == text
+
+
+@pytest.mark.parametrize("text", ["", "!!!", "AAAA", "eJw", pack("x" * 2_000_000)])
+def test_a_damaged_or_swollen_address_is_refused(text: str) -> None:
+    with pytest.raises(InputError):
+        Document(unpack(text))
+
+
+def test_a_file_too_large_is_refused_before_it_is_read() -> None:
+    document = Document(starter("two-shaft"))
+    with pytest.raises(InputError, match="characters"):
+        document.replace_text("#" * 1_000_001)
+
+
+def test_exported_python_computes_what_the_call_gives() -> None:
+    line = tn.loads(starter("two-shaft"))
+    call = Call("tn.order_response", (LINE, Call("np.linspace", (50.0, 60.0, 3))), {"orders": (2.0,)})
+    there: dict[str, object] = {}
+    exec(script(starter("two-shaft"), {"orders": call}, "orders"), there)
+    assert (there["orders"].torque == call.evaluate(line).torque).all()
+
+
+def test_a_call_reaches_public_functions_only() -> None:
+    for name in ("os.system", "tn._HOME", "np.__class__", "eval"):
+        with pytest.raises(ValueError):
+            Call(name).evaluate(None)

@@ -1,0 +1,54 @@
+"""The application as its users meet it: a browser, a page, and the same numbers as the public functions give."""
+
+from __future__ import annotations
+
+import re
+
+from served import Look
+
+import trunnion as tn
+from trunnion.driveline.starter import starter
+
+
+def test_an_edited_value_changes_the_verdict(look: Look) -> None:
+    look.at()
+    look.type("angle of HookeJoint 1", "2 deg")
+    look.view("Verdict")
+    line = tn.loads(starter("two-shaft")).replace("HookeJoint 1", angle="2 deg")
+    expected = tn.assess(line).sentence
+    look.page.get_by_text(expected, exact=True).wait_for()
+
+
+def test_a_refused_value_is_said_beside_its_field_and_undone(look: Look) -> None:
+    look.at()
+    look.type("stiffness of Shaft 1", "12 parsec")
+    look.page.get_by_text("unknown unit 'parsec'").wait_for()
+    assert look.page.get_by_label("stiffness of Shaft 1", exact=True).get_attribute("aria-invalid") == "true"
+    look.page.get_by_role("button", name="Undo").click()
+    look.page.get_by_text("unknown unit 'parsec'").wait_for(state="hidden")
+    assert look.page.get_by_label("stiffness of Shaft 1", exact=True).input_value() == "12 kN*m/rad"
+
+
+def test_a_link_is_restored_in_a_fresh_browser(look: Look, browser: object, server: object) -> None:
+    look.at()
+    look.type("angle of HookeJoint 1", "7.25 deg")
+    look.view("Verdict")
+    look.page.wait_for_url(re.compile("view=verdict"))
+    sentence = look.page.locator("[data-verdict]").inner_text()
+    other = browser.new_context().new_page()  # type: ignore[attr-defined]
+    other.goto(look.page.url)
+    other.get_by_text(sentence, exact=True).wait_for(timeout=180_000)
+    other.context.close()
+
+
+def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
+    look.at()
+    field = look.page.get_by_label("Open a TOML file")
+    field.set_input_files({"name": "bad.toml", "mimeType": "text/plain", "buffer": b"format = 1\n[[element"})
+    look.page.get_by_text("is not valid TOML").wait_for()
+    field.set_input_files({"name": "big.toml", "mimeType": "text/plain", "buffer": b"#" * 1_500_000})
+    look.page.get_by_text("at most 1000000 are taken").wait_for()
+    good = starter("two-shaft").replace("12 deg", "3.5 deg").encode()
+    field.set_input_files({"name": "good.toml", "mimeType": "text/plain", "buffer": good})
+    look.page.wait_for_function("() => document.location.search.length > 0", timeout=180_000)
+    look.page.get_by_text("3.5").first.wait_for()
