@@ -1,8 +1,21 @@
-"""What all tests share: which of the slow ones are studies of many minutes, left to ``make studies``."""
+"""What all tests share: the order of files, which slow tests are studies, and fixtures of more than one file."""
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
 import pytest
+from typer.testing import CliRunner, Result
+
+import trunnion as tn
+from trunnion.cli import app
+from trunnion.studies.result import Reproduction
 
 STUDIES = {
     "test_command_lines.py": "500 random command lines",
@@ -18,8 +31,99 @@ STUDIES = {
 """Files whose slow tests are studies, and what they go through."""
 
 
+LONGEST = ["test_features.py", "test_random_chains.py"]
+"""Files that take longest, the longest first. Their first two need different kernels, so none is compiled twice."""
+
+LINE = """\
+format = 1
+name = "test line"
+
+[operation]
+speed = "1500 rpm"
+speed_range = ["600 rpm", "2400 rpm"]
+angle_range = ["0 deg", "20 deg"]
+
+[[operation.load_case]]
+name = "climb"
+loads = { "Disk 2" = "250 N*m" }
+
+[[element]]
+type = "ConstantSpeed"
+
+[[element]]
+type = "Shaft"
+stiffness = "12 kN*m/rad"
+damping = "3 N*m*s/rad"
+
+[[element]]
+type = "Disk"
+inertia = "0.4 kg*m^2"
+
+[[element]]
+type = "HookeJoint"
+angle = "12 deg"
+
+[[element]]
+type = "Shaft"
+stiffness = "10 kN*m/rad"
+damping = "3 N*m*s/rad"
+
+[[element]]
+type = "Disk"
+inertia = "0.9 kg*m^2"
+"""
+Run = Callable[..., Result]
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("slow") and item.path.name in STUDIES:
             item.add_marker("study")
+    # Two workers take whole files in this order; a long one taken last would be waited for by the other worker.
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
+
+
+@pytest.fixture(scope="session")
+def study() -> Callable[[str], Reproduction]:
+    """``study(name)``, at the points of the documentation; each is computed once for all tests of a run."""
+    return cache(lambda name: tn.reproduce(name))
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of its own with ``line.toml``, as the working folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def run(here: Path) -> Run:
+    """The command in this process."""
+    return lambda *args: CliRunner().invoke(app, [str(a) for a in args])
+
+
+@pytest.fixture
+def start(here: Path) -> Callable[..., subprocess.Popen[str]]:
+    """Python in a process of its own, by default the command; importing the package under test."""
+
+    def started(*args: str, program: tuple[str, ...] = ("-m", "trunnion.cli"), encoding: str = "utf-8"):
+        source = str(Path(tn.__file__).parents[1])
+        return subprocess.Popen(
+            [sys.executable, *program, *args],
+            cwd=here,
+            env={**os.environ, "PYTHONPATH": source, "PYTHONIOENCODING": encoding},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            # Where the tests run in the background Ctrl-C is ignored, and a process inherits that.
+            preexec_fn=_hear_ctrl_c if os.name == "posix" else None,
+        )
+
+    return started
+
+
+def _hear_ctrl_c() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from typer.core import TyperGroup
 
 import trunnion
 import trunnion.studies.entries as catalogue
@@ -73,6 +74,16 @@ def trunnion_with(stdout, *args):
         return subprocess.run(
             [sys.executable, "-m", "trunnion", *args], stdout=stream, stderr=subprocess.PIPE, env=env, timeout=120
         )
+
+
+def test_ctrl_c_before_a_command_is_reached_is_said_too(run, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(TyperGroup, "make_context", interrupted, raising=False)
+    result = run("schema")
+    assert (result.exit_code, result.stdout) == (130, "")
+    assert result.stderr == "error: interrupted; nothing was written\n"
 
 
 @posix

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from functools import cache
 from pathlib import Path
+
+from feature_lines import CHANGES, bent, straight, with_tube
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
@@ -13,8 +14,6 @@ from trunnion.errors import InputError
 from trunnion.studies.entries import catalogue, entries
 
 TESTS = Path(__file__).parents[1]
-sys.path.append(str(TESTS / "contract"))
-from feature_lines import CHANGES, bent, straight, with_tube  # noqa: E402
 
 # Stated by hand: what ``dumps`` has turned into numbers.
 STATED = """\

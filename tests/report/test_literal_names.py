@@ -29,7 +29,7 @@ def line(name: str) -> tn.Driveline:
     )
 
 
-@pytest.mark.parametrize(("name", "ending"), zip(NAMES, ["svg", "png", "pdf"] * 3, strict=False))
+@pytest.mark.parametrize(("name", "ending"), list(zip(NAMES, ["svg", "png", "pdf"] * 3, strict=False)))
 def test_text_of_every_kind_is_shown_as_written(name, ending):
     axes = new_axes()
     axes.plot([1, 1e6], [1, 1e6], label=name)

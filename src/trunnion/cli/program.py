@@ -33,6 +33,10 @@ from trunnion.errors import InputRemark, TrunnionError, short
 _UsageError = cast("type[Exception]", typer.BadParameter.__mro__[1])
 
 
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it."""
+
+
 class _Interrupted(Exception):
     """Ctrl-C, under a name that typer does not answer itself."""
 
@@ -59,6 +63,8 @@ class OneLineGroup(TyperGroup):
             _print_remarks()
             try:
                 code = super().main(arguments, prog_name or "trunnion", **extra)
+                if code == INTERRUPTED:  # typer's own answer, before and after a command runs, is silent
+                    raise _Interrupted
                 sys.stdout.flush()
             except Exception as error:
                 code = _answer(error, arguments)
@@ -86,7 +92,7 @@ def _answer(error: Exception, arguments: list[str]) -> int:
     """Exit code of a failure, said on stderr in one line, or in one line per complaint."""
     match error:
         case _Interrupted():
-            return _fail("interrupted; nothing was written", 130)
+            return _fail("interrupted; nothing was written", INTERRUPTED)
         case BrokenPipeError():  # who reads us has gone, as "head" does
             _discard_stdout()
             return 1

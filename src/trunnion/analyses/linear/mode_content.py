@@ -71,7 +71,7 @@ class ModeMotion:
 def mode_content(motion: ModeMotion, turns: Fraction) -> ModeContent | None:
     """Content of a Floquet mode of period ``turns`` of the input; modes are those of the mean M and K.
 
-    None where the mode does not oscillate both ways.
+    None where the mode does not oscillate both ways, or no mode of the mean M and K oscillates at all.
     """
     mass, stiffness = motion.mass, motion.stiffness
     squares, shapes = eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
@@ -87,9 +87,11 @@ def mode_content(motion: ModeMotion, turns: Fraction) -> ModeContent | None:
     forward, backward = ahead.sum(0), back.sum(0)
     if not (forward.sum() > 0 and backward.sum() > 0):
         return None
+    held = _over_frequency(squares, (np.abs(rate) ** 2).mean(0) + squares * (np.abs(place) ** 2).mean(0))
+    if not held.sum() > 0:
+        return None
     first, second = ahead[:, forward.argmax()].argmax(), back[:, backward.argmax()].argmax()
     excitation = int(harmonic[first] - harmonic[second]) / turns
-    held = _over_frequency(squares, (np.abs(rate) ** 2).mean(0) + squares * (np.abs(place) ** 2).mean(0))
     return ModeContent(forward / forward.sum(), backward / backward.sum(), excitation, held / held.sum())
 
 

@@ -1,7 +1,0 @@
-"""Makes the packages ``oracles`` and this folder's helpers importable."""
-
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-sys.path.insert(0, str(Path(__file__).parent))
