@@ -59,9 +59,14 @@ def without(matrix: Array, vectors: Array) -> tuple[Array, Array]:
 
 
 def along(matrix: Array, direction: Array) -> int:
-    """Which eigenvalue of ``matrix``, in the order of ``multipliers``, has the eigenvector nearest to ``direction``."""
-    vectors = np.linalg.eig(matrix)[1]
-    return int(np.argmax(np.abs(direction @ vectors) / np.linalg.norm(vectors, axis=0)))
+    """Which eigenvalue of ``matrix``, in the order of ``multipliers``, has the eigenvector nearest to ``direction``.
+
+    The direction is that of a slow change without oscillation: eigenvalues that are real and positive go before others.
+    """
+    values, vectors = np.linalg.eig(matrix)
+    near = np.abs(direction @ vectors) / np.linalg.norm(vectors, axis=0)
+    steady = (np.abs(values.imag) <= 1e-12 * np.abs(values)) & (values.real > 0)
+    return int(np.argmax(np.where(steady | ~steady.any(), near, -1.0)))
 
 
 def spectral_radius(values: Complex, bound: Array) -> tuple[Array, Array]:

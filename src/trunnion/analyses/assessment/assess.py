@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 from trunnion.analyses.assessment.bending import bending
@@ -20,6 +21,7 @@ from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.errors import InputError
+from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
 
 
@@ -77,6 +79,7 @@ def subject_of(
 
 def checks_of(subject: Subject) -> tuple[Check, ...]:
     """All checks in order, of each the load case that binds."""
+    on_threads(Case.prepare, subject.cases, os.cpu_count() or 1)
     return in_order([*worst(check for case in subject.cases for check in by_case(subject, case)), *of_line(subject)])
 
 

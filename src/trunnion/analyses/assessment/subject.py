@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,14 +11,18 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.charts.axes import lowest_speed
+from trunnion.analyses.linear.along import StabilityAlong, stability_along
 from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
 POINTS = 201
@@ -71,9 +76,33 @@ class Case:
     def answer(self) -> OrderResponse | str:
         """The linear response by order, or why there is none."""
         try:
-            return order_response(self.assembly, self.speeds)
+            found = order_response(self.assembly, self.speeds)
         except (InputError, ComputationError) as error:
             return str(error).splitlines()[0]
+        return replace(found, judged=self._judged) if self.parametric else found
+
+    def prepare(self) -> None:
+        """Compute what the checks look at, so that cases can do it side by side."""
+        _ = self.answer, self.modes
+        with suppress(InputError, ComputationError):  # said where it is looked at
+            _ = self.along if self.parametric else None
+
+    @property
+    def parametric(self) -> bool:
+        """Whether a joint or a mesh makes the line's coefficients vary."""
+        return bent(self.assembly) or any(mesh.stiffness_rates for mesh in self.assembly.topology.meshes)
+
+    @cached_property
+    def along(self) -> StabilityAlong:
+        """Stability at ``speeds`` and at the resonance speeds of the joints between them, which may be narrow."""
+        low, high = float(self.speeds[0]), float(self.speeds[-1])
+        named = [r.speed for r in resonance_speeds(self.assembly).within(low, high) if r.opens] if low < high else []
+        return stability_along(self.assembly, np.union1d(self.speeds, named))
+
+    def _judged(self) -> NDArray[np.int8]:
+        if self.assembly.coefficients(self.assembly.table(1), any_frequency=True).loss.any():
+            return np.full(len(self.speeds), Verdict.FAILED, dtype=np.int8)  # no equations in time
+        return self.along.verdict[np.searchsorted(self.along.speed, self.speeds)]
 
     @property
     def response(self) -> OrderResponse | None:

@@ -74,7 +74,7 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     InputError : torques that do not balance.
     ComputationError : no motion found.
     """
-    prepared = line_system(assemble(_quiet(line)), speed)
+    prepared = line_system(assemble(quiet(line)), speed)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
     found = kept_speed_orbit(prepared, tolerance=tolerance)
     orbit = found.orbit
@@ -98,7 +98,8 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     return OwnMotion(orbit, response, found.extra_torque, prepared.assembly, speed)
 
 
-def _quiet(line: Driveline) -> Driveline:
+def quiet(line: Driveline) -> Driveline:
+    """``line`` without the excitations of its disks."""
     for name, element in zip(line.names, line.elements, strict=True):
         if isinstance(element, Disk) and element.excitation:
             line = line.replace(name, excitation=None)

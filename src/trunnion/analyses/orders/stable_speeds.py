@@ -1,23 +1,18 @@
-"""At which speeds the steady response is reached: Floquet verdicts at many speeds, from the compiled chain kernel."""
+"""At which speeds the steady response is reached: Floquet verdicts at many speeds."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.chart_families import quantities
-from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
+from trunnion.analyses.linear.along import stability_along
 from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import bent
-from trunnion.equations.topology import require_period
-from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
 from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
-TOLERANCE = 1e-7
 GROWS = 1e-9
 """Real part of an eigenvalue, relative to the largest, from which a straight line counts as unstable."""
 
@@ -33,18 +28,9 @@ def verdicts_at(assembly: Assembly, speed: Array, *, statically_twisted: bool = 
     varies = bent(assembly) or bool(co.waves)
     if co.loss.any() and varies:
         return np.full(len(speed), Verdict.FAILED, dtype=np.int8)
-    return _periodic(assembly, co) if varies else _straight(assembly, co)
-
-
-def _periodic(assembly: Assembly, co: LineCoefficients) -> Codes:
-    topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
-    window = Window(0.0, 2 * np.pi * float(require_period(assembly.line, topo)), False)
-    lanes = chain_lanes(topo, co, by_speed)
-    matrix, error, trace = chain_monodromy(chain_program(topo, by_speed), lanes, window, TOLERANCE)
-    if topo.free:
-        values, bounds = quantities(matrix, error, trace)
-        return judge(values.T.copy(), bounds.T.copy(), topo.size, True).verdict
-    return judge_matrices(matrix, error, trace).verdict
+    if varies:
+        return stability_along(assembly, speed, statically_twisted=statically_twisted).verdict
+    return _straight(assembly, co)
 
 
 def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:

@@ -1,0 +1,199 @@
+"""Floquet stability at many speeds at once: what the verdicts along a running range stand on.
+
+All speeds share the work. Up to ``LARGEST`` unknowns the monodromy matrices come from exponentials in plain NumPy, so
+that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain kernel. Bent
+lines that start free are taken about their own periodic motions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.charts.chart_families import quantities
+from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
+from trunnion.analyses.linear.own_motions import own_motions
+from trunnion.equations.coefficients import Assembly, LineCoefficients, MeshWave
+from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
+from trunnion.equations.steady_base import bent, require_balance
+from trunnion.equations.topology import require_period
+from trunnion.errors import InputError
+from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
+from trunnion.numerics.chain.exponential_monodromy import FIRST_STEPS, exponential_monodromies
+from trunnion.numerics.spectrum import without
+from trunnion.results.verdict import Verdict, verdicts
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+LARGEST = 12
+"""Unknowns up to which products of dense matrices cost less than the chain kernel."""
+TOLERANCE = 1e-7
+STEPS_PER_CYCLE = 4
+UNDAMPED = 1e-12
+FEWEST_SAMPLES = 64
+
+
+class NoSharedMotion(InputError):
+    """A bent line that starts free and has stages or play: ``stability`` judges it speed by speed."""
+
+
+@dataclass(frozen=True)
+class StabilityAlong:
+    """speed [rad/s], radius, error (its estimate), critical (the largest multiplier), verdict (code), each (speed,);
+    period [rad of input angle]."""
+
+    speed: Array
+    radius: Array
+    error: Array
+    critical: Complex
+    verdict: NDArray[np.int8]
+    period: float
+
+    @property
+    def growth_rate(self) -> Array:
+        """Growth of the fastest disturbance [1/s] (speed,); negative where it decays."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.radius) * self.speed / self.period)
+
+
+def stability_along(assembly: Assembly, speeds: ArrayLike, *, statically_twisted: bool = True) -> StabilityAlong:
+    """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with bent joints or varying meshes.
+
+    Raises
+    ------
+    InputError : no period; torques that do not balance. NoSharedMotion is one.
+    """
+    speed = np.asarray(speeds, dtype=float)
+    if assembly.topology.free and bent(assembly):
+        return _about_own_motions(assembly, speed)
+    table = assembly.table(len(speed))
+    table[:, 0] = speed
+    co = assembly.coefficients(table, statically_twisted=statically_twisted)
+    small = assembly.topology.size <= LARGEST
+    return _by_exponentials(assembly, co) if small else _by_kernel(assembly, co)
+
+
+def straight_decay(assembly: Assembly, speed: float) -> float:
+    """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even.
+
+    What is no disturbance is left out: a turn of the whole line that starts free, its speed where no torque depends on
+    it.
+    """
+    topo, table = assembly.topology, assembly.table(1, speed)
+    for j in topo.joints:
+        table[:, assembly.packed.column(topo.stations[j].element, "angle")] = 0.0
+    co = replace(assembly.coefficients(table, any_frequency=True), waves=())
+    m = line_matrices(topo, co, np.zeros(1))
+    root = np.sqrt(np.einsum("ctii->ci", m.mass))
+    stiffness = np.einsum("ctii->ci", m.stiffness)
+    unit = np.sqrt(np.maximum(np.abs(stiffness / root**2).mean(axis=1), 1e-300)) / speed
+    slopes = _first_order(m, co.speed, root, unit)[0, 0]
+    aside = rigid_motions(topo, co) * np.concatenate([root[0], root[0] / unit[0]])[:, None]
+    left = without(slopes, aside)[0] if aside.shape[1] else slopes
+    return float(-np.linalg.eigvals(left).real.max(initial=-np.inf) * speed)
+
+
+def _by_exponentials(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
+    topo, cases = assembly.topology, len(co.speed)
+    period = _period(assembly)
+    cycles = _cycles(assembly, period)
+    times = max(FEWEST_SAMPLES, 16 * int(np.ceil(cycles)))
+    probe = line_matrices(topo, co, period * np.arange(times) / times)
+    root = np.sqrt(np.einsum("ctii->cti", probe.mass).mean(axis=1))
+    stiffness = np.einsum("ctii->cti", probe.stiffness).mean(axis=1) / root**2
+    unit = np.sqrt(np.maximum(np.abs(stiffness).mean(axis=1), 1e-300)) / co.speed
+
+    def rates(which: NDArray[np.intp], tau: Array) -> Array:
+        return _first_order(line_matrices(topo, _cases(co, which), tau), co.speed[which], root[which], unit[which])
+
+    aside = rigid_motions(topo, co)
+    rest = None
+    if aside.shape[1]:
+        scaled = aside * np.concatenate([root, root / unit[:, None]], axis=1)[:, :, None]
+        rest = np.linalg.qr(scaled, mode="complete")[0][:, :, aside.shape[1] :]
+    judged = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+    found = exponential_monodromies(
+        rates, cases, 2 * topo.size, period, least_steps=_steps(cycles), aside=judged
+    )  # fmt: skip
+    trace = np.einsum("ctii->ct", probe.damping / np.einsum("ctii->cti", probe.mass)[..., None]).mean(axis=1)
+    undamped = np.abs(trace * period / co.speed) < UNDAMPED * topo.size
+    code = verdicts(found.radius, found.error, undamped)
+    return StabilityAlong(co.speed, found.radius, found.error, found.critical, code, period)
+
+
+def _first_order(m: LineMatrices, speed: Array, root: Array, unit: Array) -> Array:
+    """A (case, time, 2n, 2n) of states (x√m, dx/dτ √m/ν) from matrices in time; mass matrices are diagonal."""
+    n = m.mass.shape[-1]
+    over = 1 / np.einsum("ctii->cti", m.mass)[..., None]
+    ratio = root[:, None, :, None] / root[:, None, None, :]
+    a = np.zeros((*m.mass.shape[:2], 2 * n, 2 * n))
+    a[..., :n, n:] = np.eye(n) * unit[:, None, None, None]
+    a[..., n:, :n] = m.stiffness * over * (ratio / (-(speed**2) * unit)[:, None, None, None])
+    a[..., n:, n:] = m.damping * over * (ratio / -speed[:, None, None, None])
+    return a
+
+
+def _cases(co: LineCoefficients, which: NDArray[np.intp]) -> LineCoefficients:
+    parts = {f.name: getattr(co, f.name)[which] for f in fields(co) if f.name != "waves"}
+    waves = tuple(MeshWave(w.compliance, w.cycles, w.share[which], w.phase[which]) for w in co.waves)
+    return LineCoefficients(**parts, waves=waves)
+
+
+def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
+    table = assembly.table(len(speed))
+    table[:, 0] = speed
+    require_balance(assembly, table)
+    motions = own_motions(assembly.line, speed)
+    if motions is None:
+        raise NoSharedMotion(
+            "starts free and has stages or play, so that each speed takes its own motion",
+            element="driveline",
+            remedy="ask stability at single speeds",
+        )
+    there = np.flatnonzero(motions.found)
+    radius, error = np.full(len(speed), np.nan), np.full(len(speed), np.nan)
+    critical = np.full(len(speed), np.nan, dtype=complex)
+    if len(there):
+        cycles = _cycles(assembly, motions.period)
+        found = exponential_monodromies(
+            lambda which, tau: motions.rates(there[which], tau),
+            len(there),
+            2 * assembly.topology.size,
+            motions.period,
+            least_steps=_steps(cycles),
+            aside=lambda which, z: motions.beside_neutral(there[which], z),
+        )
+        radius[there], error[there], critical[there] = found.radius, found.error, found.critical
+    code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
+    return StabilityAlong(speed, radius, error, critical, code.astype(np.int8), motions.period)
+
+
+def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
+    topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
+    period = _period(assembly)
+    lanes = chain_lanes(topo, co, by_speed)
+    program = chain_program(topo, by_speed)
+    matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
+    if topo.free:
+        values, bounds = quantities(matrix, error, trace)
+        found = judge(values.T.copy(), bounds.T.copy(), topo.size, rigid_motions(topo, co).shape[1])
+    else:
+        found = judge_matrices(matrix, error, trace)
+    return StabilityAlong(co.speed, found.radius, found.error, found.critical, found.verdict, period)
+
+
+def _period(assembly: Assembly) -> float:
+    return 2 * np.pi * float(require_period(assembly.line, assembly.topology))
+
+
+def _cycles(assembly: Assembly, period: float) -> float:
+    """Cycles of the fastest coefficient over a period."""
+    return max((float(rate) for rate in assembly.topology.rates), default=1.0) * period / (2 * np.pi)
+
+
+def _steps(cycles: float) -> int:
+    """Steps that cannot leap over ``cycles`` of the coefficients."""
+    return max(FIRST_STEPS, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1.0)))))
