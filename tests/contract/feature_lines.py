@@ -91,6 +91,17 @@ def jointed(joint: object) -> Change:
     return behind("front", tn.Disk(inertia=0.05, name="carrier"), joint, tn.Shaft(stiffness=2e4, name="middle"))
 
 
+def flywheel(**more: object) -> Change:
+    """A disk that the drive holds."""
+    return behind("drive", tn.Disk(inertia=0.5, name="flywheel", **more))
+
+
+def in_series(first: float, second: float) -> Change:
+    """Two equal shafts in place of the front one, by their damping."""
+    half = [tn.Shaft(stiffness=2e4, damping=c, name=n) for c, n in ((first, "front"), (second, "front 2"))]
+    return lambda line: swap(line, "front", *half)
+
+
 def undamped(ratio: float | None) -> Change:
     def change(line: tn.Driveline) -> tn.Driveline:
         elements = [type(e)(**{k: v for k, v in e.stated.items() if k != "damping"}) for e in line.elements]
@@ -157,6 +168,8 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "quadratic load": (same, put("load", quadratic_load=0.005)),
     "excitation by order": (same, put("load", excitation=[{"order": 2, "amplitude": 5.0}])),
     "excitation in time": (same, put("load", excitation=[{"frequency": 100.0, "amplitude": 9.0}])),
+    "excitation of a held disk": (flywheel(), flywheel(excitation=[{"order": 2, "amplitude": 50.0}])),
+    "unlike damping in series": (in_series(10.0, 10.0), in_series(16.0, 4.0)),
     "branch": (same, branched),
     "free start": (same, free),
     "drive share": (free, lambda line: free(line).replace("hub", drive_share=0.5)),

@@ -93,13 +93,59 @@ def test_order_of_magnitude_between_resonances(speed: float) -> None:
 
 
 def test_the_choice_is_the_users() -> None:
-    """``statically_twisted=False`` is the unloaded line; the load then changes nothing."""
+    """``statically_twisted=False`` is the unloaded line; a constant load then changes nothing."""
     loaded, bare = chain(0.1, 0.4, 0.9).line(), chain(0.0, 0.4, 0.9).line()
     untwisted = tn.stability(loaded, 0.9, statically_twisted=False)
     twisted, unloaded = tn.stability(loaded, 0.9), tn.stability(bare, 0.9)
     assert abs(twisted.spectral_radius - unloaded.spectral_radius) > 1e-6
-    # The load itself acts on disks behind joints of their own group only; here it leaves no trace.
     assert set_distance(untwisted.multipliers, unloaded.multipliers) < 1e-12
+
+
+def behind_a_joint(**loads: float) -> tn.Driveline:
+    """A loaded disk rigidly behind a joint of its own group, on a shaft that turns backwards."""
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=900.0, damping=0.4),
+            tn.Disk(inertia=0.5),
+            tn.Ratio(ratio=-1.5),
+            tn.HookeJoint(angle=0.6),
+            tn.Disk(inertia=0.3, name="pump", **loads),
+            tn.HookeJoint(angle=0.4, plane=0.7),
+            tn.Shaft(stiffness=700.0, damping=0.3, fork_offset=0.5),
+            tn.Disk(inertia=0.4),
+        ]
+    )
+
+
+def test_untwisted_no_torque_acts_behind_a_joint_either() -> None:
+    """Not in ``stability``, nor in charts: what a load adds by its slope along the angle goes with its torque."""
+    found = {}
+    for load in (0.0, 40.0):
+        line = behind_a_joint(load_torque=load)
+        chart = tn.stability_chart(
+            line, ("speed", 30, 31, 2), ("HookeJoint 1.angle", 0.6, 0.7, 2), statically_twisted=False
+        )
+        dense = tn.stability(line, 30.0, statically_twisted=False)
+        assert chart.spectral_radius[0, 0] == pytest.approx(dense.spectral_radius, abs=1e-9)
+        found[load] = dense.multipliers, chart.spectral_radius
+    assert set_distance(found[0.0][0], found[40.0][0]) < 1e-12
+    assert np.array_equal(found[0.0][1], found[40.0][1])
+    twisted = tn.stability(behind_a_joint(load_torque=40.0), 30.0)
+    assert set_distance(twisted.multipliers, found[0.0][0]) > 1e-4
+
+
+def test_untwisted_a_load_by_speed_counts_about_its_mean() -> None:
+    """A viscous load c v is then c (v − v̄): the line twisted less what its mean as a constant load does untwisted."""
+    line = behind_a_joint(viscous_load=1.5)
+    mean = 1.5 * 30.0 / 1.5
+    balanced = behind_a_joint(viscous_load=1.5, load_torque=-mean)  # nothing is carried on average, so nothing twists
+    untwisted = tn.stability(line, 30.0, statically_twisted=False)
+    assert set_distance(untwisted.multipliers, tn.stability(balanced, 30.0).multipliers) < 1e-12
+    chart = tn.stability_chart(
+        line, ("speed", 30, 31, 2), ("HookeJoint 1.angle", 0.6, 0.7, 2), statically_twisted=False
+    )
+    assert chart.spectral_radius[0, 0] == pytest.approx(untwisted.spectral_radius, abs=1e-9)
 
 
 @pytest.mark.parametrize("load", [-0.1, 0.2])

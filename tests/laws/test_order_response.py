@@ -244,7 +244,7 @@ def departure(line: tn.Driveline, speed: float) -> tuple[float, float]:
 def falls_with_the_square(seed: int) -> tuple[float, float]:
     """Exponent of the difference over the last step of scale, and its size there relative to the largest order."""
     speed = float(np.random.default_rng(1000 + seed).uniform(25, 60))
-    scales = [1 / 256, 1 / 8192]
+    scales = [1 / 256, 1 / 32768]
     (far, _), (near, largest) = (departure(jointed(seed, scale), speed) for scale in scales)
     return float(np.log(far / near) / np.log(scales[0] / scales[1])), near / largest
 
@@ -253,7 +253,7 @@ def check_square(seed: int) -> None:
     exponent, share = falls_with_the_square(seed)
     # Below 1e-9 of the largest order the difference is the accuracy of the nonlinear motion.
     assert exponent > 1.95 or share < 1e-9
-    assert share < 1e-5
+    assert share < 1e-5  # it falls with the scale: 9e-4 at 1/256 where the line is closest to a resonance
 
 
 @pytest.mark.parametrize("seed", range(8))

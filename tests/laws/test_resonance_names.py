@@ -64,12 +64,29 @@ class Chain:
         square, shape = np.linalg.eigh(mean / root[:, None] / root)
         return np.sqrt(square), shape / root[:, None]
 
-    def participation(self, speeds: np.ndarray) -> list[tuple[float, np.ndarray]]:
-        """Of the mode that grows fastest at each speed: |multiplier| and how far every mode takes part in it.
+    def growth(self, speed: float, mode: int, damping: float) -> float:
+        """ln |σ| of what grows fastest where ``mode`` is damped by ``damping`` per τ, a step of order 4 at a time."""
+        n, steps = len(self.inertia), 4096
+        shape = self.modes()[1][:, mode]
+        h = np.pi / steps
+        stiffness, given, slip = self.matrices(h * np.arange(2 * steps + 1) / 2)
+        a = np.zeros((2 * steps + 1, 2 * n, 2 * n))
+        a[:, :n, n:] = np.eye(n)
+        a[:, n:, :n] = -(stiffness / speed**2 + slip / speed) / self.inertia[:, None]
+        a[:, n:, n:] = -given / speed / self.inertia[:, None] - damping * np.outer(shape, shape * self.inertia)
+        carried = np.eye(2 * n)
+        for m in range(steps):
+            s1 = a[2 * m] @ carried
+            s2 = a[2 * m + 1] @ (carried + h / 2 * s1)
+            s3 = a[2 * m + 1] @ (carried + h / 2 * s2)
+            carried = carried + h / 6 * (s1 + 2 * s2 + 2 * s3 + a[2 * m + 2] @ (carried + h * s3))
+        return float(np.log(np.abs(np.linalg.eigvals(carried)).max()))
 
-        Right and left vector of the multiplier are carried over the period, r(τ) = Φ r and l(τ) = l Φ⁻¹; in modal
-        places and rates l_m r_m add up to 1 at every τ. What is shaken beside its own frequency and takes no part in
-        the growth has mean 0: in an undamped line this is Krein's action, and the modes of a sum share it equally.
+    def participation(self, speeds: np.ndarray) -> list[tuple[float, np.ndarray]]:
+        """Of what grows fastest at each speed: |multiplier| σ, and by mode m −2 ∂ln σ / (π ∂d_m), d_m being damping of
+        mode m alone, −d_m q̇_m: how far the growth per τ falls where that mode is damped.
+
+        By left and right vector of the multiplier carried over the period, r(τ) = Φ r and l(τ) = l Φ⁻¹.
         """
         n, count = len(self.inertia), len(speeds)
         frequency, shape = self.modes()
@@ -100,8 +117,8 @@ class Chain:
             values, vectors = np.linalg.eig(carried[b])
             i, along = int(np.abs(values).argmax()), np.stack(path)[:, b]
             left = np.linalg.inv(vectors)[i] @ np.linalg.inv(along) @ np.linalg.inv(modal)
-            share = np.mean(left * (along @ vectors[:, i] @ modal.T), axis=0)
-            found.append((float(np.abs(values[i])), np.abs((share[:n] + share[n:]).real)))
+            each = np.mean(left * (along @ vectors[:, i] @ modal.T), axis=0)
+            found.append((float(np.abs(values[i])), 2 * each[n:].real))
         return found
 
 
@@ -123,7 +140,7 @@ def names_against_participation(points: int, seed: int) -> tuple[int, int, int]:
         speeds = rng.uniform(0.3, 1.2, 12) * rng.choice(frequency, 12)
         speeds = speeds[speeds > frequency[-1] / 60]
         assembly = assemble(chain.line())
-        for speed, (radius, share) in zip(speeds, chain.participation(speeds) if len(speeds) else [], strict=True):
+        for speed, (radius, part) in zip(speeds, chain.participation(speeds) if len(speeds) else [], strict=True):
             if radius < 1.0005:
                 continue
             # The equations of the line without its forced response, which takes longer than all the rest.
@@ -134,19 +151,36 @@ def names_against_participation(points: int, seed: int) -> tuple[int, int, int]:
                 unnamed += 1
                 continue
             named = [m - 1 for m in found.resonance.modes]
-            others = np.delete(share, named)
+            share = np.abs(part) / np.abs(part).sum()
             # What takes part by less than a tenth of the whole does not decide a name.
-            contradicted += share[named].min() < others.max(initial=0) - 0.1 * share.sum()
+            contradicted += share[named].min() < np.delete(share, named).max(initial=0) - 0.1
     return seen, unnamed, contradicted
+
+
+def test_participation_is_what_damping_one_mode_takes_from_the_growth() -> None:
+    """The measure that names are held against, by growths at two dampings of one mode each."""
+    rng = np.random.default_rng(6)
+    seen = 0
+    while seen < 3:
+        chain = random_chain(rng)
+        speed = float(rng.uniform(0.3, 1.2) * rng.choice(chain.modes()[0]))
+        radius, part = chain.participation(np.array([speed]))[0]
+        if radius < 1.01:
+            continue
+        seen += 1
+        for mode in range(len(part)):
+            fall = (chain.growth(speed, mode, -1e-4) - chain.growth(speed, mode, 1e-4)) / 2e-4 * 2 / np.pi
+            assert fall == pytest.approx(part[mode], abs=2e-3)
 
 
 def test_names_are_those_of_the_modes_that_grow() -> None:
     seen, unnamed, contradicted = names_against_participation(40, 4)
-    assert contradicted == 0 and unnamed < 0.1 * seen
+    assert contradicted == 0 and unnamed < 0.05 * seen
 
 
 @pytest.mark.slow
 def test_names_are_those_of_the_modes_that_grow_at_two_thousand_points() -> None:
-    """Of 703 others 3 were contradicted and 5.7 % not named, where content is mixed or a slow mode grows aside."""
-    seen, unnamed, contradicted = names_against_participation(2000, 5)
-    assert contradicted <= 0.01 * seen and unnamed < 0.075 * seen
+    """Rules were settled on 802 others, from seed 77."""
+    seen, unnamed, contradicted = names_against_participation(2000, 20260)
+    print(f"{seen} points, {unnamed} without a name, {contradicted} contradicted")
+    assert contradicted == 0 and unnamed < 0.05 * seen

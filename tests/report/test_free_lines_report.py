@@ -10,7 +10,7 @@ import pytest
 import trunnion as tn
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.equations.coefficients import assemble
-from trunnion.reporting.overview_findings import held_excitation, response_findings
+from trunnion.reporting.overview_findings import remark_findings, response_findings
 from trunnion.results.finding import Gravity
 
 LINES = Path(__file__).parents[1] / "data" / "lines"
@@ -41,12 +41,14 @@ def test_a_ship_line_has_a_verdict() -> None:
 
 def test_an_excitation_that_does_nothing_is_said() -> None:
     line = tn.load(LINES / "engine-held.toml")
-    (finding,) = held_excitation(line)
-    assert finding.gravity is Gravity.CAUTION and "holds engine rigidly" in finding.sentence
+    (finding,) = remark_findings(line)
+    assert finding.gravity is Gravity.CAUTION
+    assert finding.sentence.startswith("engine.excitation: does nothing, a ConstantSpeed holds its rotation; leave out")
+    assert finding in tn.stability(line).findings and finding in tn.order_response(line, [100.0]).findings
     louder = line.replace("engine", excitation=[{"order": 2, "amplitude": 2000.0}])
     both = [tn.periodic_response(each, compare=False).torque_peak_to_peak for each in (line, louder)]
     np.testing.assert_allclose(*both, rtol=1e-9)
-    assert not list(held_excitation(line.replace("engine", excitation=None)))
+    assert not list(remark_findings(line.replace("engine", excitation=None)))
 
 
 def test_a_resonance_beyond_the_range_is_named_where_it_raises_torques_inside() -> None:

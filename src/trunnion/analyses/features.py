@@ -14,6 +14,7 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import FEATURES, feature
+from trunnion.driveline.remarks import HELD, SERIES, remarks
 from trunnion.results.finding import Finding, Gravity
 
 
@@ -41,12 +42,15 @@ Words = str | tuple[str, str]
 
 
 def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
-    """One finding for every feature of ``line`` that ``analysis`` leaves out, naming the places."""
+    """One finding for every feature of ``line`` that ``analysis`` leaves out, naming the places; the line's own remarks
+    where they concern it."""
+    said = {key for key, cell in TABLE[analysis].items() if cell.treatment is Treatment.SAID}
+    own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in remarks(line) if key in said)
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
             places.setdefault(cell.reason, {}).update(dict.fromkeys(feature(key).places(line)))
-    return tuple(
+    return own + tuple(
         Finding(Gravity.CAUTION, f"{', '.join(where)} {'is' if len(where) == 1 else 'are'} left out: {reason}")
         for reason, where in places.items()
         if where
@@ -78,7 +82,23 @@ _NO_LAW = {
 }
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
-_FORCING = {"excitation by order": _FORCES, "excitation in time": _FORCES, "transmission error": _FORCES}
+_FORCING = dict.fromkeys(
+    ("excitation by order", "excitation in time", "excitation of a held disk", "transmission error"), _FORCES
+)
+_HELD: dict[str, Words] = {
+    HELD: (
+        "a ConstantSpeed holds its rotation",
+        "does nothing, a ConstantSpeed holds its rotation",
+    )
+}
+_SERIES: dict[str, Words] = {
+    SERIES: (
+        "springs in series, with no inertia between and damping over stiffness different, count as one, "
+        "to first order in damping",
+        "they count as one shaft",
+    )
+}
+_BY_PLACE = {**_HELD, **_SERIES}
 _FAR_END = {"prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _BASE = {
     "free start": "bent, it is judged about its own periodic motion",
@@ -87,6 +107,7 @@ _BASE = {
 }
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
+    **_SERIES,
     "Hooke's joint": (_ALIGNED, "joint angles zero"),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
     "viscous load": "damping ratios are those of the shafts alone",
@@ -125,7 +146,7 @@ _RIGID = dict.fromkeys(
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
         "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
-        "excitation in time", "free start", "drive share",
+        "excitation in time", "excitation of a held disk", "unlike damping in series", "free start", "drive share",
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
@@ -147,22 +168,33 @@ TABLE: dict[str, Row] = {
             **_MODES_INERT,
             "Hooke's joint": "the speeds are those at which a bent joint of any angle can resonate",
             **dict.fromkeys(
-                ("damping", "loss factor", "damping ratio", "mesh damping", "damping in contact only"), _UNDAMPED
+                (
+                    "damping",
+                    "loss factor",
+                    "damping ratio",
+                    "mesh damping",
+                    "damping in contact only",
+                    "unlike damping in series",
+                ),
+                _UNDAMPED,
             ),
         },
     ),
-    "stability": _row(refused={**_NO_LAW, **_FAR_END}, inert=_PASSIVE),
+    "stability": _row(refused={**_NO_LAW, **_FAR_END}, said=_BY_PLACE, inert=_PASSIVE),
     "stability_chart": _row(
         refused={**_NO_LAW, **_BASE},
+        said=_SERIES,
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     "stable_limit": _row(
         refused={**_NO_LAW, **_BASE},
+        said=_SERIES,
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
-    "speed_sweep": _row(refused={**_NO_LAW, **_FAR_END}, inert=_PASSIVE),
+    "speed_sweep": _row(refused={**_NO_LAW, **_FAR_END}, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
         refused={**_NO_LAW, **_BASE},
+        said=_BY_PLACE,
         inert=_PASSIVE,
     ),
     "bending_speeds": _row(
@@ -182,29 +214,31 @@ TABLE: dict[str, Row] = {
             "mesh-stiffness variation": _RIGID_MESH,
             "excitation by order": _STEADY,
             "excitation in time": _STEADY,
+            "excitation of a held disk": _STEADY,
+            "unlike damping in series": _UNDAMPED_TURN,
             "drive share": "the first element drives alone",
         },
         inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
     ),
     "phase_forks": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
-    "simulate": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "periodic_response": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "run_up": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "safe_accelerations": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "lyapunov_spectrum": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "lyapunov_sweep": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "lyapunov_map": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "poincare_map": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "bifurcation_diagram": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "certify_chaos": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "periodic_branch": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "harmonic_balance": _row(refused=_DRIVEN, inert=_PASSIVE),
-    "frequency_response": _row(refused=_ONE_DRIVE, inert=_PASSIVE),
-    "exact_motion": _row(refused=_NOT_EXACT, inert=_UNBENT),
-    "piecewise_orbit": _row(refused=_NOT_EXACT, inert=_UNBENT),
-    "piecewise_branch": _row(refused=_NOT_EXACT, inert=_UNBENT),
-    "sweep": _row(refused=_NOT_EXACT, inert=_UNBENT),
+    "simulate": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "run_up": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "safe_accelerations": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "lyapunov_spectrum": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "lyapunov_sweep": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "lyapunov_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "poincare_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "bifurcation_diagram": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "certify_chaos": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic_branch": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "harmonic_balance": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "frequency_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "exact_motion": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "piecewise_orbit": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "piecewise_branch": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "sweep": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
 }
 
 NOT_ANALYSES = {

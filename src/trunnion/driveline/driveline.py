@@ -16,6 +16,7 @@ from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of, wrong_
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.refusals import about, nearest, refuse
+from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
@@ -80,6 +81,8 @@ class Driveline(BaseModel):
         if self.damping_ratio is not None and self.damping_ratio < 0:
             remark = "is negative and feeds energy into the line; write it positive unless that is meant"
             warnings.warn(InputRemark(f"driveline.damping_ratio = {self.damping_ratio:g}: {remark}"), stacklevel=2)
+        for _, sentence in remarks(self):
+            warnings.warn(InputRemark(sentence), stacklevel=2)
 
     @field_validator("operation", mode="before")
     @classmethod

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, DoubleCardanJoint
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -144,6 +145,12 @@ FEATURES = (
     Feature("quadratic load", ("Disk.quadratic_load",)),
     Feature("excitation by order", ("Disk.excitation", "Excitation.order", "Excitation.amplitude"), _excited("order")),
     Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited("frequency")),
+    Feature(HELD, (), lambda line: [f"{name}.excitation" for name in held_excitations(line)]),
+    Feature(
+        SERIES,
+        (),
+        lambda line: [f"{name}.damping" for names, _ in unlike_in_series(line) for name in names],
+    ),
     Feature("branch", ("Element.after",), _branches),
     Feature("free start", (), _free),
     Feature("prescribed far end", (), _prescribed_end),

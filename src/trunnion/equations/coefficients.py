@@ -51,10 +51,11 @@ class LineCoefficients:
     speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad]
     per compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
     station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
-    drive_share carries included in ``load``; angle [rad] per joint; ``shift`` [rad] per station: what a shaft adds
-    to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
-    measure it from its own plane. ``loss`` [N m/rad] per compliance is ηk where a loss factor holds at all
-    frequencies: the stiffness is then k + i·loss·sgn(frequency). ``waves``: meshes
+    drive_share carries included in ``load``; not_carried [N m] per station: its mean where the line is taken untwisted,
+    a base state in which no torque acts (0 otherwise); angle [rad] per joint; ``shift`` [rad] per station: what a shaft
+    adds to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
+    measure it from its own plane. ``loss`` [N m/rad] per compliance is ηk where a loss factor holds at all frequencies:
+    the stiffness is then k + i·loss·sgn(frequency). ``waves``: meshes
     whose stiffness varies about the one given here.
     """
 
@@ -67,6 +68,7 @@ class LineCoefficients:
     load: Array
     viscous: Array
     quadratic: Array
+    not_carried: Array
     angle: Array
     shift: Array
     loss: Array
@@ -237,7 +239,8 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     topo, column = assembly.topology, assembly.packed.column
     cases, stations = len(table), len(topo.stations)
     loads = station_loads(topo, column, table)
-    static = static_torque(topo, mean_load(topo, loads, table[:, 0]))
+    mean = mean_load(topo, loads, table[:, 0])
+    static = static_torque(topo, mean)
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.empty_like(static) for _ in range(4))
     each: dict[int, Array] = {}
@@ -280,6 +283,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         load=loads.constant,
         viscous=loads.viscous,
         quadratic=loads.quadratic,
+        not_carried=np.zeros_like(mean) if twisted else mean,
         angle=angle,
         shift=shift,
         loss=loss,

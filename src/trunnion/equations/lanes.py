@@ -112,6 +112,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     members = _members(topo, by_speed)
     owner = [topo.coordinate[topo.group_of(s)] for s in members]
     sign = np.sign([float(topo.speed_ratio[s]) for s in members])
+    load = co.load - co.not_carried
     walk = _Walk(topo, co.shift)
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
     waves = [
@@ -126,7 +127,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
         scale=np.ascontiguousarray(scale.T),
         torque=np.ascontiguousarray(torque.T),
         member_inertia=np.ascontiguousarray((co.inertia[:, members] / inertia[:, owner]).T),
-        member_load=np.ascontiguousarray((sign * co.load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
+        member_load=np.ascontiguousarray((sign * load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
         member_viscous=np.ascontiguousarray((co.viscous[:, members] / inertia[:, owner] * over_speed[:, None]).T),
         member_quadratic=np.ascontiguousarray((co.quadratic[:, members] / inertia[:, owner]).T),
         wave_share=np.ascontiguousarray(waves[0]),

@@ -6,6 +6,7 @@ to the shaft's near end, and T̄ the static torque (positive with the twist),
     J δ″ + J′wδ′ + (J′w′ + ½J″w²) δ + Σ_e (∂q_e/∂δ)(c q̇_e + k q_e) − r₁ T̄ δ + r₁ M δ + r M′ (r δ′ + r₁ w δ)
         = −J w′ − ½J′w² − Σ_e (∂q_e/∂δ) T̄_e − r M,
 
+(untwisted, T̄ and the mean of M leave the left side: no torque acts in that base state),
 where J(a) = Σ J_s r_s² is the inertia of a group (it depends on the angle when a joint lies inside the
 group), J′ and J″ its derivatives by the angle of the group, M = M₀ + c₁v + c₂v|v| the load torques at the
 station's own speed v = rw, behind a bent joint a periodic one, M′ = c₁ + 2c₂|v| their slope, and q̇_e the
@@ -80,11 +81,13 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         v = r * w
         growth = viscous + 2 * quadratic * np.abs(v)
         # A constant load resists the mean sense of rotation of its own station, the others the rotation itself.
-        load = load * np.sign(float(topo.speed_ratio[s])) + (viscous + quadratic * np.abs(v)) * v
+        sense = np.sign(float(topo.speed_ratio[s]))
+        load = load * sense + (viscous + quadratic * np.abs(v)) * v
+        carried = load - coefficients.not_carried[:, s, None] * sense
         j, j1, j2 = inertia * r**2, 2 * inertia * r * r1, 2 * inertia * (r1**2 + r * r2)
         mass[..., i, i] += j
         damping[..., i, i] += j1 * w + r**2 * growth
-        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * load + r * growth * r1 * w
+        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
     for e, compliance in enumerate(topo.compliances):
         near_group = topo.group_of(compliance.near)

@@ -25,8 +25,8 @@ from trunnion.reporting.overview_findings import (
     assessment_findings,
     chart_findings,
     free_findings,
-    held_excitation,
     line_findings,
+    remark_findings,
     resonance_findings,
     response_findings,
     slow_findings,
@@ -123,7 +123,7 @@ def overview(
         *(chart_findings(chart, unit) if chart else ()),
         *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
         *(free_findings(assembly, (low, high), unit) if joints and assembly.topology.free else ()),
-        *held_excitation(line),
+        *remark_findings(line),
     ]
     return Overview(
         line=line,
@@ -137,7 +137,7 @@ def overview(
         stability=at_speed,
         sweep=sweep,
         chart=chart,
-        findings=by_gravity(findings),
+        findings=by_gravity(dict.fromkeys(findings)),
     )
 
 

@@ -9,14 +9,14 @@ import numpy as np
 from trunnion.analyses.assessment.assess import assess
 from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.linear.resonance_speeds import Resonance, ResonanceSpeeds
+from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import LARGE_ANGLE, Disk, HookeJoint
+from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint
+from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent
-from trunnion.equations.topology import topology
 from trunnion.errors import ComputationError
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity
@@ -84,7 +84,7 @@ def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iter
     for first, last in bands:
         worst = first + int(np.argmax(radius[first : last + 1]))
         there = stability(assembly, float(sweep.x[worst]))
-        cause = f" ({_named(there.resonance)})" if there.resonance else ""
+        cause = f" ({there.resonance.in_words})" if there.resonance else ""
         edges = f"from {_plain(float(sweep.x[first]), unit)} to {_speed(float(sweep.x[last]), unit)}"
         at = f"worst at {_speed(there.speed, unit)}, where"
         if first == last:
@@ -124,7 +124,7 @@ def resonance_findings(
     side = "above" if distance > 0 else "below"
     yield Finding(
         Gravity.CAUTION if abs(distance) < NEAR else Gravity.NOTE,
-        f"{count} lie{one} {within}; nearest to the operating speed is the {_named(nearest)} at "
+        f"{count} lie{one} {within}; nearest to the operating speed is the {nearest.in_words} at "
         f"{_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
     )
 
@@ -190,20 +190,10 @@ def free_findings(assembly: Assembly, limits: tuple[float, float], unit: str) ->
         yield Finding(Gravity.CAUTION, f"No periodic motion was found to judge at {', '.join(failed)}. {why}.")
 
 
-def held_excitation(line: Driveline) -> Iterator[Finding]:
-    """Harmonic torques on a disk that a ConstantSpeed holds rigidly: whatever they are, nothing moves."""
-    topo = topology(line, tripods=True)
-    held = []
-    for station, i in topo.disks:
-        element = line.elements[i]
-        if isinstance(element, Disk) and element.excitation and topo.prescribed[topo.group_of(station)]:
-            held.append(line.names[i])
-    if held:
-        yield Finding(
-            Gravity.CAUTION,
-            f"A ConstantSpeed holds {', '.join(held)} rigidly, so that its excitation does nothing. Leave out the "
-            "ConstantSpeed and give the disk drive_share = 1, or put a Shaft between.",
-        )
+def remark_findings(line: Driveline) -> Iterator[Finding]:
+    """What of the line does nothing, or holds in part only, by where it stands."""
+    for _, sentence in remarks(line):
+        yield Finding(Gravity.CAUTION, sentence)
 
 
 def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
@@ -247,10 +237,6 @@ def _unsettled(chart: StabilityChart, where: str) -> Iterator[Finding]:
             f"{undecided} of {total} points {where} stand on a stability boundary: the spectral radius is 1 "
             "to within its error.",
         )
-
-
-def _named(resonance: Resonance) -> str:
-    return f"{resonance.kind} resonance {resonance.label}"
 
 
 def _speed(speed: float, unit: str) -> str:

@@ -1,13 +1,16 @@
-"""Which modes a growing Floquet mode consists of, and the resonance that they name.
+"""Which modes take part in the growth of a Floquet mode, and the resonance that they name.
 
-A Floquet mode x = e^{μτ} Σ_h X_h e^{ihbτ} oscillates at the frequencies f_h = Im μ + hb. In a parametric resonance
-ω_i + ω_j = νΩ it holds mode i at a frequency f > 0 and mode j at one f′ < 0, and f − f′ = ν is the exciting frequency
-exactly, whatever the angles of the joints have made of ω_i and ω_j. How much of a mode there is at a frequency is
-measured by its action f |φᵀMX|², the energy over the frequency: the two modes of a sum resonance hold equal actions of
-opposite sign (their Krein signatures), while their energies are as ω_i to ω_j.
+A growing disturbance r(τ) and its adjoint l(τ), right and left vector of one multiplier carried over the period, keep
+l·r = 1. Written in the places and rates of the modes of the mean M and K, every mode takes part in the growth by the
+mean of its own l·r over the period: the parts add up to 1, and are how far the growth falls where that mode alone is
+damped. What is merely shaken beside its own frequency has none. With
 
-At large angles a mode may also be pushed aside slowly, or shaken far from its own frequency, and grow by that; action
-by frequency hardly sees it. So no name is given to modes that do not lead in the mean of energy over ω_i as well.
+    r = e^{μτ} Σ_h R_h e^{ihbτ},   l = e^{−μτ} Σ_h L_h e^{−ihbτ},   part = Σ_h L_h R_h
+
+each part falls to the frequencies f_h = Im μ + hb. In a parametric resonance ω_i + ω_j = νΩ mode i takes part at a
+frequency f > 0 and mode j at one f′ < 0, half each without damping, and f − f′ = ν is the exciting frequency exactly,
+whatever the angles of the joints have made of ω_i and ω_j. What takes part at f = 0 is pushed aside without
+oscillating: a divergence.
 """
 
 from __future__ import annotations
@@ -17,108 +20,132 @@ from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.linalg import eig, eigh
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source
 
 Array = NDArray[np.float64]
-MAIN, ALONE = 0.4, 0.55
-"""Share of the positive and of the negative action that each of two modes must hold for a name, and one alone."""
-CLEAR = 1.25
-"""Energy over ω of the lesser of two excited modes over that of any other, at least."""
-RIGID = 1e-9
-"""Square of a frequency over the highest one's below which a mode is a turn of the whole line."""
+Complex = NDArray[np.complex128]
+LEAST = 0.02
+"""Part that the lesser of two modes must take for a name. Damping can make a line unstable far beside a sum where one
+of the two modes takes nearly all part."""
 HIGHEST_ORDER, HIGHEST_MIXED = 16, 4
 """Multiples of one excitation, and of several together, that a name may hold."""
-
-
-@dataclass(frozen=True)
-class ModeContent:
-    """Shares of the positive and the negative action by mode (mode,), ν, the exciting frequency per turn, and by mode
-    the share of the energy over ω, mean of the period."""
-
-    forward: Array
-    backward: Array
-    excitation: Fraction
-    held: Array
-
-    @property
-    def pair(self) -> tuple[int, int] | None:
-        """The two modes, numbered from 0 and ascending; None where the content is mixed."""
-        i, j = int(self.forward.argmax()), int(self.backward.argmax())
-        most = MAIN if i != j else ALONE
-        clear = min(self.forward[i], self.backward[j]) >= most and self.excitation > 0
-        lead = CLEAR if i != j else 1.0
-        leads = min(self.held[i], self.held[j]) >= lead * np.delete(self.held, [i, j]).max(initial=0.0)
-        return (min(i, j), max(i, j)) if clear and leads else None
+FARTHEST = 0.75
+"""Logarithm of a resonance's speed over the line's beyond which it names no growth: at 45° tongues are that wide."""
 
 
 @dataclass(frozen=True)
 class ModeMotion:
-    """The states (samples, 2n), x and dx/dτ, of one growing Floquet mode over a period, and what they are judged by.
+    """One Floquet mode and its adjoint over a period, and what they are judged by.
 
-    Samples stand at equal distances of the input's angle from 0 on, the end left out; ``exponent`` is ln σ over
-    ``period`` [rad]; mass and stiffness (n, n) are the means M and K over the period, in any common unit.
+    right, left (samples, 2n): states x and dx/dτ and the rows that go with them, at equal distances of the input's
+    angle from 0 on, the end left out; ``exponent`` is ln σ over ``period`` [rad]; mass and stiffness (n, n) are the
+    means M and K over the period, in any common unit.
     """
 
-    states: NDArray[np.complex128]
+    right: Complex
+    left: Complex
     exponent: complex
     period: float
     mass: Array
     stiffness: Array
 
 
-def mode_content(motion: ModeMotion, turns: Fraction) -> ModeContent | None:
-    """Content of a Floquet mode of period ``turns`` of the input; modes are those of the mean M and K.
+@dataclass(frozen=True)
+class ModeContent:
+    """Parts that the modes take in a growth, as shares of the sum of all absolute values.
 
-    None where the mode does not oscillate both ways, or no mode of the mean M and K oscillates at all.
+    forward, backward, still (mode,): at frequencies above, below and at 0; whole (mode,): over all frequencies, where
+    what a mode gains at one it may lose at another; excitation: f − f′ of the leading ones, the exciting frequency per
+    turn of the input.
     """
+
+    forward: Array
+    backward: Array
+    still: Array
+    whole: Array
+    excitation: Fraction
+
+    @property
+    def pair(self) -> tuple[int, int] | None:
+        """The two modes of a resonance, numbered from 0 and ascending; None where the content is mixed."""
+        i, j = int(self.forward.argmax()), int(self.backward.argmax())
+        taken = (self.forward[i], self.backward[j])
+        clear = min(taken) >= LEAST and self.excitation > 0 and self._leads(i, j)
+        return (min(i, j), max(i, j)) if clear else None
+
+    @property
+    def diverging(self) -> int | None:
+        """The mode, numbered from 0, that is pushed aside without oscillating; None where that is not what grows."""
+        i, j, k = int(self.forward.argmax()), int(self.backward.argmax()), int(self.still.argmax())
+        oscillating = self.forward[i] + self.backward[j] if i == j else 0.0
+        return k if self.still[k] > oscillating and self._leads(k, k) else None
+
+    def _leads(self, i: int, j: int) -> bool:
+        """Whether no other mode takes more part."""
+        return bool(min(self.whole[i], self.whole[j]) >= np.delete(self.whole, [i, j]).max(initial=0.0))
+
+
+def floquet_pair(monodromy: Array, multiplier: complex) -> tuple[Complex, Complex] | None:
+    """Right vector at the start and left vector at the end of the period of the multiplier nearest to ``multiplier``,
+    so that l·r = 1 all along; None where the multiplier is double and both are orthogonal."""
+    values, lefts, rights = eig(monodromy, left=True, right=True)
+    place = int(np.argmin(np.abs(values - multiplier)))
+    right, left = rights[:, place], lefts[:, place].conj()
+    product = complex(left @ right)
+    return None if abs(product) < 1e-12 else (right.astype(complex), left / (product * values[place]))
+
+
+def mode_content(motion: ModeMotion, turns: Fraction) -> ModeContent:
+    """Content of a Floquet mode of period ``turns`` of the input; modes are those of the mean M and K."""
     mass, stiffness = motion.mass, motion.stiffness
-    squares, shapes = eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)
-    count, n = len(motion.states), len(mass)
+    shapes = eigh((stiffness + stiffness.T) / 2, (mass + mass.T) / 2)[1]
+    count, n = len(motion.right), len(mass)
     tau = motion.period * np.arange(count) / count
-    periodic = motion.states * np.exp(-motion.exponent * tau)[:, None]
+    growth = np.exp(motion.exponent * tau)[:, None]
+    right, left = motion.right / growth, motion.left * growth
+    parts = sum(
+        np.fft.ifft(left[:, of] @ shapes, axis=0) * np.fft.fft(right[:, of] @ mass @ shapes, axis=0) / count
+        for of in (slice(0, n), slice(n, None))
+    )
     harmonic = np.round(np.fft.fftfreq(count) * count).astype(int)
     frequency = motion.exponent.imag + harmonic * 2 * np.pi / motion.period
-    place, rate = periodic[:, :n] @ mass @ shapes, periodic[:, n:] @ mass @ shapes
-    modal = np.fft.fft(place, axis=0) / count
-    action = frequency[:, None] * np.abs(modal) ** 2
-    ahead, back = np.maximum(action, 0), np.maximum(-action, 0)
+    size = np.abs(parts) / np.abs(parts).sum()
+    ahead, back = (np.where(side * frequency[:, None] > 0, size, 0.0) for side in (1, -1))
     forward, backward = ahead.sum(0), back.sum(0)
-    if not (forward.sum() > 0 and backward.sum() > 0):
-        return None
-    held = _over_frequency(squares, (np.abs(rate) ** 2).mean(0) + squares * (np.abs(place) ** 2).mean(0))
-    if not held.sum() > 0:
-        return None
     first, second = ahead[:, forward.argmax()].argmax(), back[:, backward.argmax()].argmax()
-    excitation = int(harmonic[first] - harmonic[second]) / turns
-    return ModeContent(forward / forward.sum(), backward / backward.sum(), excitation, held / held.sum())
-
-
-def _over_frequency(squares: Array, energy: Array) -> Array:
-    """Energies over ω; 0 for a turn of the whole line, which has no frequency."""
-    elastic = squares > RIGID * squares.max()
-    return np.where(elastic, energy / np.sqrt(np.where(elastic, squares, 1.0)), 0.0)
+    whole = np.abs(np.asarray(parts).sum(0).real)
+    return ModeContent(
+        forward,
+        backward,
+        size.sum(0) - forward - backward,
+        whole / whole.sum(),
+        int(harmonic[first] - harmonic[second]) / turns,
+    )
 
 
 def named_resonance(
-    content: ModeContent | None, frequency: Array, sources: tuple[Source, ...], turns: Fraction, farthest: float
+    content: ModeContent, frequency: Array, sources: tuple[Source, ...], turns: Fraction, farthest: float
 ) -> Resonance | None:
     """The resonance of a content, or None where it is mixed or no excitation of low order has its frequency.
 
     ``frequency`` are those of the straight line over the input speed, so that speed 1 is where the line runs; a name
-    farther than ``farthest`` in the logarithm of the speed is none.
+    farther than ``farthest`` in the logarithm of the speed is none. A divergence has no speed of its own (nan).
     """
-    pair = content.pair if content is not None else None
-    if content is None or pair is None:
+    aside = content.diverging
+    if aside is not None:
+        return Resonance(float("nan"), "divergence", (aside + 1,), 0)
+    pair = content.pair
+    if pair is None:
         return None
     i, j = pair
     nu = content.excitation
     multiple, source = _excited(nu, sources)
-    if source is None:
+    if source is None or not min(frequency[i], frequency[j]) > 0:
         return None
     speed = float(frequency[i] + frequency[j]) / float(nu)
-    if not speed > 0 or abs(np.log(speed)) > farthest:
+    if abs(np.log(speed)) > farthest:
         return None
     if i != j:
         return Resonance(speed, "sum", (i + 1, j + 1), multiple, source.rate, source.mesh)

@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LinearResponse
-from trunnion.analyses.linear.mode_content import ModeMotion
+from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit
 from trunnion.driveline.driveline import Driveline
@@ -42,8 +41,8 @@ class OwnMotion:
     assembly: Assembly
     speed: float
 
-    def mode_motion(self, multiplier: complex, start: NDArray[np.complex128]) -> ModeMotion:
-        """How a disturbance that is ``start`` (2n,) at t = 0, a Floquet mode, moves over the period.
+    def mode_motion(self, multiplier: complex) -> ModeMotion | None:
+        """How the Floquet mode of a multiplier and its adjoint move over the period; None for a double multiplier.
 
         Modes are those of the means of M and K about the motion of rigid shafts, which is near.
         """
@@ -54,14 +53,30 @@ class OwnMotion:
         highest = float(frequencies(aligned_matrices(topo, co), free=True).max()) * orbit.period / (2 * np.pi)
         scale = np.repeat([1.0, 1 / self.speed], topo.size)
         times = orbit.period * np.linspace(0, 1, max(SAMPLES, PER_CYCLE * int(np.ceil(highest))) + 1)
-        block = np.stack([orbit.start, start.real, start.imag])
-        samples = np.empty((len(times) - 1, 2 * topo.size), dtype=complex)
-        for i, (now, after) in enumerate(zip(times[:-1], times[1:], strict=True)):
-            samples[i] = (block[1] + 1j * block[2]) * scale
-            regime = system.regime_at(now, block[0])
+        state, over = orbit.start, []
+        for now, after in zip(times[:-1], times[1:], strict=True):
+            block = np.concatenate([state[None], np.eye(2 * topo.size)])
+            regime = system.regime_at(now, state)
             block = integrate(system.equations, now, after, block, regime=regime, tolerance=1e-8, dense=False).final
+            state = block[0]
+            over.append(block[1:].T * scale[:, None] / scale)
+        pair = floquet_pair(orbit.monodromy * scale[:, None] / scale, multiplier)
+        if pair is None:
+            return None
+        right, left = [pair[0]], [pair[1]]
+        for carried in over[:-1]:
+            right.append(carried @ right[-1])
+        for carried in reversed(over):
+            left.append(left[-1] @ carried)
         exponent = np.log(multiplier) / turn
-        return ModeMotion(samples, exponent, turn, mean.mass[0].mean(0), mean.stiffness[0].mean(0) / self.speed**2)
+        return ModeMotion(
+            np.array(right),
+            np.array(left[:0:-1]),
+            exponent,
+            turn,
+            mean.mass[0].mean(0),
+            mean.stiffness[0].mean(0) / self.speed**2,
+        )
 
 
 def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -> OwnMotion:

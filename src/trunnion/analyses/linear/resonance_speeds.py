@@ -42,6 +42,7 @@ class Resonance:
     """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|.
 
     A mesh excites as a joint at half its teeth per turn of the input would; ``mesh`` is its name, empty for joints.
+    What ``stability`` calls a divergence, one mode pushed aside without oscillating, has neither speed (nan) nor order.
     """
 
     speed: float
@@ -60,6 +61,8 @@ class Resonance:
     def formula(self) -> str:
         """``(ω₁+ω₂)/2``, the resonance speed in terms of the natural frequencies."""
         mode = [f"ω{m}".translate(_SUBSCRIPT) for m in self.modes]
+        if self.kind == "divergence":
+            return mode[0]
         if self.kind in ("harmonic", "subharmonic"):
             top = mode[0]
             below = 2 * self.order if self.kind == "harmonic" else 2 * self.order - 1
@@ -74,6 +77,13 @@ class Resonance:
     def label(self) -> str:
         """The formula, and the mesh that excites where it is one."""
         return f"{self.formula} (mesh of {self.mesh})" if self.mesh else self.formula
+
+    @property
+    def in_words(self) -> str:
+        """For a sentence: ``sum resonance (ω₁+ω₂)/2``, ``divergence of the mode at ω₁``."""
+        if self.kind == "divergence":
+            return f"divergence of the mode at {self.formula}, which grows without oscillating"
+        return f"{self.kind} resonance {self.label}"
 
     def __str__(self) -> str:
         return f"{self.kind} {self.label}"

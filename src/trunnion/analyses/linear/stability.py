@@ -18,7 +18,13 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
-from trunnion.analyses.linear.mode_content import ModeMotion, mode_content, named_resonance
+from trunnion.analyses.linear.mode_content import (
+    FARTHEST,
+    ModeMotion,
+    floquet_pair,
+    mode_content,
+    named_resonance,
+)
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
@@ -44,6 +50,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
+SAMPLES, SAMPLES_PER_CYCLE = 128, 6
+"""Of a Floquet mode over the period, at least; per cycle of the highest mode."""
+NEAR = 0.1
+"""As FARTHEST, on a stability boundary."""
 OWN = 0.1
 """Tolerance of the motion that a free line is judged about, over that of its multipliers."""
 SPEED_ALONE = 0.05
@@ -152,8 +162,8 @@ class Stability:
             f"  growth rate {self.growth_rate:+.6g} ± {self.growth_rate_error:.1e} 1/s",
         ]
         if self.resonance is not None:
-            at = show_speed(self.resonance.speed, unit)
-            lines.append(f"  the critical multiplier belongs to the {self.resonance} (at {at})")
+            at = f" (at {show_speed(self.resonance.speed, unit)})" if np.isfinite(self.resonance.speed) else ""
+            lines.append(f"  the critical multiplier belongs to the {self.resonance.in_words}{at}")
         if self.set_aside:
             lines.append(f"  {SET_ASIDE[self.set_aside]}")
         if self.extra_torque is not None:
@@ -229,10 +239,11 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
     critical = np.argmin(np.abs(np.abs(values) - orbit.spectral_radius))
     named = None
     if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
-        content = mode_content(motion.mode_motion(complex(values[critical]), vectors[:, critical]), turns)
+        moving = motion.mode_motion(complex(values[critical]))
         frequency = natural_frequencies(assembly).frequency / speed
-        farthest = 0.5 if orbit.verdict is Verdict.UNSTABLE else 0.1
-        named = named_resonance(content, frequency, sources(assembly), turns, farthest)
+        farthest = FARTHEST if orbit.verdict is Verdict.UNSTABLE else NEAR
+        if moving is not None:
+            named = named_resonance(mode_content(moving, turns), frequency, sources(assembly), turns, farthest)
     if named is not None:
         named = replace(named, speed=named.speed * speed)
     shapes = vectors[:, by_modulus] * scale[:, None]
@@ -266,14 +277,27 @@ def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
     return propagate(arrays, system.period, system.size, tolerance, least)
 
 
-def _mode_motion(system: PeriodicLinearSystem, run: Propagation, multiplier: complex, start: Complex) -> ModeMotion:
-    """How the Floquet mode that is ``start`` (2n,) at τ = 0 moves over the period."""
+def _mode_motion(system: PeriodicLinearSystem, run: Propagation, multiplier: complex) -> ModeMotion | None:
+    """How the Floquet mode of a multiplier and its adjoint move over the period; None for a double multiplier."""
+    pair = floquet_pair(run.scaled_monodromy, multiplier)
+    if pair is None:
+        return None
+    start, last = pair[0] * run.scale, pair[1] / run.scale
     at_rest = run.states(np.zeros(2 * system.size))
     parts = [run.states(np.ascontiguousarray(part)) - at_rest for part in (start.real, start.imag)]
-    mean = system.coefficients(run.tau[: -1 : max(1, len(run.tau) // 64)])
     states = (parts[0] + 1j * parts[1])[:-1]
-    exponent = np.log(complex(multiplier)) / system.period
-    return ModeMotion(states, exponent, system.period, mean.mass.mean(0), mean.stiffness.mean(0))
+    mean = system.coefficients(run.tau[: -1 : max(1, len(states) // 64)])
+    # Enough for the highest mode: steps are a power of two, at least as many.
+    cycles = max((*system.frequencies, system.fastest)) * system.period / (2 * np.pi)
+    count = min(len(states), max(SAMPLES, 1 << int(np.ceil(np.log2(max(SAMPLES_PER_CYCLE * cycles, 1))))))
+    return ModeMotion(
+        states[:: len(states) // count],
+        run.adjoint(last, count)[:-1],
+        np.log(complex(multiplier)) / system.period,
+        system.period,
+        mean.mass.mean(0),
+        mean.stiffness.mean(0),
+    )
 
 
 def _judge(
@@ -300,10 +324,11 @@ def _judge(
     named = None
     if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
-        farthest = 0.5 if verdict is Verdict.UNSTABLE else 0.1
+        farthest = FARTHEST if verdict is Verdict.UNSTABLE else NEAR
         critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
-        motion = _mode_motion(system, run, complex(values[critical]), modes[:, critical].astype(complex))
-        named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
+        motion = _mode_motion(system, run, complex(values[critical]))
+        if motion is not None:
+            named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
     if named is not None:
         named = replace(named, speed=named.speed * system.rate)
     sign, log_det = np.linalg.slogdet(matrix)
@@ -328,7 +353,7 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
     at = show_speed(result.speed, unit)
     if result.verdict is Verdict.UNSTABLE:
         doubling = np.log(2) / result.growth_rate
-        where = f"; it belongs to the {result.resonance}" if result.resonance else ""
+        where = f"; it belongs to the {result.resonance.in_words}" if result.resonance else ""
         yield Finding(
             Gravity.DANGER,
             f"The line is unstable at {at}: a small torsional disturbance doubles every {doubling:.3g} s{where}.",

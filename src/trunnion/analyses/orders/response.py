@@ -183,12 +183,6 @@ def _stress_factor(assembly: Assembly) -> Array:
 def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> Iterator[Finding]:
     shaken = exciters(assembly)
     row = assembly.table(1)[0]
-    for name in dict.fromkeys(e.element for e in shaken if e.held):
-        yield Finding(
-            Gravity.CAUTION,
-            f"The excitation of {name} does nothing: a ConstantSpeed holds its rotation. Start the line with the Disk "
-            "instead, or put a Shaft between the two.",
-        )
     at_work = [e for e in shaken if not e.held and row[e.amplitude] != 0]
     if not at_work:
         joints = " but its joints" if bent(assembly) else ""

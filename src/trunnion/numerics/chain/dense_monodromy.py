@@ -23,6 +23,7 @@ from trunnion.numerics.integration.runge_kutta import STAGES, A, B, C
 from trunnion.numerics.jit import njit
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 MOST_STEPS = 1 << 15
 CHUNK = 32 * 2**20
 """Bytes that the coefficients evaluated together may take, per array."""
@@ -38,6 +39,8 @@ class Propagation:
     order: x, then x′. ``scale`` (2n,) are the units in which ``error``, the estimated error of Z, holds: |δZ_ij| ≲
     error · scale_i / scale_j. ``damping_trace`` is ∫ tr(M⁻¹C) dτ, which Liouville's identity equates to −ln det Z.
     ``states(start)`` follows one motion: states (steps + 1, 2n) at ``tau`` (steps + 1,) from ``start`` (2n,) on.
+    ``adjoint(last, count)`` carries the row l = ``last`` (2n,) back from the end of the period, so that l·x stays for
+    every free motion x: rows (count + 1, 2n) at equal distances; ``count`` divides the steps, a power of two.
     """
 
     tau: Array
@@ -47,6 +50,7 @@ class Propagation:
     error: float
     damping_trace: float
     states: Callable[[Array], Array]
+    adjoint: Callable[[Complex, int], Complex]
 
     @property
     def scaled_monodromy(self) -> Array:
@@ -95,6 +99,7 @@ def propagate(
                 change / 16 + rounding,
                 fine.trace,
                 partial(problem.follow, steps=steps),
+                partial(problem.carry_back, steps=steps),
             )
         coarse = fine
     raise ComputationError(
@@ -145,15 +150,21 @@ class _Problem:
     size: int
     scale: Array
 
-    def march(self, start: Array, steps: int, kept: Array | None = None) -> _March:
-        """Carry ``start`` (2n, columns) over a period; the last column is forced, and kept in ``kept`` if given."""
+    def march(
+        self, start: Array, steps: int, kept: Array | None = None, begin: int = 0, end: int | None = None
+    ) -> _March:
+        """Carry ``start`` (2n, columns) from one step of a period to another, by default over all of it.
+
+        The last column is forced, and kept in ``kept`` if given.
+        """
         state, largest, trace = start.copy(), 0.0, 0.0
         record = np.empty((0, 2 * self.size)) if kept is None else kept
         at_once = max(1, CHUNK // (8 * STAGES * self.size**2))
         step = self.period / steps
         frequency = self.scale[self.size :] / self.scale[: self.size]
-        for first in range(0, steps, at_once):
-            count = min(at_once, steps - first)
+        end = steps if end is None else end
+        for first in range(begin, end, at_once):
+            count = min(at_once, end - first)
             q, d, g, damping = self._slopes(first, count, step)
             trace += float(step * np.sum(damping * B))
             rows = record[first : first + count + 1]
@@ -167,6 +178,17 @@ class _Problem:
         kept[0] = start / self.scale
         self.march(kept[0][:, None], steps, kept)
         return kept * self.scale
+
+    def carry_back(self, last: Complex, count: int, steps: int) -> Complex:
+        """Rows (count + 1, 2n) of the adjoint motion that ends as ``last`` (2n,), in the user's units."""
+        size, each = 2 * self.size, steps // count
+        rows = np.empty((count + 1, size), dtype=complex)
+        rows[count] = last * self.scale
+        for part in reversed(range(count)):
+            identity = np.concatenate([np.eye(size), np.zeros((size, 1))], axis=1)
+            over = self.march(identity, steps, begin=part * each, end=(part + 1) * each).state[:, :-1]
+            rows[part] = rows[part + 1] @ over
+        return np.asarray(rows / self.scale)
 
     def _slopes(self, first: int, count: int, step: float) -> tuple[Array, Array, Array, Array]:
         """Q/ν, D, g and tr D at the stages of ``count`` steps, in the problem's units."""

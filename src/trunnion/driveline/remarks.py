@@ -1,0 +1,110 @@
+"""What of a line does nothing, or holds in part only, by where its elements stand: said whenever a line is made.
+
+Analyses say it as well (``trunnion.analyses.features``).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from math import inf, isfinite
+from typing import TYPE_CHECKING
+
+from trunnion.driveline.elements import ConstantSpeed, Disk
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.driveline.stages import PiecewiseShaft
+
+if TYPE_CHECKING:
+    from trunnion.driveline.driveline import Driveline
+
+HELD, SERIES = "excitation of a held disk", "unlike damping in series"
+ALIKE = 1e-9
+"""Relative difference of two c/k that counts as none."""
+
+
+def held_excitations(line: Driveline) -> tuple[str, ...]:
+    """Disks with an excitation whose rotation a ConstantSpeed holds: no shaft stands between."""
+    group = _groups(line)
+    fixed = {g for g, element in zip(group, line.elements, strict=True) if isinstance(element, ConstantSpeed)}
+    return tuple(
+        name
+        for name, element, g in zip(line.names, line.elements, group, strict=True)
+        if isinstance(element, Disk) and g in fixed and any(one.amplitude for one in element.excitation)
+    )
+
+
+def unlike_in_series(line: Driveline) -> tuple[tuple[tuple[str, ...], float], ...]:
+    """Springs in series without inertia between them whose c/k or loss factors differ.
+
+    Names, and the lowest k/c [rad/s] (infinite without c) of each row.
+
+    They count as one spring and damper, which holds at frequencies well below k/c.
+    """
+    if line.damping_ratio is not None:
+        return ()
+    group = _groups(line)
+    springs = [i for i, element in enumerate(line.elements) if isinstance(element, Spring)]
+    heavy = {g for g, element in zip(group, line.elements, strict=True) if not isinstance(element, Spring)}
+    for i in springs:
+        element = line.elements[i]
+        if isinstance(element, Shaft) and element.density:
+            heavy |= {group[i], _near(line, group, i)}
+    onward = Counter(_near(line, group, i) for i in springs)
+    rows: dict[int, list[int]] = {}  # by the group at the far end of the last one
+    for i in springs:
+        near = _near(line, group, i)
+        joined = near not in heavy and onward[near] == 1
+        rows[group[i]] = [*(rows.pop(near, []) if joined else []), i]
+    found = []
+    for row in rows.values():
+        times, losses = zip(*(_damping(line, i) for i in row), strict=True)
+        if _unlike(times) or _unlike(losses):
+            slowest = max(map(abs, times))
+            found.append((tuple(line.names[i] for i in row), 1 / slowest if slowest else inf))
+    return tuple(found)
+
+
+def remarks(line: Driveline) -> Iterator[tuple[str, str]]:
+    """The feature (see ``trunnion.driveline.features``) and one sentence with its remedy."""
+    for name in held_excitations(line):
+        yield (
+            HELD,
+            f"{name}.excitation: does nothing, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
+            f"give {name} drive_share = 1, or put a Shaft between",
+        )
+    for names, limit in unlike_in_series(line):
+        holds = f"well below k/c = {limit:.3g} rad/s" if isfinite(limit) else "for small loss factors"
+        yield (
+            SERIES,
+            f"{' and '.join(names)}: in series, with no inertia between and damping over stiffness different, they "
+            f"count as one shaft, which holds {holds}; put a Disk between",
+        )
+
+
+def _groups(line: Driveline) -> list[int]:
+    """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
+    group: list[int] = []
+    for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
+        elastic = isinstance(element, Spring | PiecewiseShaft | GearPair)
+        group.append(i if parent is None or elastic else group[parent])
+    return group
+
+
+def _near(line: Driveline, group: list[int], spring: int) -> int:
+    parent = line.parents[spring]
+    assert parent is not None
+    return group[parent]
+
+
+def _damping(line: Driveline, spring: int) -> tuple[float, float]:
+    """c/k [s], and the loss factor that holds at all frequencies; one of them is 0."""
+    element = line.elements[spring]
+    assert isinstance(element, Spring)
+    if element.loss is not None and element.loss_factor_frequency is None:
+        return 0.0, element.loss
+    return element.damping_coefficient / element.torsional_stiffness, 0.0
+
+
+def _unlike(values: tuple[float, ...]) -> bool:
+    return max(values) - min(values) > ALIKE * max(map(abs, values))
