@@ -263,7 +263,7 @@ class LineSystem:
         for e, compliance in enumerate(self.assembly.topology.compliances):
             if has_stages(line.elements[compliance.shafts[0]]):
                 law = stage_law(line, compliance.shafts[0], packed.column, table)
-                potential += law.energy(self.observe(system, t, x).twist[:, e])
+                potential += law.first.energy(self.observe(system, t, x).twist[:, e])
         return kinetic, potential
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:

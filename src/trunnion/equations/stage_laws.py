@@ -17,30 +17,21 @@ from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
+from trunnion.laws.spring import StageSpring
 
 Array = NDArray[np.float64]
 Column = Callable[[int, str], int]
 
 
 @dataclass(frozen=True)
-class StageLaw:
-    """Per case: knots (case, n) rising twists [rad]; slopes (case, n + 1) [N m/rad]; the torque at no twist is 0.
+class StageLaw(StageSpring):
+    """The spring of one element, per case: knots (case, n) twists [rad], slopes (case, n + 1) [N m/rad].
 
     ``softest_damped`` is False where the softest stage does not damp.
     """
 
     name: str
-    knots: Array
-    slopes: Array
     softest_damped: bool
-
-    @property
-    def offsets(self) -> Array:
-        """Torque = slope · twist + offset on every stage, (case, n + 1)."""
-        jumps = -np.diff(self.slopes, axis=1) * self.knots
-        running = np.concatenate([np.zeros((len(self.slopes), 1)), np.cumsum(jumps, axis=1)], axis=1)
-        middle = np.sum(self.knots < 0, axis=1)
-        return np.asarray(running - np.take_along_axis(running, middle[:, None], axis=1))
 
     def under(self, torque: Array, *, free: bool = False) -> tuple[Array, Array, Array]:
         """Twist, slope and whether there is damping (1 or 0) under a steady ``torque`` [N m], (case,) each.
@@ -51,26 +42,18 @@ class StageLaw:
         ------
         InputError : no stage carries the torque, or the spring is free there.
         """
-        offsets = self.offsets
-        at_knots = self.slopes[:, :-1] * self.knots + offsets[:, :-1]
         # Without torque: the stage that twist 0 is in, even where its slope is 0.
-        stage = np.where(torque == 0, np.sum(self.knots < 0, axis=1), np.sum(at_knots < torque[:, None], axis=1))
-        slope = np.take_along_axis(self.slopes, stage[:, None], axis=1)[:, 0]
-        offset = np.take_along_axis(offsets, stage[:, None], axis=1)[:, 0]
+        stage = np.where(torque == 0, self.stage(np.zeros(len(torque))), self.stage_under(torque))
+        slope, offset = self.of(self.slopes, stage), self.of(self.offsets, stage)
         if np.any(slope == 0) and not free:
             raise self._in_play(float(torque[slope == 0][0]))
         damped = np.ones(len(stage)) if self.softest_damped else (stage != np.argmin(self.slopes, axis=1)).astype(float)
         return np.where(slope > 0, torque - offset, 0.0) / np.where(slope > 0, slope, 1.0), slope, damped
 
-    def energy(self, twist: Array) -> Array:
-        """Elastic energy [J] at ``twist`` (times,), of the first case."""
-        knots, slopes, offsets = self.knots[0], self.slopes[0], self.offsets[0]
-        ends = np.concatenate([[-np.inf], knots, [np.inf]])
-        total = np.zeros_like(twist)
-        for low, high, slope, offset in zip(ends, ends[1:], slopes, offsets, strict=False):
-            a, b = np.clip(0.0, low, high), np.clip(twist, low, high)
-            total += slope * (b**2 - a**2) / 2 + offset * (b - a)
-        return total
+    @property
+    def first(self) -> StageSpring:
+        """The spring of the first case alone."""
+        return StageSpring(self.knots[0], self.slopes[0])
 
     def _in_play(self, torque: float) -> InputError:
         if torque == 0:
@@ -110,12 +93,12 @@ def stage_law(line: Driveline, place: int, column: Column, table: Array) -> Stag
             raise InputError("must rise", element=name, key="breakpoints", value=knots[0].tolist())
         if np.any(slopes < 0):
             raise InputError("must not be negative", element=name, key="stiffnesses", value=float(slopes.min()))
-        return StageLaw(name, knots, slopes, element.damping_law == "always")
+        return StageLaw(knots, slopes, name, element.damping_law == "always")
     assert isinstance(element, GearPair)
     out = element.radii[1]
     k = table[:, column(place, "mesh_stiffness")] * out**2
     if not element.total_backlash:
-        return StageLaw(name, np.zeros((len(table), 0)), k[:, None], True)
+        return StageLaw(np.zeros((len(table), 0)), k[:, None], name, True)
     if element.backlash:
         half = table[:, column(place, "backlash")] / (2 * out)
     else:
@@ -126,9 +109,8 @@ def stage_law(line: Driveline, place: int, column: Column, table: Array) -> Stag
         raise InputError("must be positive", element=name, key="backlash", value=float(2 * half.min()), remedy=remedy)
     if np.any((inside < 0) | (inside > 1)):
         raise InputError("must lie between 0 and 1", element=name, key="stiffness_ratio", value=float(inside[0]))
-    return StageLaw(
-        name, np.stack([-half, half], axis=1), np.stack([k, inside * k, k], axis=1), element.damping_law == "always"
-    )
+    knots, slopes = np.stack([-half, half], axis=1), np.stack([k, inside * k, k], axis=1)
+    return StageLaw(knots, slopes, name, element.damping_law == "always")
 
 
 def spring_damping(element: Element, place: int, column: Column, table: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
+from trunnion.laws.spring import StageSpring
 
 if TYPE_CHECKING:
     from trunnion.systems.system import System
@@ -166,11 +167,14 @@ class PiecewiseOscillator:
         return min(range(len(self.slopes)), key=lambda i: (self.slopes[i], distance[i]))
 
     @cached_property
+    def spring(self) -> StageSpring:
+        """The restoring force as a law."""
+        return StageSpring(np.array(self.breakpoints), np.array(self.slopes))
+
+    @property
     def offsets(self) -> tuple[float, ...]:
         """d of g = s x + d on every piece."""
-        knots, slopes = np.array(self.breakpoints), np.array(self.slopes)
-        d = np.concatenate([[0.0], np.cumsum(-np.diff(slopes) * knots)])
-        return tuple(float(v) for v in d - d[np.searchsorted(knots, 0.0)])
+        return tuple(map(float, self.spring.offsets))
 
     @cached_property
     def coefficients(self) -> NDArray[np.complex128]:
@@ -184,13 +188,11 @@ class PiecewiseOscillator:
 
     def restoring(self, x: ArrayLike) -> Array:
         """g(x), any shape."""
-        x = np.asarray(x, dtype=float)
-        piece = np.searchsorted(self.breakpoints, x)
-        return np.asarray(np.array(self.slopes)[piece] * x + np.array(self.offsets)[piece])
+        return self.spring.force(x)
 
     def slope(self, x: ArrayLike) -> Array:
         """dg/dx, any shape; at a breakpoint that of the piece below."""
-        return np.asarray(np.array(self.slopes)[np.searchsorted(self.breakpoints, np.asarray(x, dtype=float))])
+        return self.spring.slope(x)
 
     def equilibrium(self) -> float:
         """Where g(x) = B₀.
@@ -199,13 +201,11 @@ class PiecewiseOscillator:
         ------
         InputError : no spring carries the mean force.
         """
+        i = int(self.spring.stage_under(self.mean_force))
+        if self.slopes[i] > 0:
+            return float((self.mean_force - self.offsets[i]) / self.slopes[i])
         knots = self.breakpoints or (0.0,)
-        force = self.restoring(knots)
-        i = int(np.searchsorted(force, self.mean_force))
-        slope = self.slopes[i] if len(self.breakpoints) else self.slopes[0]
-        if slope > 0:
-            return float((self.mean_force - (self.offsets[i] if self.breakpoints else 0.0)) / slope)
-        if i < len(knots) and force[i] == self.mean_force:
+        if i < len(knots) and self.restoring(knots)[i] == self.mean_force:
             return float(np.clip(0.0, knots[max(i - 1, 0)], knots[-1]))
         raise InputError(
             "is carried by no spring", element=self.name, key="mean_force", value=self.mean_force,
