@@ -27,7 +27,7 @@ from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.analyses.motion.run_up import RunUp
-    from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
+    from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
     from trunnion.analyses.orbits.periodic_response import PeriodicResponse
     from trunnion.driveline.driveline import Driveline
     from trunnion.systems.system import System
@@ -173,7 +173,7 @@ def run_up(
     rate = read_speed(acceleration, unit, "--acceleration")
     assert rate is not None
     from trunnion.analyses.motion.run_up import run_up as compute
-    from trunnion.analyses.motion.run_up import safe_accelerations
+    from trunnion.analyses.motion.safe_accelerations import safe_accelerations
     from trunnion.driveline.quantities import TORQUE, parse
 
     torque = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.files import read_dataset, save_dataset
 from trunnion.results.units import with_unit
@@ -64,8 +65,8 @@ class SpotCheck:
     worst_difference: float
 
 
-@dataclass(frozen=True)
-class StabilityChart:
+@dataclass(frozen=True, repr=False)
+class StabilityChart(Result):
     """Stability over two parameters; arrays have shape (y, x), axes in SI units.
 
     ``verdict`` holds the int8 codes of ``Verdict``; a failed point keeps its place as NaN. ``speed`` [rad/s]
@@ -113,12 +114,12 @@ class StabilityChart:
         ------
         InputError : the point lies outside the box.
         """
-        for label, value, axis in ((self.x_label, x, self.x), (self.y_label, y, self.y)):
+        for label, value, along in ((self.x_label, x, self.x), (self.y_label, y, self.y)):
             if not isinstance(value, int | float | np.number):
                 raise InputError("must be one number", key=label, value=value, remedy="ask point by point, or zoom")
-            if not axis.min() <= value <= axis.max():
+            if not along.min() <= value <= along.max():
                 raise InputError(
-                    f"lies outside the chart, which covers {axis.min():.6g} to {axis.max():.6g}",
+                    f"lies outside the chart, which covers {along.min():.6g} to {along.max():.6g}",
                     key=label,
                     value=float(value),
                     remedy="compute a larger chart",
@@ -155,38 +156,27 @@ class StabilityChart:
         """Share of unstable points."""
         return self.count(Verdict.UNSTABLE) / self.verdict.size
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units, settings, driveline and error estimates."""
-        import xarray as xr
-
-        return xr.Dataset(
-            {
-                "spectral_radius": (("y", "x"), self.spectral_radius, {"units": "1"}),
-                "error_estimate": (("y", "x"), self.error_estimate, {"units": "1"}),
-                "critical_multiplier_real": (("y", "x"), self.critical_multiplier.real, {"units": "1"}),
-                "critical_multiplier_imaginary": (("y", "x"), self.critical_multiplier.imag, {"units": "1"}),
-                "verdict": (("y", "x"), self.verdict, flag_attributes()),
-            },
-            coords={
-                "x": ("x", self.x, {"units": self.x_unit, "long_name": self.x_label}),
-                "y": ("y", self.y, {"units": self.y_unit, "long_name": self.y_label}),
-            },
-            attrs={
-                "format": FORMAT,
-                "version": __version__,
-                "period": self.period,
-                "tolerance": self.tolerance,
-                "statically_twisted": int(self.statically_twisted),
-                "remarks": json.dumps(list(self.remarks)),
-                "driveline": "" if self.line is None else dumps(self.line),
-                "x_parameter": _parameter_text(self.x_parameter),
-                "y_parameter": _parameter_text(self.y_parameter),
-                "speed": float("nan") if self.speed is None else self.speed,
-                "way": self.way,
-                "spot_check": json.dumps(asdict(self.spot_check) if self.spot_check else None),
-            },
-        )
+    def declared(self) -> Iterator[Held]:
+        """Radius, error, critical multiplier and verdict over both parameters; settings, driveline and remarks."""
+        yield axis("x", self.x, self.x_unit, self.x_label)
+        yield axis("y", self.y, self.y_unit, self.y_label)
+        yield over("y x", "spectral_radius", self.spectral_radius, "1")
+        yield over("y x", "error_estimate", self.error_estimate, "1")
+        yield over("y x", "critical_multiplier_real", self.critical_multiplier.real, "1")
+        yield over("y x", "critical_multiplier_imaginary", self.critical_multiplier.imag, "1")
+        yield over("y x", "verdict", self.verdict, **flag_attributes())
+        yield remark("format", FORMAT)
+        yield remark("version", __version__)
+        yield remark("period", self.period)
+        yield remark("tolerance", self.tolerance)
+        yield remark("statically_twisted", int(self.statically_twisted))
+        yield remark("remarks", json.dumps(list(self.remarks)))
+        yield remark("driveline", "" if self.line is None else dumps(self.line))
+        yield remark("x_parameter", _parameter_text(self.x_parameter))
+        yield remark("y_parameter", _parameter_text(self.y_parameter))
+        yield remark("speed", float("nan") if self.speed is None else self.speed)
+        yield remark("way", self.way)
+        yield remark("spot_check", json.dumps(asdict(self.spot_check) if self.spot_check else None))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write netCDF-4, patches included; an existing file is replaced only when all is written."""
@@ -254,8 +244,6 @@ class StabilityChart:
             f"{self.spot_check.worst_ratio:.2g} of their estimates"
         )
 
-    __repr__ = __str__
-
 
 def require_pixels(*points: float) -> None:
     """Refuse a grid of that many points per axis where its arrays would not fit; before any is made.
@@ -288,8 +276,8 @@ def _chart_of(data: xr.Dataset) -> StabilityChart:
         y=data["y"].values,
         x_parameter=_parameter_of(data.attrs["x_parameter"]),
         y_parameter=_parameter_of(data.attrs["y_parameter"]),
-        x_unit=data["x"].attrs["units"],
-        y_unit=data["y"].attrs["units"],
+        x_unit=data["x"].attrs.get("units", ""),
+        y_unit=data["y"].attrs.get("units", ""),
         spectral_radius=data["spectral_radius"].values,
         error_estimate=data["error_estimate"].values,
         critical_multiplier=data["critical_multiplier_real"].values + 1j * data["critical_multiplier_imaginary"].values,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -11,16 +12,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.kinetostatics.contents import contents
 from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.results.declared import Held, Result
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
@@ -40,8 +42,8 @@ class ConstantTwist:
     acceleration: float
 
 
-@dataclass(frozen=True, eq=False)
-class Kinetostatics:
+@dataclass(frozen=True, eq=False, repr=False)
+class Kinetostatics(Result):
     """Motion, torques, couples and support forces of a line over the input angle; SI units.
 
     Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan
@@ -206,12 +208,9 @@ class Kinetostatics:
         assert self.supports is not None
         return parts(self.supports.force[b], self.supports.ratio[b] * self.input_angle)
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units and settings."""
-        from trunnion.analyses.kinetostatics.dataset import dataset
-
-        return dataset(self)
+    def declared(self) -> Iterator[Held]:
+        """Everything over the input angle, by the named shafts, joints, forks and bearings; and the settings."""
+        return contents(self)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per input angle, one column per quantity and shaft, units in the heading."""
@@ -252,8 +251,6 @@ class Kinetostatics:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 def _place(name: str, names: tuple[str, ...], what: str) -> int:

@@ -8,10 +8,9 @@ ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,7 @@ from trunnion.analyses.linear.mode_content import (
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
-from trunnion.analyses.orbits.periodic_orbit import speed_in_words
+from trunnion.analyses.orbits.orbit_result import speed_in_words
 from trunnion.analyses.orders.response import without_excitation
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -39,13 +38,11 @@ from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
 from trunnion.numerics.spectrum import multipliers, spectral_radius, without
+from trunnion.results.declared import Held, Result, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -64,8 +61,8 @@ SET_ASIDE = {
 }
 
 
-@dataclass(frozen=True)
-class Stability:
+@dataclass(frozen=True, repr=False)
+class Stability(Result):
     """Floquet stability at one speed.
 
     multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
@@ -124,33 +121,20 @@ class Stability:
         """What to read first, gravest first, speeds in ``unit``."""
         return by_gravity([*_findings(self, unit), *self.left_out])
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units; complex numbers as real and imaginary parts."""
-        import xarray as xr
-
-        dataset = xr.Dataset(
-            {
-                "multiplier": (
-                    ("multiplier_number", "part"),
-                    np.stack([self.multipliers.real, self.multipliers.imag], axis=1),
-                    {"units": "1"},
-                ),
-                "multiplier_error": ("multiplier_number", self.multiplier_error, {"units": "1"}),
-                "spectral_radius": ((), self.spectral_radius, {"units": "1"}),
-                "error_estimate": ((), self.error_estimate, {"units": "1"}),
-                "growth_rate": ((), self.growth_rate, {"units": "1/s"}),
-                "period": ((), self.period, {"units": "rad", "long_name": "period in input angle"}),
-                "speed": ((), self.speed, {"units": "rad/s"}),
-            },
-            coords={"part": ["real", "imaginary"]},
-            attrs={
-                "verdict": str(self.verdict),
-                "resonance": str(self.resonance or ""),
-                "liouville_defect": self.liouville_defect,
-            },
-        )
-        return dataset if self.response is None else dataset.merge(self.response.data)
+    def declared(self) -> Iterator[Held]:
+        """Multipliers, growth and verdict, and what the forced response holds."""
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield over("", "spectral_radius", self.spectral_radius, "1")
+        yield over("", "error_estimate", self.error_estimate, "1")
+        yield over("", "growth_rate", self.growth_rate, "1/s")
+        yield over("", "period", self.period, "rad", "period in input angle")
+        yield over("", "speed", self.speed, "rad/s")
+        yield remark("verdict", str(self.verdict))
+        yield remark("resonance", str(self.resonance or ""))
+        yield remark("liouville_defect", self.liouville_defect)
+        if self.response is not None:
+            yield from (held for held in self.response.declared() if held.axes is not None)
 
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""

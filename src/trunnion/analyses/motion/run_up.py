@@ -12,13 +12,11 @@ The acceleration is that of the drive. Where a line starts free, nothing turns a
 drive_share carry the torque that balances the loads at each speed and accelerates the whole inertia, were it rigid and
 its joints straight. What dampers, bent joints and vibration take beyond that makes it lag, and a
 resonance that takes more than what accelerates holds it back (Sommerfeld's effect), see ``RunUp.lag``.
-
-``safe_accelerations`` finds how fast and how slowly a line may be run up for a torque that must not be exceeded.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -40,12 +38,12 @@ from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
@@ -72,8 +70,8 @@ class SteadyResponse:
     verdict: NDArray[np.int8]
 
 
-@dataclass(frozen=True)
-class RunUp:
+@dataclass(frozen=True, repr=False)
+class RunUp(Result):
     """A passage at constant acceleration.
 
     speed (turns,) [rad/s] asked for in the middle of each turn, or of the little more that leaves none over, less the
@@ -150,36 +148,27 @@ class RunUp:
         joints straight."""
         return np.abs(_inertia_torque(self.simulation.line.assembly)) * self.acceleration
 
-    @property
-    def data(self) -> xr.Dataset:
-        """Labelled dataset with units."""
-        import xarray as xr
-
-        parts: dict[str, Any] = {
-            "torque_upper": (("turn", "shaft"), self.upper, {"units": "N*m"}),
-            "torque_lower": (("turn", "shaft"), self.lower, {"units": "N*m"}),
-            "speed": ("turn", self.speed, {"units": "rad/s"}),
-            "peak_torque": ("shaft", self.peak_torque, {"units": "N*m"}),
-            "peak_speed": ("shaft", self.peak_speed, {"units": "rad/s"}),
-            "inertia_torque": ("shaft", self.inertia_torque, {"units": "N*m"}),
-            "vibration": (("turn", "shaft"), self.vibration, {"units": "N*m"}),
-            "peak_vibration": ("shaft", self.peak_vibration, {"units": "N*m"}),
-            "vibration_speed": ("shaft", self.vibration_speed, {"units": "rad/s"}),
-            "lag": ("turn", self.lag, {"units": "rad/s"}),
-        }
-        coords: dict[str, Any] = {"shaft": list(self.shafts)}
+    def declared(self) -> Iterator[Held]:
+        """Extremes and vibration of every torque turn by turn and in all, and the steady response."""
+        yield axis("shaft", self.shafts)
+        yield over("turn shaft", "torque_upper", self.upper, "N*m")
+        yield over("turn shaft", "torque_lower", self.lower, "N*m")
+        yield over("turn", "speed", self.speed, "rad/s")
+        yield over("shaft", "peak_torque", self.peak_torque, "N*m")
+        yield over("shaft", "peak_speed", self.peak_speed, "rad/s")
+        yield over("shaft", "inertia_torque", self.inertia_torque, "N*m")
+        yield over("turn shaft", "vibration", self.vibration, "N*m")
+        yield over("shaft", "peak_vibration", self.peak_vibration, "N*m")
+        yield over("shaft", "vibration_speed", self.vibration_speed, "rad/s")
+        yield over("turn", "lag", self.lag, "rad/s")
         if self.steady is not None:
-            parts["steady_torque"] = (("steady_speed", "shaft"), self.steady.largest, {"units": "N*m"})
-            parts["steady_swing"] = (("steady_speed", "shaft"), self.steady.swing, {"units": "N*m"})
-            parts["steady_verdict"] = ("steady_speed", self.steady.verdict)
-            coords["steady_speed"] = ("steady_speed", self.steady.speed, {"units": "rad/s"})
-        attrs = {
-            "acceleration": self.acceleration,
-            "ramp": self.ramp,
-            "outcome": self.outcome.kind,
-            "outcome_sentence": self.outcome.sentence,
-        }
-        return xr.Dataset(parts, coords=coords, attrs=attrs)
+            yield axis("steady_speed", self.steady.speed, "rad/s")
+            yield over("steady_speed shaft", "steady_torque", self.steady.largest, "N*m")
+            yield over("steady_speed shaft", "steady_swing", self.steady.swing, "N*m")
+            yield over("steady_speed", "steady_verdict", self.steady.verdict)
+        yield remark("acceleration", self.acceleration)
+        yield remark("ramp", self.ramp)
+        yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """Envelope against the steady response; see ``trunnion.plots.run_up``."""
@@ -224,8 +213,6 @@ class RunUp:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 def run_up(
@@ -304,101 +291,6 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
         orbit = periodic_orbit(prepared.system, start=begun, settle=False)
         begun = orbit.start if orbit.outcome.ok else begun
     return begun, 0.0
-
-
-@dataclass(frozen=True)
-class SafeAccelerations:
-    """How fast and how slowly a line may pass a speed range.
-
-    acceleration (points,) [rad/s²] and share (points,): largest torque over its limit; slowest and fastest [rad/s²]
-    keep every limit (NaN where none does, 0 or inf where the range tried has no edge).
-    """
-
-    acceleration: Array
-    share: Array
-    slowest: float
-    fastest: float
-    sentence: str
-
-    def __str__(self) -> str:
-        return self.sentence
-
-
-def safe_accelerations(
-    line: Driveline | Assembly,
-    first: float,
-    last: float,
-    *,
-    limit: float | Mapping[str, float],
-    accelerations: tuple[float, float],
-    points: int = 13,
-    ramp: float | None = None,
-    tolerance: float = 1e-7,
-) -> SafeAccelerations:
-    """Slowest and fastest acceleration whose passage keeps |torque| below ``limit``.
-
-    Parameters
-    ----------
-    limit : [N m] for every shaft, or by the name of the shaft.
-    accelerations : smallest and largest to try [rad/s²]; ``points`` of them evenly in the logarithm, and then
-        the edges of the quietest safe range by bisection to 1 %.
-    ramp : as in ``run_up``.
-
-    Raises
-    ------
-    InputError : no positive limit, a shaft that is not there, a range that is not one.
-    """
-    prepared = line_system(line, first)
-    limits = _limits(limit, prepared.shafts)
-    low, high = accelerations
-    if not (0 < low < high and np.isfinite(high)):
-        raise InputError("must be a rising pair", key="accelerations", value=list(accelerations))
-
-    def share(rate: float) -> float:
-        run = run_up(prepared.assembly, first, last, acceleration=rate, ramp=ramp, steady=0, tolerance=tolerance)
-        return float(np.max(run.peak_torque / limits)) if run.outcome.ok else np.inf
-
-    tried = np.geomspace(low, high, points)
-    found = np.array([share(a) for a in tried])
-    best = int(np.argmin(found))
-    if found[best] > 1:
-        words = (
-            f"no acceleration between {low:.4g} and {high:.4g} rad/s² keeps the limit; the quietest, "
-            f"{tried[best]:.4g} rad/s², reaches {found[best]:.3g} of it"
-        )
-        return SafeAccelerations(tried, found, np.nan, np.nan, words)
-    slowest = _edge(share, tried, found, best, -1)
-    fastest = _edge(share, tried, found, best, +1)
-    slow = f"down to {slowest:.4g} rad/s²" if slowest > 0 else f"down to the {low:.4g} rad/s² tried"
-    fast = f"up to {fastest:.4g} rad/s²" if np.isfinite(fastest) else f"up to the {high:.4g} rad/s² tried"
-    quiet = f"the quietest tried is {tried[best]:.4g} rad/s² ({found[best]:.3g} of it)"
-    words = f"the limit is kept {slow} and {fast}; {quiet}"
-    return SafeAccelerations(tried, found, slowest, fastest, words)
-
-
-def _edge(share: Any, tried: Array, found: Array, best: int, direction: int) -> float:
-    """Where the share passes 1 on one side of the quietest acceleration."""
-    place = best
-    while 0 <= place + direction < len(tried) and found[place + direction] <= 1:
-        place += direction
-    if not 0 <= place + direction < len(tried):
-        return 0.0 if direction < 0 else np.inf
-    safe, unsafe = float(tried[place]), float(tried[place + direction])
-    while abs(np.log(unsafe / safe)) > 0.01:
-        middle = float(np.sqrt(safe * unsafe))
-        safe, unsafe = (middle, unsafe) if share(middle) <= 1 else (safe, middle)
-    return safe
-
-
-def _limits(limit: float | Mapping[str, float], shafts: tuple[str, ...]) -> Array:
-    if not isinstance(limit, Mapping):
-        limit = dict.fromkeys(shafts, limit)
-    for name, value in limit.items():
-        if name not in shafts:
-            raise InputError("is not a shaft", key="limit", value=name, remedy=f"shafts are: {', '.join(shafts)}")
-        if not (np.isfinite(value) and value > 0):
-            raise InputError("must be a positive torque", element=name, key="limit", value=value)
-    return np.array([limit.get(name, np.inf) for name in shafts])
 
 
 def _check(first: float, last: float, acceleration: float) -> None:
