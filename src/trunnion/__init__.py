@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.stability import stability
     from trunnion.analyses.motion.exact_motion import exact_motion
     from trunnion.analyses.motion.order_map import order_map
-    from trunnion.analyses.motion.run_up import run_up, safe_accelerations
+    from trunnion.analyses.motion.run_up import run_up
+    from trunnion.analyses.motion.safe_accelerations import safe_accelerations
     from trunnion.analyses.motion.simulate import simulate
+    from trunnion.analyses.orbits.basins import basins
     from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response
     from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
     from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs
@@ -49,7 +51,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.orbits.periodic_response import periodic_response
     from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
     from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
-    from trunnion.analyses.orbits.piecewise_sweep import basins, rattle_index, sweep
+    from trunnion.analyses.orbits.piecewise_sweep import rattle_index, sweep
     from trunnion.analyses.orders.response import order_response
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
@@ -173,7 +175,7 @@ _HOME = {
     "periodic_response": "trunnion.analyses.orbits.periodic_response",
     "periodic_branch": "trunnion.analyses.orbits.periodic_branch",
     "run_up": "trunnion.analyses.motion.run_up",
-    "safe_accelerations": "trunnion.analyses.motion.run_up",
+    "safe_accelerations": "trunnion.analyses.motion.safe_accelerations",
     "order_map": "trunnion.analyses.motion.order_map",
     # chaos
     "lyapunov_spectrum": "trunnion.analyses.chaos.lyapunov_spectrum",
@@ -199,7 +201,7 @@ _HOME = {
     "piecewise_orbit": "trunnion.analyses.orbits.piecewise_orbit",
     "piecewise_branch": "trunnion.analyses.orbits.piecewise_branch",
     "sweep": "trunnion.analyses.orbits.piecewise_sweep",
-    "basins": "trunnion.analyses.orbits.piecewise_sweep",
+    "basins": "trunnion.analyses.orbits.basins",
     "rattle_index": "trunnion.analyses.orbits.piecewise_sweep",
     "multiple_scales": "trunnion.analyses.perturbation.multiple_scales",
     "averaging": "trunnion.analyses.perturbation.averaging",

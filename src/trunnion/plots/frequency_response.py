@@ -14,9 +14,10 @@ from trunnion.results.speeds import speed_factor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from trunnion.analyses.orbits.basins import Basins
     from trunnion.analyses.orbits.exact_sweep import LineSweep
     from trunnion.analyses.orbits.frequency_response import ResponseComparison
-    from trunnion.analyses.orbits.piecewise_sweep import Basins, Sweep
+    from trunnion.analyses.orbits.piecewise_sweep import Sweep
 
 STYLES = {
     "exact": ("#1a1a1a", 3.0),

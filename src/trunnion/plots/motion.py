@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
-from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain

@@ -1,24 +1,27 @@
-"""Maps made from a flow: the stroboscopic map, the section map, and their derivatives.
+"""Maps made from a flow: over one period, from one crossing of a section to the next, and their derivatives.
 
 A map takes a state to a state, x → P(x), and is a system again: what works on a map (fixed points, multipliers,
-orbits, Lyapunov exponents) works on any of these.
+branches, Lyapunov exponents) works on any of these.
 
-    stroboscopic, over one forcing period T:   P(x) = φ(t₀ + T; t₀, x),          DP = Φ
+    over a period T of the forcing:            P(x) = φ(t₀ + T; t₀, x),          DP = Φ
     section {g = 0, in one direction}:         P(x) = φ(τ(x); x),   DP = (I − f ∇gᵀ/ġ) Φ
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
+from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
 from trunnion.numerics.integration.integration import kernel as compiled_core
+from trunnion.numerics.integration.tangents import Motion
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
@@ -26,6 +29,190 @@ if TYPE_CHECKING:
     from trunnion.numerics.integration.integration import Watch
 
 Array = NDArray[np.float64]
+SETTLED = 1e-8
+"""Tolerance of motions that only have to come near an orbit."""
+LOOSER = (1.0, 10.0, 100.0)
+"""A motion that touches a switching surface may chatter there at one tolerance and pass at another."""
+
+
+@dataclass(frozen=True)
+class Passage:
+    """One application of a map.
+
+    state (n,): P(x); tangents (n, n): DP; by_values (n, k): derivatives by the values asked for; changes of regime on
+    the way; done: False where the motion ended before; run: what is behind it.
+    """
+
+    state: Array
+    tangents: Array
+    by_values: Array
+    changes: int
+    done: bool
+    run: Any
+
+
+class Observed(NamedTuple):
+    """What a closed motion does: peak-to-peak and largest absolute value of the curves (c,), amplitude of every
+    state (n,) at the frequency of the forcing."""
+
+    span: Array
+    largest: Array
+    amplitude: Array
+
+
+class PeriodMap(Protocol):
+    """x → x after a period, at values of the parameters that a branch follows or that an orbit has as unknowns."""
+
+    @property
+    def size(self) -> int:
+        """Number of states n."""
+
+    @property
+    def length(self) -> float:
+        """Time of one application [s]."""
+
+    def at(self, *values: float) -> Self:
+        """The same map at other values; a value that is none raises InputError, here or where the map is applied."""
+
+    def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
+        """P(x), its derivative, and the derivatives by some of the values; ``watch`` records what is observed."""
+
+    def settle(self, x: Array, periods: int) -> Array | None:
+        """Where the motion is after some applications, as near as a start has to be; None where it ends before."""
+
+    def observe(self, x: Array, passage: Passage) -> Observed:
+        """What the closed motion from x does; NaN where it cannot be computed."""
+
+
+@dataclass(frozen=True)
+class IntegratedMap:
+    """x(t₀) → x(t₀ + periods · T) by integration, of one system or of a family of them.
+
+    Parameters
+    ----------
+    family : values → system.
+    values, steps : where the family stands, and the steps of its differences by them (k,).
+    phase : t₀ [s].
+    periods : forcing periods per application.
+    look : (system, times, states) → curves (times, c) to be observed; by default the states.
+    """
+
+    family: Callable[..., System]
+    values: tuple[float, ...] = ()
+    steps: tuple[float, ...] = ()
+    phase: float = 0.0
+    periods: int = 1
+    tolerance: float = TOLERANCE
+    most_steps: int = MOST_STEPS
+    look: Callable[[System, Array, Array], Array] | None = None
+
+    @classmethod
+    def of(cls, system: System, *, phase: float = 0.0, periods: int = 1, tolerance: float = TOLERANCE) -> Self:
+        """The map of one system."""
+        return cls(lambda: system, phase=phase, periods=periods, tolerance=tolerance)
+
+    @cached_property
+    def system(self) -> System:
+        """The system at the values."""
+        return self.family(*self.values)
+
+    @property
+    def size(self) -> int:
+        return self.system.size
+
+    @property
+    def length(self) -> float:
+        period = self.system.forcing_period
+        if period is None:
+            raise InputError(
+                "is autonomous and has no forcing period", element=self.system.name, key="period",
+                remedy="use a SectionMap, or give the system its period",
+            )  # fmt: skip
+        return self.periods * period
+
+    def at(self, *values: float) -> Self:
+        return replace(self, values=values)
+
+    def run(self, block: Array, *, dense: bool = False, looser: float = 1.0) -> Trajectory:
+        """The motion from the first row of ``block``, the others carried along as tangents."""
+        regime = self.system.regime_at(self.phase, block[0])
+        return integrate(
+            self.system.equations, self.phase, self.phase + self.length, block, regime=regime,
+            tolerance=looser * self.tolerance, most_steps=self.most_steps, dense=dense,
+        )  # fmt: skip
+
+    def __call__(
+        self,
+        x: Array,
+        *,
+        tangents: bool = True,
+        by: Sequence[int] = (),
+        watch: bool = False,
+        looser: float = 1.0,
+        dense: bool = False,
+    ) -> Passage:
+        n = self.size
+        run = self.run(np.vstack([x, np.eye(n)]) if tangents else x[None], dense=dense, looser=looser)
+        columns = [self.slope(x, run, place) for place in by] if run.end is End.REACHED else []
+        done = run.end is End.REACHED and all(np.isfinite(column).all() for column in columns)
+        by_values = np.stack(columns, axis=1) if columns else np.zeros((n, 0))
+        return Passage(run.final[0], run.final[1:].T, by_values, len(run.event_time), done, run)
+
+    def slope(self, x: Array, run: Trajectory, place: int) -> Array:
+        """∂P by one of the values, by a central difference; NaN where a motion ends before."""
+        ends = []
+        for side in (-1.0, 1.0):
+            moved = list(self.values)
+            moved[place] += side * self.steps[place]
+            beside = self.at(*moved).run(x[None])
+            ends.append(beside.final[0] if beside.end is End.REACHED else np.full(len(x), np.nan))
+        return np.asarray((ends[1] - ends[0]) / (2 * self.steps[place]))
+
+    def settle(self, x: Array, periods: int) -> Array | None:
+        run = integrate(
+            self.system.equations, self.phase, self.phase + periods * self.length, x,
+            regime=self.system.regime_at(self.phase, x), tolerance=max(self.tolerance, SETTLED), dense=False,
+        )  # fmt: skip
+        return run.final[0] if run.end is End.REACHED else None
+
+    def observe(self, x: Array, passage: Passage) -> Observed:
+        look = self.look or (lambda system, times, states: states)
+        run = next((run for run in (self.run(x[None], dense=True, looser=by) for by in LOOSER) if _reached(run)), None)
+        if run is None:
+            nothing = np.full(look(self.system, np.zeros(1), x[None]).shape[1], np.nan)
+            return Observed(nothing, nothing, np.full(self.size, np.nan))
+        amplitude = np.abs(fourier(run.at, run.time_of_state, self.periods)[self.periods])
+        seen = extremes(lambda times: look(self.system, times, run.at(times)), run.time_of_state)
+        return Observed(seen.span, seen.largest, amplitude)
+
+    def motion(self, x: Array, frame: Array) -> Motion:
+        """The motion from x application by application, a frame of tangents (k, n) carried along, compiled."""
+        system = self.system
+        return Motion(
+            system.equations, x, frame, self.length, system.forcing_period or 0.0, self.phase,
+            system.regime_at(self.phase, x), self.tolerance,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TimedMap(IntegratedMap):
+    """x → φ(T; x) of an autonomous system, the time T [s] its only value."""
+
+    @property
+    def length(self) -> float:
+        return float(self.values[0])
+
+    def slope(self, x: Array, run: Trajectory, place: int) -> Array:
+        return self.system.rate_at(run.time, run.final[0], run.final_regime)
+
+    @classmethod
+    def over(cls, system: System, time: float, *, phase: float = 0.0, tolerance: float = TOLERANCE) -> Self:
+        """The map of one system over a time."""
+        return cls(lambda time: system, (float(time),), (0.0,), phase, tolerance=tolerance)
+
+
+def _reached(run: Trajectory) -> bool:
+    return run.end is End.REACHED
 
 
 class Image(NamedTuple):
@@ -39,8 +226,25 @@ class Image(NamedTuple):
     trajectory: Trajectory
 
 
+class _Applied:
+    """What follows from ``apply`` alone."""
+
+    system: System
+
+    def apply(self, state: ArrayLike, tangents: ArrayLike | None = None) -> Image:
+        raise NotImplementedError
+
+    def __call__(self, state: ArrayLike) -> Array:
+        """P(x)."""
+        return self.apply(state).state
+
+    def jacobian(self, state: ArrayLike) -> Array:
+        """DP (n, n); of a section of rank n − 1: its range lies in the surface."""
+        return self.apply(state, np.eye(self.system.size)).tangents.T
+
+
 @dataclass(frozen=True)
-class StroboscopicMap:
+class StroboscopicMap(_Applied):
     """x(t₀) → x(t₀ + periods · T); each application starts at the same phase, so no digits are lost to time.
 
     Parameters
@@ -48,6 +252,10 @@ class StroboscopicMap:
     system : with a forcing period.
     phase : t₀ [s].
     periods : forcing periods per application.
+
+    Raises
+    ------
+    InputError : an autonomous system, periods that are no whole number from 1.
     """
 
     system: System
@@ -57,41 +265,29 @@ class StroboscopicMap:
     most_steps: int = MOST_STEPS
 
     def __post_init__(self) -> None:
-        if self.system.forcing_period is None:
-            raise InputError(
-                "is autonomous and has no forcing period",
-                element=self.system.name,
-                key="period",
-                remedy="use a SectionMap, or give the system its period",
-            )
         if isinstance(self.periods, bool) or self.periods != int(self.periods) or self.periods < 1:
             raise InputError("must be a whole number from 1", key="periods", value=self.periods)
+        _ = self.duration  # refuses what has no period
+
+    @cached_property
+    def map(self) -> IntegratedMap:
+        """The map as orbits and branches take it."""
+        found = IntegratedMap.of(self.system, phase=self.phase, periods=self.periods, tolerance=self.tolerance)
+        return replace(found, most_steps=self.most_steps)
 
     @property
     def duration(self) -> float:
         """Time of one application [s]."""
-        assert self.system.forcing_period is not None
-        return self.periods * self.system.forcing_period
+        return self.map.length
 
     def apply(self, state: ArrayLike, tangents: ArrayLike | None = None, *, dense: bool = False) -> Image:
         """P(x), and DP·v for each row of ``tangents`` (k, n)."""
-        block, regime = _block(self.system, self.phase, state, tangents)
-        run = integrate(
-            self.system.equations, self.phase, self.phase + self.duration, block,
-            regime=regime, tolerance=self.tolerance, most_steps=self.most_steps, dense=dense,
-        )  # fmt: skip
+        run = self.map.run(_block(state, tangents), dense=dense)
         return _image(run, run.final, self.duration, run.end)
-
-    def __call__(self, state: ArrayLike) -> Array:
-        return self.apply(state).state
-
-    def jacobian(self, state: ArrayLike) -> Array:
-        """DP (n, n)."""
-        return self.apply(state, np.eye(self.system.size)).tangents.T
 
 
 @dataclass(frozen=True)
-class SectionMap:
+class SectionMap(_Applied):
     """From one crossing of a surface to the next in the same direction.
 
     Parameters
@@ -100,6 +296,10 @@ class SectionMap:
     section : the surface, with a direction of +1 or −1.
     longest : time [s] after which the section counts as never crossed; by default 1000 forcing periods, or
         1000 s for an autonomous system.
+
+    Raises
+    ------
+    InputError : a section without a direction.
     """
 
     system: System
@@ -128,9 +328,9 @@ class SectionMap:
     ) -> Image:
         """The next crossing after ``time``, and DP·v for each row of ``tangents``; ``end`` is ``End.STOPPED``
         where there is one and ``End.REACHED`` where there is none within ``longest``."""
-        block, regime = _block(self.system, time, state, tangents)
+        block = _block(state, tangents)
         run = integrate(
-            self.system.equations, time, time + self.limit, block, regime=regime,
+            self.system.equations, time, time + self.limit, block, regime=self.system.regime_at(time, block[0]),
             tolerance=self.tolerance, most_steps=self.most_steps, watch=self._watch, dense=dense,
         )  # fmt: skip
         if run.end is not End.STOPPED:
@@ -150,18 +350,10 @@ class SectionMap:
         )
         return slope[:n], float(slope[n])
 
-    def __call__(self, state: ArrayLike) -> Array:
-        return self.apply(state).state
 
-    def jacobian(self, state: ArrayLike) -> Array:
-        """DP (n, n), of rank n − 1: its range lies in the surface."""
-        return self.apply(state, np.eye(self.system.size)).tangents.T
-
-
-def _block(system: System, time: float, state: ArrayLike, tangents: ArrayLike | None) -> tuple[Array, int]:
+def _block(state: ArrayLike, tangents: ArrayLike | None) -> Array:
     x = np.asarray(state, dtype=float)
-    block = x[None] if tangents is None else np.vstack([x, np.atleast_2d(np.asarray(tangents, dtype=float))])
-    return block, system.regime_at(time, x)
+    return x[None] if tangents is None else np.vstack([x, np.atleast_2d(np.asarray(tangents, dtype=float))])
 
 
 def _image(run: Trajectory, final: Array, duration: float, end: End) -> Image:

@@ -68,6 +68,13 @@ def first_starts(system: System, start: ArrayLike | None, count: int) -> Array:
     return np.vstack([first, others])
 
 
+def tilted_frame(system: System, count: int) -> Array:
+    """Tangent vectors (count, n) to begin with, tilted so that none starts in an invariant plane and stays there by
+    symmetry."""
+    shape = count, system.size
+    return np.asarray((np.eye(*shape) + 0.1 * np.random.default_rng(1).normal(size=shape)) * np.asarray(system.scale))
+
+
 def angles(system: System, states: Array) -> tuple[int, ...]:
     """States that count as angles: adding 2π to one changes no rate at any of the sampled ``states`` (m, n).
 

@@ -11,17 +11,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.chaos.chaos_subject import BYTES_A_VALUE, as_system, first_starts, values_of, whole_number
+from trunnion.analyses.chaos.chaos_subject import (
+    BYTES_A_VALUE,
+    as_system,
+    first_starts,
+    tilted_frame,
+    values_of,
+    whole_number,
+)
 from trunnion.analyses.chaos.lyapunov_result import shear_bound
 from trunnion.analyses.motion.long_motion import usual_time
 from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
-from trunnion.numerics.integration.tangents import Motion
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
+from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
@@ -213,17 +220,11 @@ def _all(
 
     def one(place: int) -> None:
         here = system.with_parameters(points[place])
-        period = here.forcing_period
-        length = interval or period or usual_time(here, state, tolerance)
-        frame = np.eye(system.size)[:count] + 0.1 * np.random.default_rng(1).normal(size=(count, system.size))
-        motion = Motion(
-            here.equations, state, frame * np.asarray(system.scale), length, period or 0.0,
-            regime=here.regime_at(0.0, state), tolerance=tolerance,
-        )  # fmt: skip
-        if motion.run(transient).end is not End.REACHED:
-            told.append(str(points[place]))
-            return
-        found = motion.run(periods)
+        length = interval or here.forcing_period or usual_time(here, state, tolerance)
+        motion = TimedMap.over(here, length, tolerance=tolerance).motion(state, tilted_frame(system, count))
+        found = motion.run(transient)
+        if found.end is End.REACHED:
+            found = motion.run(periods)
         if found.end is not End.REACHED:
             told.append(str(points[place]))
             return

@@ -22,7 +22,7 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.chaos.chaos_subject import as_system, clocks, first_starts, whole_number
+from trunnion.analyses.chaos.chaos_subject import as_system, clocks, first_starts, tilted_frame, whole_number
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, Run, shear_bound
 from trunnion.analyses.motion.long_motion import failure, usual_time
 from trunnion.driveline.driveline import Driveline
@@ -31,6 +31,7 @@ from trunnion.numerics.averages import BATCHES, average, batch_means, pooled
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.integration.tangents import Motion, Samples
 from trunnion.results.outcome import Outcome
+from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
@@ -168,13 +169,7 @@ def _interval(system: System, state: Array, tolerance: float) -> float:
 
 
 def _motion(system: System, state: Array, count: int, interval: float, tolerance: float) -> Motion:
-    frame = np.eye(system.size)[:count] * np.asarray(system.scale)
-    # A tilt, so that no vector starts in an invariant plane and stays there by symmetry.
-    tilt = np.random.default_rng(1).normal(size=frame.shape) * np.asarray(system.scale)
-    return Motion(
-        system.equations, state, frame + 0.1 * tilt, interval, system.forcing_period or 0.0,
-        regime=system.regime_at(0.0, state), tolerance=tolerance,
-    )  # fmt: skip
+    return TimedMap.over(system, interval, tolerance=tolerance).motion(state, tilted_frame(system, count))
 
 
 def _begun(early: Samples, count: int) -> Run:

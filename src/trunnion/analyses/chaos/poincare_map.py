@@ -20,13 +20,13 @@ from trunnion.analyses.motion.long_motion import LONGEST_REPEAT, failure, motion
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End, integrate
-from trunnion.numerics.integration.tangents import Motion
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
 from trunnion.systems.events import Event, watch
+from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
@@ -148,10 +148,8 @@ def poincare_map(
         )  # fmt: skip
     if not (np.isfinite(interval) and interval > 0):
         raise InputError("must be a positive time", key="every", value=interval)
-    motion = Motion(
-        system.equations, state, np.empty((0, system.size)), interval, system.forcing_period or 0.0, phase,
-        system.regime_at(phase, state), tolerance,
-    )  # fmt: skip
+    over_interval = TimedMap.over(system, interval, phase=phase, tolerance=tolerance)
+    motion = over_interval.motion(state, np.empty((0, system.size)))
     early = motion.run(transient)
     found = motion.run(points) if early.end is End.REACHED else early
     settled = found.states if early.end is End.REACHED else found.states[:0]

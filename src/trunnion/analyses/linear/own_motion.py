@@ -14,7 +14,8 @@ import numpy as np
 from trunnion.analyses.linear.forced_response import LinearResponse
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
-from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import TOLERANCE
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.equations.aligned import aligned_matrices, frequencies

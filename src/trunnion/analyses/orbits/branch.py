@@ -46,20 +46,19 @@ BOUNDLESS = 30.0
 """Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
 
 
-class Names(Protocol):
-    """Name and unit of the parameter, and of what is observed."""
+@dataclass(frozen=True)
+class Names:
+    """Name and unit of the parameter, and of the curves that are observed."""
+
+    label: str = ""
+    unit: str = "1"
+    curves: tuple[str, ...] = ()
+    curve_unit: str = "1"
 
     @property
-    def label(self) -> str: ...
-
-    @property
-    def unit(self) -> str: ...
-
-    @property
-    def curves(self) -> tuple[str, ...]: ...
-
-    @property
-    def curve_unit(self) -> str: ...
+    def in_unit(self) -> str:
+        """The unit as it follows a number."""
+        return "" if self.unit == "1" else f" {self.unit}"
 
 
 class Problem(Protocol):
@@ -200,6 +199,25 @@ class PeriodicBranch(Result):
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
+def followed(
+    problem: Problem,
+    first: Array,
+    low: float,
+    high: float,
+    most_points: int,
+    found: Outcome,
+    *,
+    tolerance: float = CLOSE,
+    progress: Progress | None = None,
+) -> PeriodicBranch:
+    """The branch through the motion ``first`` (unknowns and parameter) that was ``found``, or none where it was not."""
+    if not found.ok:
+        words = f"no motion at {problem.over.label} = {first[-1]:g}{problem.over.in_unit}: {found.sentence}"
+        return collect(problem, [], Outcome(False, found.kind, words))
+    walk, outcome = follow_both_ways(problem, first, low, high, most_points, tolerance, progress=progress)
+    return collect(problem, walk, outcome)
+
+
 def follow_both_ways(
     problem: Problem,
     first: Array,
@@ -268,8 +286,7 @@ def _watched(
 def _ending(problem: Problem, curve: Curve) -> Outcome:
     """The end of a curve as a sentence."""
     count = len(curve.points)
-    unit = "" if problem.over.unit == "1" else f" {problem.over.unit}"
-    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}{unit}" if count else "its start"
+    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}{problem.over.in_unit}" if count else "its start"
     if curve.ending is Ending.BOUND:
         return Outcome(True, "end", f"followed to {at}")
     if curve.ending is Ending.CLOSED:

@@ -1,24 +1,161 @@
-"""What counts as a closed orbit where the motion is exact, and the verdict on its multipliers."""
+"""P(x) = x as equations: of one orbit, solved by Newton's method, and of the curve that a branch of orbits is.
+
+Unknown are the state x (n,) and some of the map's values, the last of which a branch moves along. Where a motion may
+be shifted in time (nothing prescribes its phase) one value more is unknown, and one equation chooses among the shifted
+ones: row · (x − anchor) = 0.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.orbits.branch import Names
 from trunnion.errors import InputError
-from trunnion.results.verdict import Verdict, verdicts
+from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.systems.maps import Passage, PeriodMap
 
-CLOSED = 1e-11
-"""How well an orbit must close, in units of its size."""
-RADIUS_ERROR = 1e-9
-"""What the spectral radius of an exact orbit may be off by; nearer to 1 it is undecided."""
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+M = TypeVar("M", bound=PeriodMap)
+C = TypeVar("C", bound="Closing[Any]")
 SETTLING = (0, 50, 500)
-"""Periods that pass before each attempt at shooting."""
+"""Applications of the map that pass before each attempt at shooting."""
 
 
-def verdict_of(multipliers: NDArray[np.complex128]) -> Verdict:
-    """The verdict on multipliers of an exact orbit."""
-    return Verdict(int(verdicts(np.abs(multipliers).max(), RADIUS_ERROR)))
+class Phase(NamedTuple):
+    """Which of all motions shifted in time is meant: row · (x − anchor) = 0, the row (n,) in units of the states."""
+
+    row: Array
+    anchor: Array
+
+    @classmethod
+    def held(cls, place: int, value: float, scale: Array) -> Phase:
+        """One state held at a value."""
+        unit = np.eye(len(scale))[place]
+        return cls(unit / scale, unit * value)
+
+
+@dataclass
+class Closing(Generic[M]):
+    """The closing of motions of a map as equations in z = (x, values).
+
+    scale (n + unknown values,): size of each unknown that counts as one; tolerance: how well an orbit must close, in
+    these units; within: between which an unknown value of one orbit is looked for; over: what a branch lies over; last:
+    the last trial motion.
+    """
+
+    map: M
+    scale: Array
+    phase: Phase | None = None
+    tolerance: float = 1e-11
+    within: tuple[float, float] = (-np.inf, np.inf)
+    over: Names = field(default_factory=Names)
+    last: Passage | None = None
+    passages: dict[bytes, Passage] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        """Number of states."""
+        return self.map.size
+
+    @property
+    def rows(self) -> int:
+        """Number of equations."""
+        return self.size + (self.phase is not None)
+
+    def place(self, z: Array) -> M:
+        """The map at z."""
+        return self.map.at(*map(float, z[self.size :])) if len(z) > self.size else self.map
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """What is missing to close, and its derivative by z, in units of the scales; NaN where there is no motion."""
+        n, count = self.size, len(z) - self.size
+        left, slope = np.full(self.rows, np.nan), np.full((self.rows, len(z)), np.nan)
+        if not np.isfinite(z).all():
+            return left, slope
+        try:
+            passage = self.place(z)(z[:n], by=range(count))
+        except InputError:  # a trial value may be no value of this parameter
+            return left, slope
+        self.last = passage
+        if not passage.done:
+            return left, slope
+        size = self.scale[:n]
+        left[:n] = (passage.state - z[:n]) / size
+        slope[:n] = np.hstack([passage.tangents - np.eye(n), passage.by_values]) / size[:, None]
+        if self.phase is not None:
+            left[n], slope[n] = self.phase.row @ (z[:n] - self.phase.anchor), np.append(self.phase.row, np.zeros(count))
+        return left, slope
+
+    def solve(self, guess: Array) -> Root:
+        """The orbit near ``guess`` (n + unknown values,)."""
+        n, low, high = self.size, *self.within
+        size = np.append(self.scale[:n], self.scale[n:])
+
+        def residual(z: Array) -> tuple[Array, Array]:
+            inside = len(z) == n or low < z[n] < high
+            left, slope = self.equations(z if inside else np.full_like(z, np.nan))
+            return left * size, slope * size[:, None]
+
+        return solve(residual, guess, size, tolerance=self.tolerance)
+
+    def passage(self, point: CurvePoint) -> Passage:
+        """The closed motion at a point of the curve, computed once."""
+        key = point.z.tobytes()
+        if key not in self.passages:
+            self.passages[key] = self.place(point.z)(point.z[: self.size], watch=True)
+        return self.passages[key]
+
+    def start(self, point: CurvePoint) -> Array:
+        """State at t = 0."""
+        return point.z[: self.size]
+
+    def changes(self, point: CurvePoint) -> int:
+        """Changes of regime in a period; −1 where the motion cannot be computed."""
+        passage = self.passage(point)
+        return passage.changes if passage.done else -1
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        """Floquet multipliers by falling modulus; NaN where the motion cannot be computed."""
+        passage = self.passage(point)
+        return by_modulus(passage.tangents) if passage.done else np.full(self.size, np.nan, dtype=complex)
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        """See ``branch.Problem``."""
+        place = self.place(point.z)
+        return (*place.observe(self.start(point), self.passage(point)), place.length)
+
+
+def close(
+    start: Array, make: Callable[[Array], C], values: tuple[float, ...] = (), *, settle: bool = True
+) -> tuple[C, Root]:
+    """The closing and its root near ``start``, or from where the motion has settled: after each of ``SETTLING``.
+
+    make : guess → its closing; values : guesses of the unknown values.
+    """
+    closing = make(start)
+    root = closing.solve(np.append(start, values))
+    for periods in SETTLING[1:] if settle else ():
+        if root.converged:
+            break
+        settled = closing.map.settle(start, periods)
+        if settled is None:
+            break
+        closing = make(settled)
+        root = closing.solve(np.append(settled, values))
+    return closing, root
+
+
+def by_modulus(matrix: Array) -> Complex:
+    """Eigenvalues by falling modulus."""
+    values = np.linalg.eigvals(matrix).astype(complex)
+    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
 def checked_periods(periods: int) -> int:
@@ -38,7 +175,7 @@ def refuse_speed(oscillator: str, speed: float | None) -> None:
 
     Raises
     ------
-    InputError : so.
+    InputError : a speed is given.
     """
     if speed is not None:
         raise InputError("belongs to a driveline", element=oscillator, key="speed", value=speed, remedy="leave it out")

@@ -8,33 +8,35 @@ those of the motion itself. Where it touches the end of a stage (grazing) there 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.motion.exact_motion import StageEvents, first_stages, stage_events, start_state
-from trunnion.analyses.orbits.closing import CLOSED, SETTLING, checked_periods, verdict_of
+from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close
+from trunnion.analyses.orbits.exact_map import LineMap
+from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
 from trunnion.analyses.orbits.spring_contacts import SpringContact
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
-from trunnion.numerics.continuation.newton import Root, solve
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, period
+from trunnion.numerics.continuation.newton import Root
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.results.verdict import MEANING, Verdict
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-LEAST_TWIST = 1e-6
-"""What a twist counts as at least when an orbit is closed [rad]."""
 SINGULAR = 1e-12
 """Smallest singular value over the largest below which the condition of closing determines nothing."""
 
 
-@dataclass(frozen=True)
-class ExactOrbit:
+@dataclass(frozen=True, repr=False)
+class ExactOrbit(Result):
     """A periodic motion of a line with stages and what it does in its period.
 
     value: speed or common frequency of the excitation [rad/s], whichever turns the line's excitation; start (2m,):
@@ -79,13 +81,38 @@ class ExactOrbit:
     @property
     def verdict(self) -> Verdict:
         """Stable, unstable, or not told apart."""
-        return verdict_of(self.multipliers)
+        return exact_verdict(self.multipliers)
 
     def motion(self, count: int = 512) -> tuple[Array, Array, Array]:
         """Times (count,) over the period, its end left out, states (count, 2m) and torques (count, spring)."""
         times, flow = self.period * np.arange(count) / count, self.line.flow(self.value)
         run = move(flow, self.start, 0.0, self.period, times=times)
         return times, run.states, flow.torque(run.states, run.shown_stages)[:, : len(self.springs)]
+
+    def declared(self) -> Iterator[Held]:
+        """Twist and torque over the period, extremes and means of every spring, changes of stage and multipliers."""
+        count = len(self.springs)
+        times, states, torque = np.zeros(0), np.zeros((0, count)), np.zeros((0, count))
+        if self.outcome.ok:
+            times, states, torque = self.motion()
+        yield axis("time", times, "s")
+        yield axis("spring", self.springs)
+        yield over("time spring", "twist", states[:, :count], "rad")
+        yield over("time spring", "torque", torque, "N*m")
+        for name in ("twist_low", "twist_high", "twist_mean"):
+            yield over("spring", name, getattr(self, name), "rad")
+        for name in ("torque_low", "torque_high", "torque_mean", "torque_peak_to_peak"):
+            yield over("spring", name, getattr(self, name), "N*m")
+        yield over("event", "event_time", self.events.time, "s")
+        yield over("event", "event_spring", np.array([self.springs[i] for i in self.events.spring], dtype=str))
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("", "period", self.period, "s")
+        yield over("", "clearance", self.clearance, "rad")
+        yield over("", "slowest_crossing", self.slowest_crossing, "rad/s")
+        yield remark("driveline", self.line.name)
+        yield remark("verdict", str(self.verdict))
+        yield remark("value", self.value)
+        yield from ending(self.outcome)
 
     def __str__(self) -> str:
         at = f"{'ω' if self.line.clock != 'speed' else 'Ω'} = {self.value:.6g} rad/s"
@@ -106,53 +133,6 @@ class ExactOrbit:
                 f"  {near}{slow}; largest multiplier {abs(self.multipliers[0]):.8g}; {self.outcome}",
             ]
         )
-
-    __repr__ = __str__
-
-
-@dataclass
-class Shooting:
-    """The closing of a motion over ``periods`` of the excitation, as equations in its start and the clock's value.
-
-    Of a line that starts free with a viscous load the rotation itself need not close, only its rate: ``kept`` are the
-    places of the others.
-    """
-
-    line: StagedLine
-    periods: int
-
-    @property
-    def kept(self) -> NDArray[np.int64]:
-        m = self.line.size
-        return np.array([i for i in range(2 * m) if not (self.line.turns and i == m - 1)])
-
-    def whole(self, part: Array) -> Array:
-        """The state (2m,) from its kept part."""
-        state = np.zeros(2 * self.line.size)
-        state[self.kept] = part
-        return state
-
-    def scale(self, start: Array, value: float) -> Array:
-        """Size of every kept number that counts as one."""
-        m = self.line.size
-        size = np.maximum(np.maximum(np.abs(start[:m]), self.line.knots), LEAST_TWIST)
-        turning = 2 * np.pi / self.line.period(value)
-        return np.concatenate([size, np.maximum(np.abs(start[m:]), size * turning)])[self.kept]
-
-    def passage(self, part: Array, value: float, watch: bool = False) -> StagedPassage:
-        length = self.periods * self.line.period(value)
-        slope = -length / value if self.line.clock in ("speed", "frequency") else 0.0
-        return period(self.line.flow(value), self.whole(part), length, slope, watch=watch)
-
-    def residual(self, part: Array, value: float) -> tuple[Array, Array]:
-        """What is missing to close (kept,), and its derivative (kept, kept + 1); NaN where there is none."""
-        n = len(self.kept)
-        if np.isfinite(part).all():
-            run = self.passage(part, value)
-            if run.done and np.isfinite(run.tangents).all():
-                slope = run.tangents[np.ix_(self.kept, np.append(self.kept, 2 * self.line.size))]
-                return run.state[self.kept] - part, slope - np.eye(n, n + 1)
-        return np.full(n, np.nan), np.full((n, n + 1), np.nan)
 
 
 def exact_orbit(
@@ -186,30 +166,25 @@ def refuse_found_speed(line: StagedLine) -> None:
 
 def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
     """The periodic motion near ``start`` (2m,) at a value of the clock."""
-    shooting, flow, length = Shooting(line, periods), line.flow(value), line.period(value)
-    root = None
-    for count in SETTLING if settle else SETTLING[:1]:
-        guess = start
-        for _ in range(count):
-            run = move(flow, guess, 0.0, length)
-            guess = run.state if run.done else np.full_like(guess, np.nan)
-        if not np.isfinite(guess).all():
-            break
-        first = shooting.scale(guess, value)
-        root = solve(lambda x: _square(shooting.residual(x, value)), guess[shooting.kept], first, tolerance=CLOSED)
-        if root.converged and not _determined(root, first):
-            words = (
-                "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
-                "own frequency; give some damping or another frequency"
-            )
-            return _missing(line, start, value, periods, Outcome(False, "not determined", words))
-        if root.converged:
-            return orbit_at(shooting, root.x, value, root.iterations)
+    over_period = LineMap(value, periods, line)
+
+    def closing(guess: Array) -> ExactClosing:
+        return ExactClosing(over_period, over_period.scale(over_period.whole(guess)))
+
+    found, root = close(start[over_period.kept], closing, settle=settle)
+    if root.converged and not _determined(root, found.scale):
+        words = (
+            "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
+            "own frequency; give some damping or another frequency"
+        )
+        return _missing(over_period, start, Outcome(False, "not determined", words))
+    if root.converged:
+        return orbit_at(over_period, root.x, root.iterations)
     words = (
-        f"shooting did not converge (residual {root.size if root else np.inf:.1e}); start closer, for example from the "
+        f"shooting did not converge (residual {root.size:.1e}); start closer, for example from the "
         "final state of a longer tn.exact_motion, or give more periods if the motion is a subharmonic"
     )
-    return _missing(line, start, value, periods, Outcome(False, "not converged", words))
+    return _missing(over_period, start, Outcome(False, "not converged", words))
 
 
 def _determined(root: Root, scale: Array) -> bool:
@@ -218,27 +193,21 @@ def _determined(root: Root, scale: Array) -> bool:
     return bool(sizes[-1] > SINGULAR * max(sizes[0], 1.0))
 
 
-def _square(pair: tuple[Array, Array]) -> tuple[Array, Array]:
-    return pair[0], pair[1][:, :-1]
-
-
-def orbit_at(shooting: Shooting, part: Array, value: float, iterations: int = 0) -> ExactOrbit:
-    """The orbit through a state known to lie on it."""
-    line = shooting.line
-    run = shooting.passage(part, value, watch=True)
-    k, count, start = kernel(), len(line.springs), shooting.whole(part)
-    matrix = run.tangents[np.ix_(shooting.kept, shooting.kept)]
-    length = shooting.periods * line.period(value)
-    closes = float(np.max(np.abs(run.state[shooting.kept] - part) / shooting.scale(start, value)))
+def orbit_at(place: LineMap, part: Array, iterations: int = 0) -> ExactOrbit:
+    """The orbit through a state of the map known to lie on it."""
+    line, start, length = place.line, place.whole(part), place.length
+    passage, k, count = place(part, watch=True), kernel(), len(place.line.springs)
+    run = passage.run
+    closes = float(np.max(np.abs(passage.state - part) / place.scale(start)))
     seen, rates = run.seen[:count], run.events[:, 4]
     return ExactOrbit(
         line=line,
-        value=value,
+        value=place.value,
         start=start,
         period=length,
-        periods=shooting.periods,
-        multipliers=by_modulus(matrix),
-        monodromy=matrix,
+        periods=place.periods,
+        multipliers=by_modulus(passage.tangents),
+        monodromy=passage.tangents,
         events=stage_events(line, run),
         twist_low=seen[:, k.LOW],
         twist_high=seen[:, k.HIGH],
@@ -252,12 +221,6 @@ def orbit_at(shooting: Shooting, part: Array, value: float, iterations: int = 0)
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
     )
-
-
-def by_modulus(matrix: Array) -> Complex:
-    """Eigenvalues by falling modulus."""
-    values = np.linalg.eigvals(matrix).astype(complex)
-    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
 def contacts_of(line: StagedLine, start: Array, run: StagedPassage, length: float) -> tuple[SpringContact, ...]:
@@ -282,11 +245,11 @@ def contacts_of(line: StagedLine, start: Array, run: StagedPassage, length: floa
     return tuple(found)
 
 
-def _missing(line: StagedLine, start: Array, value: float, periods: int, outcome: Outcome) -> ExactOrbit:
-    nan, n, count = float("nan"), len(Shooting(line, periods).kept), len(line.springs)
+def _missing(place: LineMap, start: Array, outcome: Outcome) -> ExactOrbit:
+    nan, n, count = float("nan"), place.size, len(place.line.springs)
     none, whole = np.full(count, nan), np.zeros(0, dtype=np.int64)
     return ExactOrbit(
-        line, value, start, periods * line.period(value), periods, np.full(n, nan, dtype=complex), np.full((n, n), nan),
-        StageEvents(np.zeros(0), whole, whole, whole, np.zeros(0)), none, none, none, none, none, none, (), nan, nan, 0,
-        outcome,
+        place.line, place.value, start, place.length, place.periods, np.full(n, nan, dtype=complex),
+        np.full((n, n), nan), StageEvents(np.zeros(0), whole, whole, whole, np.zeros(0)), none, none, none, none, none,
+        none, (), nan, nan, 0, outcome,
     )  # fmt: skip

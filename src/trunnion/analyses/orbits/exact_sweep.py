@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.motion.exact_motion import start_state
-from trunnion.analyses.orbits.exact_branch import line_over
-from trunnion.analyses.orbits.exact_orbit import Shooting, contacts_of
-from trunnion.analyses.orbits.jumps import abrupt_changes
+from trunnion.analyses.orbits.exact_map import LineMap
+from trunnion.analyses.orbits.exact_orbit import contacts_of
+from trunnion.analyses.orbits.piecewise_branch import line_over
 from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.analyses.orbits.sweeping import jumps, stepped, upwards
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise_linear.staged_flow import kernel, move
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-REPEATS = 3
-"""Periods that must repeat, one after the other, before a motion counts as settled."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,13 +64,12 @@ class LineSweep(Result):
     @property
     def up(self) -> bool:
         """Whether the value was raised."""
-        return bool(self.value[-1] >= self.value[0])
+        return upwards(self.value)
 
     @property
     def jumps(self) -> tuple[tuple[float, float], ...]:
         """Pairs of neighbouring values between which the torque of any spring changes abruptly, in the order swept."""
-        found = {i for swing in self.torque_peak_to_peak.T for i in abrupt_changes(swing)}
-        return tuple((float(self.value[i]), float(self.value[i + 1])) for i in sorted(found))
+        return jumps(self.value, self.torque_peak_to_peak)
 
     def swing_of(self, spring: str) -> Array:
         """Peak-to-peak torque of one spring (points,) [N m].
@@ -161,47 +159,31 @@ def exact_sweep(
     least: int,
     most: int,
     same: float,
-    measured: int,
 ) -> LineSweep:
     """See ``sweep``, which has checked the values."""
     prepared = line_over(line, float(values[0]), speed)
-    shooting, state = Shooting(prepared, 1), start_state(prepared, start)
-    count, k = len(prepared.springs), kernel()
-    low, high = np.full((len(values), count), np.nan), np.full((len(values), count), np.nan)
-    states = np.full((len(values), 2 * prepared.size), np.nan)
-    settled, periods = np.zeros(len(values), dtype=bool), np.zeros(len(values), dtype=np.int64)
+    maps = [LineMap(float(value), 1, prepared) for value in values]
+    shape, size, k = (len(values), len(prepared.springs)), len(values), kernel()
+    low, high, states = np.full(shape, np.nan), np.full(shape, np.nan), np.full((size, 2 * prepared.size), np.nan)
+    settled, periods = np.zeros(size, dtype=bool), np.zeros(size, dtype=np.int64)
     nothing = tuple(SpringContact(prepared.springs[e], np.zeros(0), np.nan, "none", np.zeros(0), np.nan)
                     for e in prepared.staged)  # fmt: skip
-    contacts: list[tuple[SpringContact, ...]] = [nothing] * len(values)
+    contacts: list[tuple[SpringContact, ...]] = [nothing] * size
     outcome = Outcome(True, "swept", "every step was run")
-    for i, value in enumerate(values):
-        state, periods[i], settled[i] = _settle(shooting, state, float(value), least, most, same)
-        flow, length = prepared.flow(float(value)), prepared.period(float(value))
-        length *= 1 if settled[i] else measured
-        run = move(flow, state, 0.0, length, watch=True)
-        if not (run.done and np.isfinite(state).all()):
-            words = f"the motion at {value:g} rad/s changes its stages too often in a period; raise damping"
+    first = start_state(prepared, start)[maps[0].kept]
+    for i, (found, seen) in enumerate(stepped(maps, first, least, most, same, _watched)):
+        periods[i], settled[i] = found.periods, found.repeats
+        if seen is None:
+            words = f"the motion at {values[i]:g} rad/s changes its stages too often in a period; raise damping"
             outcome = Outcome(False, "chatter", words)
             break
-        low[i], high[i] = run.seen[:count, k.TORQUE_LOW], run.seen[:count, k.TORQUE_HIGH]
-        contacts[i], states[i] = contacts_of(prepared, state, run, length), state
-        state = run.state
+        run, length = seen
+        states[i] = maps[i].whole(found.state)
+        low[i], high[i] = run.seen[: shape[1], k.TORQUE_LOW], run.seen[: shape[1], k.TORQUE_HIGH]
+        contacts[i] = contacts_of(prepared, states[i], run, length)
     return LineSweep(prepared, values, low, high, tuple(contacts), settled, periods, states, outcome)
 
 
-def _settle(
-    shooting: Shooting, state: Array, value: float, least: int, most: int, same: float
-) -> tuple[Array, int, bool]:
-    """State at phase zero, periods run and whether they repeat, after from ``least`` to ``most`` of them."""
-    flow, length, kept = shooting.line.flow(value), shooting.line.period(value), shooting.kept
-    repeated = 0
-    for count in range(1, most + 1):
-        run = move(flow, state, 0.0, length)
-        change = np.abs(run.state - state)[kept] / shooting.scale(run.state, value)
-        state = run.state
-        if not run.done:
-            return np.full_like(state, np.nan), count, False
-        repeated = repeated + 1 if np.max(change) < same else 0
-        if count >= least and repeated >= REPEATS:
-            return state, count, True
-    return state, most, False
+def _watched(place: LineMap, state: Array) -> tuple[tuple[StagedPassage, float] | None, Array]:
+    run = place.watched(state)
+    return ((run, place.length) if run.done else None), run.state[place.kept]

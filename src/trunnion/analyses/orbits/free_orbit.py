@@ -2,9 +2,8 @@
 
 Nothing prescribes its rotation, so that any phase of the motion is one as well: unknown are the state but for the
 first rotation, which is held where it starts, and the torque that drives beyond the balance of the loads, to cover
-what dampers and speed fluctuation take. P(x; torque) = x in a frame that turns at the mean speed,
-
-    m equations in (torque, x₂ … x_m).
+what dampers and speed fluctuation take: P(x; torque) = x in a frame that turns at the mean speed. Where no drive keeps
+the speed, the speed is unknown in place of the torque.
 
 The disturbance that shifts the phase, x′ + R Ω, comes back exactly: its multiplier 1 is set aside by that vector.
 """
@@ -17,19 +16,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, Neutral, PeriodicOrbit, Shots, judged
+from trunnion.analyses.orbits.closing import Phase, close
+from trunnion.analyses.orbits.judging import IntegratedClosing, Neutral
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, closing_of, judged
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.parameters import SPEED
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
-from trunnion.numerics.continuation.newton import Root, solve
-from trunnion.numerics.integration.integration import End, Trajectory, integrate
+from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
-SETTLING = (0, 60)
-"""Periods integrated from the start before shooting, tried one after the other."""
+BESIDE = 1e-5
+"""Step of differences by the mean speed, over it."""
 
 
 @dataclass(frozen=True)
@@ -58,26 +60,33 @@ def kept_speed_orbit(
     """
     require_closing(line)
     first = line.twisted() if start is None else line.system.checked(start, "start")
-    problem = _KeptSpeed(line, driven or line.with_drive, tolerance)
-    for count in SETTLING if settle else SETTLING[:1]:
-        guess = first
-        if count:
-            system = problem.driven(0.0)
-            run = integrate(
-                system.equations, 0.0, count * problem.length, first,
-                regime=system.regime_at(0.0, first), tolerance=1e-8, dense=False,
-            )  # fmt: skip
-            if run.end is not End.REACHED:
-                break
-            guess = run.final[0]
-        root = problem.solve(guess)
-        if root.converged:
-            break
-    torque = float(root.x[0])
-    shots = problem.shots(torque)
-    state = np.append(problem.anchor, root.x[1:])
-    shots.last = problem.last if not root.converged else shots.run(state, shots.length, tolerance)
-    return FreeOrbit(judged(shots, replace(root, x=state)), torque)
+    torque = torque_scale(line)
+    driving = IntegratedMap(driven or line.with_drive, (0.0,), (torque,), 0.0, 1, tolerance, MOST_STEPS)
+    neutral = neutral_motions(line)
+
+    def held(guess: Array) -> IntegratedClosing:
+        scale = np.asarray(driving.system.scale)
+        return replace(closing_of(driving, Phase.held(0, float(guess[0]), scale), (torque,)), neutral=neutral)
+
+    closing, root = close(first, held, (0.0,), settle=settle)
+    return FreeOrbit(judged(closing, root), float(root.x[-1]))
+
+
+def torque_driven_orbit(
+    line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE
+) -> tuple[PeriodicOrbit, float]:
+    """The periodic motion of a line whose speed follows from its torques, and that speed [rad/s], guessed as ``speed``.
+
+    The line is observed from a frame that turns at a mean speed Ω, in which the motion closes after 2π/Ω per turn for
+    the right Ω only: unknown are the state and Ω, and the first rotation is zero at the start, which chooses one point
+    of the orbit. As for any autonomous system one multiplier is 1 and is set aside.
+    """
+    turning = IntegratedMap(line.varied("speed"), (speed,), (BESIDE * speed,), 0.0, 1, tolerance, MOST_STEPS)
+    phase = Phase.held(0, 0.0, np.asarray(turning.system.scale))
+    closing = closing_of(turning, phase, (speed,), (speed / LONGEST, speed * LONGEST))
+    closing.neutral = neutral_motions(line)
+    root = closing.solve(np.append(start, speed))
+    return judged(closing, root), float(root.x[-1])
 
 
 def closes(line: LineSystem) -> bool:
@@ -105,8 +114,8 @@ def require_closing(line: LineSystem) -> None:
         )
 
 
-def neutral_motions(line: LineSystem, speed: float) -> Callable[[System, Array], Neutral]:
-    """(system, state at t = 0) → the line's neutral disturbances in the frame that turns at ``speed``.
+def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
+    """(system, state at t = 0) → the line's neutral disturbances in the frame that turns at the system's mean speed.
 
     A shift of the phase comes back exactly; without bent joints, loads by speed and excitation a change of the speed
     does as well.
@@ -124,6 +133,7 @@ def neutral_motions(line: LineSystem, speed: float) -> Callable[[System, Array],
     def at(system: System, x: Array) -> Neutral:
         by_speed = _any(line, system, loads)
         steady = not (by_speed or _any(line, system, unsteady))
+        speed = system.parameters[SPEED]
         shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + np.append(turn * speed, np.zeros(n))
         if steady:
             return Neutral(np.stack([shift, faster], axis=1))
@@ -150,44 +160,3 @@ def torque_scale(line: LineSystem) -> float:
     co = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False, free_play=True)
     inertia = float(co.inertia[0] @ np.array([float(q) for q in topo.speed_ratio]) ** 2)
     return float(np.asarray(system.scale)[topo.size]) * inertia / float(system.forcing_period)
-
-
-class _KeptSpeed:
-    """P(x; torque) = x with the first rotation held."""
-
-    def __init__(self, line: LineSystem, driven: Callable[[float], System], tolerance: float) -> None:
-        self.line, self.driven, self.tolerance = line, driven, tolerance
-        system = driven(0.0)
-        assert system.forcing_period is not None
-        self.length = float(system.forcing_period)
-        self.scale = np.array(system.scale, dtype=float)
-        self.scale[0] = torque_scale(line)
-        self.anchor = 0.0
-        self.last: Trajectory | None = None
-
-    def shots(self, torque: float) -> Shots:
-        neutral = neutral_motions(self.line, self.line.speed)
-        return Shots(self.driven(torque), 0.0, self.length, True, self.tolerance, neutral=neutral)
-
-    def solve(self, guess: Array) -> Root:
-        self.anchor = float(guess[0])
-        return solve(self.residual, np.append(0.0, guess[1:]), self.scale, tolerance=200 * self.tolerance)
-
-    def residual(self, z: Array) -> tuple[Array, Array]:
-        n, x = len(z), np.append(self.anchor, z[1:])
-        shots, h = self.shots(float(z[0])), float(self.scale[0])
-        self.last = run = shots.run(x, self.length, self.tolerance)
-        below, above = (self._end(x, float(z[0]) + side * h) for side in (-1.0, 1.0))
-        if run.end is not End.REACHED or below is None or above is None:
-            return np.full(n, np.nan), np.full((n, n), np.nan)
-        slope = run.final[1:].T - np.eye(n)
-        slope[:, 0] = (above - below) / (2 * h)
-        return np.asarray(run.final[0] - x), slope
-
-    def _end(self, x: Array, torque: float) -> Array | None:
-        system = self.driven(torque)
-        run = integrate(
-            system.equations, 0.0, self.length, x, regime=system.regime_at(0.0, x), tolerance=self.tolerance,
-            dense=False,
-        )  # fmt: skip
-        return run.final[0] if run.end is End.REACHED else None

@@ -152,8 +152,8 @@ class FrequencyResponse(Result):
         return self.describe()
 
 
-@dataclass(frozen=True)
-class ResponseComparison:
+@dataclass(frozen=True, repr=False)
+class ResponseComparison(Result):
     """Several methods side by side; the first is what the others are measured against."""
 
     responses: Mapping[str, FrequencyResponse]
@@ -177,6 +177,14 @@ class ResponseComparison:
             rows.append((name, f"{size:#.5g}", f"{at * factor:#.6g}", folds, *motions, f"{r.seconds:.2g}"))
         return rows
 
+    def declared(self) -> Iterator[Held]:
+        """The points of all curves one after the other, each with its method."""
+        found = list(self.responses.values())
+        yield over("point", "method", np.array([r.method for r in found for _ in r.frequency], dtype=str))
+        yield over("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
+        yield over("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
+        yield over("point", "stable", np.concatenate([r.stable for r in found]))
+
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """All on one picture."""
         return drawing(self, "plot")(self, axes, **options)
@@ -191,8 +199,6 @@ class ResponseComparison:
 
     def __str__(self) -> str:
         return self.describe()
-
-    __repr__ = __str__
 
 
 def methods_of(system: PiecewiseOscillator | SecondOrder | System | Driveline) -> tuple[str, ...]:

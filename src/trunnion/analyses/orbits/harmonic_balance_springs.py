@@ -14,27 +14,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
-from trunnion.analyses.orbits.branch import PeriodicBranch, collect, follow_both_ways
+from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
+from trunnion.analyses.orbits.branch import STEP, Names
+from trunnion.analyses.orbits.closing import by_modulus
 from trunnion.analyses.orbits.piecewise_branch import check_range
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
-from trunnion.results.outcome import Outcome
 from trunnion.systems.second_order import SecondOrder, Spring
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-STEP = 0.1
-RADIUS_ERROR = 1e-6
-"""What the spectral radius may be off by; nearer to 1 it is undecided."""
+FEWEST, MOST = 10, 160
+"""Harmonics to begin with, and the most that a tail is answered with."""
 PER_HARMONIC, FEWEST_SAMPLES = 8, 256
 """Samples per harmonic, for smooth forces and to find the crossings of kinks."""
 MAGNUS = 64
@@ -46,35 +44,13 @@ NEWTON, SETTLED = 3, 1e-8
 GAUSS = np.sqrt(3.0) / 6
 
 
-@dataclass(frozen=True)
-class SpringBalance:
-    """A branch as Fourier series: ``branch`` as of ``piecewise_branch``, rows (points, n, 2H + 1) of mean, cosines and
-    sines of every unknown, tail (points,): the largest of the last two harmonics over the largest of all."""
-
-    branch: PeriodicBranch
-    rows: Array
-    tail: Array
-    periods: int
-
-    @property
-    def harmonics(self) -> int:
-        """H, per period of the motion."""
-        return fourier.order(self.rows)
+@dataclass(frozen=True, repr=False)
+class SpringBalance(SeriesBranch):
+    """A branch of the unknowns of a ``SecondOrder`` system as Fourier series; see ``SeriesBranch``."""
 
     def motion(self, point: int, count: int = 512) -> Array:
         """The unknowns (n, count) at equidistant times of the period of one point."""
         return fourier.samples(self.rows[point], count)
-
-    @property
-    def outcome(self) -> Outcome:
-        """Where the branch ended and why."""
-        return self.branch.outcome
-
-    def __str__(self) -> str:
-        worst = f", tail up to {self.tail.max():.1e}" if len(self.tail) else ""
-        return f"harmonic balance with {self.harmonics} harmonics{worst}\n{self.branch}"
-
-    __repr__ = __str__
 
 
 def balance_springs(
@@ -110,58 +86,44 @@ def balance_springs(
     if not low <= first <= high:
         raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
     needed = periods * max(k for k, _, _ in system.harmonics)
-    h = 10 * periods if harmonics is None else harmonics
-    if harmonics is not None and h < needed:
+    if harmonics is not None and harmonics < needed:
         raise InputError(f"must be {needed} or more, those of the force", key="harmonics", value=harmonics)
-    h = max(h, needed)
     rows = None if start is None else np.atleast_2d(np.asarray(start, dtype=float))
     if rows is not None and (rows.shape[0] != system.size or rows.shape[1] % 2 == 0):
         raise InputError(f"must be series of {system.size} unknowns", key="start", value=rows.shape)
-    while True:
-        with threadpool_limits(1, user_api="blas"):
-            found = _followed(system, rows, h, first, low, high, periods, longest_step, most_points)
-        if harmonics is not None or 2 * h > 160 or not len(found.tail) or found.tail.max() < tail:
-            return found
-        h *= 2
-
-
-def _followed(
-    system: SecondOrder, rows: Array | None, h: int, first: float, low: float, high: float, periods: int,
-    longest_step: float, most_points: int,
-) -> SpringBalance:  # fmt: skip
-    problem = _Balance(system, h, periods, (high - low) * longest_step / STEP)
-    kinks = [abs(b) for spring in system.springs for b in spring.kinks if b != 0]
-    guesses = problem.guesses(first) if rows is None else [fourier.resized(rows, h)]
-    problem.width = min(kinks) if kinks else max(float(np.abs(guesses[0]).max()), 1e-12)
-    begun = problem.begun(first, guesses)
-    walk, outcome = follow_both_ways(problem, np.append(begun.ravel(), first), low, high, most_points)
-    if not walk:
-        words = f"no motion with {h} harmonics was found near ω = {first:g}; give a start"
-        outcome = Outcome(False, "not found", words)
-    found = np.array([problem.rows(point) for point, _ in walk]).reshape(-1, system.size, 2 * h + 1)
-    sizes = np.hypot(found[..., 1 : h + 1], found[..., h + 1 :]).max(axis=1)
-    tails = sizes[:, -2:].max(axis=1, initial=0.0) / np.maximum(sizes.max(axis=1, initial=0.0), 1e-300)
-    return SpringBalance(collect(problem, walk, outcome), found, tails, periods)
-
-
-@dataclass(frozen=True)
-class _Names:
-    curves: tuple[str, ...]
-    label: str = "frequency"
-    unit: str = "rad/s"
-    curve_unit: str = "1"
+    width = (high - low) * longest_step / STEP
+    found = balanced(
+        lambda h: _Balance(system, h, periods, width, first, rows), harmonics, max(FEWEST * periods, needed), MOST,
+        tail, first, low, high, most_points,
+    )  # fmt: skip
+    return SpringBalance(found.branch, found.rows, found.tail, periods)
 
 
 @dataclass
-class _Balance:
-    """The balance as equations of a curve z = (series, ω)."""
+class _Balance(Series):
+    """The balance as equations of a curve z = (series, ω), from a frequency and a series, if one is given."""
 
     system: SecondOrder
     h: int
     periods: int
     range: float
-    width: float = 1.0
+    begin: float
+    given: Array | None
     told: dict[bytes, tuple[Complex, int]] = field(default_factory=dict)
+
+    def first(self) -> Array:
+        return self.begun(self.begin, self.starts)
+
+    @cached_property
+    def starts(self) -> list[Array]:
+        """Series to begin with."""
+        return self.guesses(self.begin) if self.given is None else [fourier.resized(self.given, self.h)]
+
+    @cached_property
+    def width(self) -> float:
+        """Size of the motion that counts as one: the nearest kink, or the first guess."""
+        kinks = [abs(b) for spring in self.system.springs for b in spring.kinks if b != 0]
+        return min(kinks) if kinks else max(float(np.abs(self.starts[0]).max()), 1e-12)
 
     @property
     def n(self) -> int:
@@ -172,8 +134,8 @@ class _Balance:
         return 2 * self.n
 
     @property
-    def over(self) -> Any:
-        return _Names(self.system.names)
+    def over(self) -> Names:
+        return Names("frequency", "rad/s", tuple(self.system.names))
 
     @property
     def scale(self) -> Array:
@@ -182,9 +144,6 @@ class _Balance:
     @property
     def count(self) -> int:
         return max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(PER_HARMONIC * self.h))))
-
-    def rows(self, point: CurvePoint) -> Array:
-        return point.z[:-1].reshape(self.n, 2 * self.h + 1)
 
     def force(self) -> Array:
         out = np.zeros((self.n, 2 * self.h + 1))
@@ -330,8 +289,7 @@ class _Balance:
         if key not in self.told:
             rows, omega = self.rows(point), point.parameter / self.periods
             crossings = self.crossings(rows)
-            values = np.linalg.eigvals(self._monodromy(rows, omega, crossings)).astype(complex)
-            self.told[key] = values[np.argsort(-np.abs(values))], len(crossings)
+            self.told[key] = by_modulus(self._monodromy(rows, omega, crossings)), len(crossings)
         return self.told[key]
 
     def _monodromy(self, rows: Array, omega: float, crossings: Array) -> Array:
@@ -375,10 +333,6 @@ class _Balance:
 
     def multipliers(self, point: CurvePoint) -> Complex:
         return self.judged(point)[0]
-
-    def radius_error(self, point: CurvePoint, radius: float) -> float:
-        """A series closes to its tail, not to rounding."""
-        return RADIUS_ERROR
 
     def changes(self, point: CurvePoint) -> int:
         return self.judged(point)[1]

@@ -10,16 +10,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
-from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
-from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit, periodic_orbit
-from trunnion.analyses.orbits.shooting import FreeShooting, Shooting
-from trunnion.analyses.orbits.systems_over import SystemOver, system_over
+from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, followed
+from trunnion.analyses.orbits.closing import Phase
+from trunnion.analyses.orbits.free_orbit import kept_speed_orbit, neutral_motions, torque_scale
+from trunnion.analyses.orbits.judging import IntegratedClosing
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
+from trunnion.analyses.orbits.systems_over import LINE_SCALE, SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
@@ -68,26 +69,22 @@ def periodic_branch(
     """
     # The parameter's scale makes its largest step the one asked for, whatever a state's may be.
     over = system_over(line, parameter, low, high, begin, speed, longest_step / STEP, free=True)
-    first = over.begin
     problem, unknown, orbit = (
         _free(over, start, periods, tolerance) if over.free else _forced(over, start, periods, tolerance)
     )
-    if not orbit.outcome.ok:
-        return collect(problem, [], Outcome(False, orbit.outcome.kind, f"at {first:g}: {orbit.outcome.sentence}"))
-    whole, outcome = follow_both_ways(problem, np.append(unknown, first), low, high, most_points, progress=progress)
-    return collect(problem, whole, outcome)
+    return followed(problem, np.append(unknown, over.begin), low, high, most_points, orbit.outcome, progress=progress)
 
 
 def _forced(
     over: SystemOver, start: ArrayLike | None, periods: int, tolerance: float
-) -> tuple[Shooting, Array, PeriodicOrbit]:
+) -> tuple[IntegratedClosing, Array, PeriodicOrbit]:
     orbit = periodic_orbit(over.at(over.begin), start=start, periods=periods, tolerance=tolerance)
-    return Shooting(over, periods, tolerance), orbit.start, orbit
+    return IntegratedClosing(over.map(periods, tolerance), over.scale, over=over), orbit.start, orbit
 
 
 def _free(
     over: SystemOver, start: ArrayLike | None, periods: int, tolerance: float
-) -> tuple[Shooting, Array, PeriodicOrbit]:
+) -> tuple[IntegratedClosing, Array, PeriodicOrbit]:
     if periods != 1:
         raise InputError(
             "are followed of a line with a prescribed speed only", element="driveline", key="periods", value=periods,
@@ -95,5 +92,12 @@ def _free(
         )  # fmt: skip
     assert over.line is not None
     found = kept_speed_orbit(over.line, start, tolerance=tolerance, driven=lambda torque: over.at(over.begin, torque))
-    problem = FreeShooting(over, periods, tolerance, anchor=float(found.orbit.start[0]))
-    return problem, np.append(found.extra_torque, found.orbit.start[1:]), found.orbit
+    torque = LINE_SCALE * torque_scale(over.line)
+    problem = IntegratedClosing(
+        over.map(periods, tolerance, torque),
+        np.concatenate([over.scale[:-1], [torque, over.scale[-1]]]),
+        Phase.held(0, float(found.orbit.start[0]), over.scale[:-1]),
+        over=over,
+        neutral=neutral_motions(over.line),
+    )
+    return problem, np.append(found.orbit.start, found.extra_torque), found.orbit

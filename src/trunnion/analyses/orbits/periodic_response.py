@@ -7,7 +7,7 @@ the two linearisations say is stated beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,15 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.analyses.motion.simulation import simulate_system
-from trunnion.analyses.orbits.free_orbit import kept_speed_orbit, loaded_by_speed, neutral_motions, require_closing
-from trunnion.analyses.orbits.periodic_orbit import (
-    TOLERANCE,
-    Neutral,
-    PeriodicOrbit,
-    periodic_orbit,
-    speed_in_words,
+from trunnion.analyses.orbits.free_orbit import (
+    kept_speed_orbit,
+    loaded_by_speed,
+    require_closing,
     torque_driven_orbit,
 )
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit, speed_in_words
+from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -360,21 +359,16 @@ def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: flo
     left = float(imbalance(prepared.assembly, row)[0])
     if left > 0 and not loaded_by_speed(prepared.assembly):
         require_balance(prepared.assembly, row)  # nothing but dampers could drive it
-    vary, speed = prepared.varied("speed"), prepared.speed
+    speed = prepared.speed
     first = prepared.twisted() if start is None else prepared.system.checked(start, "start")
-
-    def neutral(omega: float) -> Callable[[System, Array], Neutral]:
-        return neutral_motions(prepared, omega)
-
-    orbit, found = torque_driven_orbit(vary, speed, first, neutral=neutral, tolerance=tolerance)
+    orbit, found = torque_driven_orbit(prepared, speed, first, tolerance=tolerance)
     if not orbit.outcome.ok and settle:
         run = simulate_system(prepared.system, periods=400, start=first, tolerance=1e-8, dense=False)
         n = prepared.assembly.topology.size
         speed += float(run.final[n])
         if run.outcome.ok and speed > 0:
-            orbit, found = torque_driven_orbit(
-                vary, speed, line_system(prepared.assembly, speed).twisted(), neutral=neutral, tolerance=tolerance
-            )
+            twisted = line_system(prepared.assembly, speed).twisted()
+            orbit, found = torque_driven_orbit(prepared, speed, twisted, tolerance=tolerance)
     if not orbit.outcome.ok and left:
         words = f"{orbit.outcome.sentence}; {torques_in_words(prepared.assembly, row[0])}"
         orbit = replace(orbit, outcome=Outcome(False, orbit.outcome.kind, words))

@@ -1,30 +1,28 @@
-"""The frequency response of a piecewise linear oscillator by continuation of its exact periodic motions.
+"""Exact periodic motions over a frequency, of a piecewise linear oscillator or of a driveline with stages.
 
-The curve P(x, x′; ω) = (x, x′), followed by pseudo-arclength with the exact derivative by state and frequency;
-special points as in ``analyses/branch``. It is what the other methods are measured against.
+The curve P(x; value) = x, followed by pseudo-arclength with the exact derivative by state and value; special points as
+in ``analyses/branch``. It is what the other methods are measured against.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, collect, follow_both_ways
-from trunnion.analyses.orbits.closing import RADIUS_ERROR, refuse_speed
-from trunnion.analyses.orbits.exact_branch import exact_branch
+from trunnion.analyses.motion.exact_motion import start_state
+from trunnion.analyses.orbits.branch import STEP, Names, PeriodicBranch, Progress, followed
+from trunnion.analyses.orbits.closing import refuse_speed
+from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
+from trunnion.analyses.orbits.exact_orbit import orbit_near, refuse_found_speed
+from trunnion.analyses.orbits.judging import ExactClosing
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
-from trunnion.numerics.continuation.arclength import CurvePoint
-from trunnion.numerics.piecewise_linear.piecewise import Passage, TooManyEventsError, measure, period
-from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def check_range(low: float, high: float) -> None:
@@ -32,7 +30,7 @@ def check_range(low: float, high: float) -> None:
 
     Raises
     ------
-    InputError : so.
+    InputError : another range.
     """
     if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
         raise InputError("must be a rising range of positive frequencies", key="low, high", value=[low, high])
@@ -80,83 +78,59 @@ def piecewise_branch(
     if not low <= first <= high:
         raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
     if isinstance(oscillator, Driveline | Assembly):
-        return exact_branch(
-            oscillator, low, high, begin=first, start=start, speed=speed, periods=periods, longest_step=longest_step,
-            most_points=most_points, progress=progress,
-        )  # fmt: skip
+        return _of_line(oscillator, low, high, first, start, speed, periods, longest_step, most_points, progress)
     refuse_speed(oscillator.name, speed)
     orbit = piecewise_orbit(oscillator.but(frequency=first), start, periods=periods)
     size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
-    problem = _Exact(oscillator, periods, size, (high - low) * longest_step / STEP)
-    if not orbit.outcome.ok:
-        return collect(problem, [], Outcome(False, "not found", f"no motion at ω = {first:g}: {orbit.outcome}"))
-    whole, outcome = follow_both_ways(
-        problem, np.append(orbit.start, first), low, high, most_points, 1e-11, progress=progress
-    )
-    return collect(problem, whole, outcome)
+    scale = np.array([size, size * oscillator.frequency, (high - low) * longest_step / STEP])
+    place = OscillatorMap(first, periods, oscillator)
+    problem = ExactClosing(place, scale, over=Names("frequency", "rad/s", ("x",)))
+    return followed(
+        problem, np.append(orbit.start, first), low, high, most_points, orbit.outcome, tolerance=1e-11,
+        progress=progress,
+    )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Frequency:
-    """Name and unit of the parameter and of what is observed; see ``branch.Names``."""
+def _of_line(
+    line: Driveline | Assembly,
+    low: float,
+    high: float,
+    first: float,
+    start: ArrayLike | None,
+    speed: float | None,
+    periods: int,
+    longest_step: float,
+    most_points: int,
+    progress: Progress | None,
+) -> PeriodicBranch:
+    prepared = line_over(line, first, speed)
+    orbit, place = orbit_near(prepared, start_state(prepared, start), first, periods), LineMap(first, periods, prepared)
+    size = np.abs(orbit.start)
+    if orbit.outcome.ok:
+        # Twists count by the larger of the motion and the gap, rates by that per phase.
+        size[: len(prepared.springs)] = np.maximum(np.abs(orbit.twist_low), np.abs(orbit.twist_high))
+    scale = np.append(place.scale(size), (high - low) * longest_step / STEP)
+    name = "speed" if prepared.clock == "speed" else "frequency"
+    problem = ExactClosing(place, scale, over=Names(name, "rad/s", prepared.springs, "N*m"))
+    begins = np.append(orbit.start[place.kept], first)
+    return followed(problem, begins, low, high, most_points, orbit.outcome, tolerance=1e-10, progress=progress)
 
-    label: str = "frequency"
-    unit: str = "rad/s"
-    curves: tuple[str, ...] = ("x",)
-    curve_unit: str = "1"
 
+def line_over(line: Driveline | Assembly, value: float, speed: float | None) -> StagedLine:
+    """The line, ready for other values of what turns its excitation, of which ``value`` is one.
 
-@dataclass
-class _Exact:
-    """The closing of an orbit as equations of a curve z = (x, x′, ω)."""
-
-    oscillator: PiecewiseOscillator
-    periods: int
-    width: float
-    range: float
-    size: int = 2
-    over: _Frequency = _Frequency()
-    runs: dict[bytes, Passage] = field(default_factory=dict)
-
-    @property
-    def scale(self) -> Array:
-        return np.array([self.width, self.width * self.oscillator.frequency, self.range])
-
-    def passage(self, z: Array) -> Passage:
-        key = z.tobytes()
-        if key not in self.runs:
-            o = self.oscillator
-            self.runs[key] = period(o.regimes, o.coefficients, float(z[2]), z[:2], self.periods)
-        return self.runs[key]
-
-    def equations(self, z: Array) -> tuple[Array, Array]:
-        try:
-            if not (z[2] > 0 and np.isfinite(z).all()):
-                raise TooManyEventsError("no motion at such a frequency")
-            run = self.passage(z)
-        except TooManyEventsError:
-            return np.full(2, np.nan), np.full((2, 3), np.nan)
-        over = 1 / self.scale[:2]
-        return (run.state - z[:2]) * over, (run.tangents - np.eye(2, 3)) * over[:, None]
-
-    def start(self, point: CurvePoint) -> Array:
-        return point.z[:2]
-
-    def multipliers(self, point: CurvePoint) -> Complex:
-        values = np.linalg.eigvals(self.passage(point.z).tangents[:, :2]).astype(complex)
-        return np.asarray(values[np.argsort(-np.abs(values))])
-
-    def radius_error(self, point: CurvePoint, radius: float) -> float:
-        return RADIUS_ERROR
-
-    def changes(self, point: CurvePoint) -> int:
-        return len(self.passage(point.z).crossings)
-
-    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
-        o, omega = self.oscillator, point.parameter
-        found = measure(o.regimes, o.coefficients, omega, point.z[:2], self.periods)
-        low, high = found["low"], found["high"]
-        swing, largest = np.array([high - low]), np.array([max(abs(low), abs(high))])
-        # At the forcing frequency, of a subharmonic motion too.
-        fundamental = float(np.hypot(found["real"], found["imaginary"]))
-        return swing, largest, fundamental * np.array([1.0, omega]), self.periods * 2 * np.pi / omega
+    Raises
+    ------
+    InputError : excitation by speed and in time together, or none.
+    """
+    prepared = staged_line(line, value)
+    if prepared.clock == "frequency":
+        prepared = staged_line(line, speed)
+    if prepared.clock == "both":
+        raise InputError(
+            "is excited by its rotation and in time, so its motions over speed have no common period",
+            element="driveline", key="excitation", remedy="give orders in place of frequencies, or frequencies only",
+        )  # fmt: skip
+    refuse_found_speed(prepared)
+    _ = prepared.base  # refuses what has none
+    return prepared

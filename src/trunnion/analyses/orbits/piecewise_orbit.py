@@ -7,25 +7,29 @@ touches a breakpoint (grazing) has no derivative there; ``clearance`` says how n
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.orbits.closing import CLOSED, SETTLING, checked_periods, refuse_speed, verdict_of
+from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close, refuse_speed
+from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.analyses.orbits.exact_orbit import ExactOrbit, exact_orbit
+from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.numerics.continuation.newton import solve
-from trunnion.numerics.piecewise_linear.piecewise import Passage, TooManyEventsError, measure, move, period, states
+from trunnion.numerics.piecewise_linear.piecewise import Passage, move, states
+from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "clearance")
 CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
 
@@ -35,8 +39,8 @@ def contact_state(sides: str) -> str:
     return {"none": "none", "both": "two-sided"}.get(sides, "one-sided")
 
 
-@dataclass(frozen=True)
-class PiecewiseOrbit:
+@dataclass(frozen=True, repr=False)
+class PiecewiseOrbit(Result):
     """A periodic motion and what it does in a forcing period.
 
     start (2,): x and x′ at phase zero; periods: forcing periods until it closes; multipliers (2,) by falling modulus;
@@ -75,7 +79,7 @@ class PiecewiseOrbit:
     @property
     def verdict(self) -> Verdict:
         """Stable, unstable, or not told apart."""
-        return verdict_of(self.multipliers)
+        return exact_verdict(self.multipliers)
 
     def motion(self, count: int = 512) -> tuple[Array, Array]:
         """Times (count,) over the orbit's period, its end left out, and states (count, 2)."""
@@ -102,6 +106,22 @@ class PiecewiseOrbit:
         found[1:] *= 2
         return np.asarray(found)
 
+    def declared(self) -> Iterator[Held]:
+        """The motion over its period, its crossings and multipliers, and the numbers read off it."""
+        times, motion = self.motion() if self.outcome.ok else (np.zeros(0), np.zeros((0, 2)))
+        yield axis("time", times, "s")
+        yield over("time", "x", motion[:, 0])
+        yield over("time", "v", motion[:, 1])
+        yield over("crossing", "crossing_time", self.crossings[:, 0], "s")
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        for name in NUMBERS:
+            yield over("", name, getattr(self, name))
+        yield remark("oscillator", self.oscillator.name)
+        yield remark("verdict", str(self.verdict))
+        yield remark("contact", self.contact)
+        yield remark("periods", self.periods)
+        yield from ending(self.outcome)
+
     def __str__(self) -> str:
         if not self.outcome.ok:
             return f"no periodic motion of {self.oscillator.name}: {self.outcome}"
@@ -112,8 +132,6 @@ class PiecewiseOrbit:
             f"{self.impacts:g} impacts per period; {self.clearance:.2g} from grazing\n"
             f"  multipliers {self.multipliers[0]:.8g}, {self.multipliers[1]:.8g}; {self.outcome}"
         )
-
-    __repr__ = __str__
 
 
 def refuse_unbounded(oscillator: PiecewiseOscillator) -> None:
@@ -185,23 +203,10 @@ def piecewise_orbit(
     if first.shape != (2,) or not np.isfinite(first).all():
         raise InputError("must be x and x′, two finite numbers", element=oscillator.name, key="start", value=start)
     refuse_unbounded(oscillator)
-    tables, force, omega = oscillator.regimes, oscillator.coefficients, oscillator.frequency
-    scale = np.array([1.0, omega]) * max(float(np.abs(first).max()), *map(abs, oscillator.breakpoints), 1e-300)
-
-    def residual(x: Array) -> tuple[Array, Array]:
-        try:
-            passage = period(tables, force, omega, x, periods)
-        except TooManyEventsError:
-            return np.full(2, np.nan), np.full((2, 2), np.nan)
-        return passage.state - x, passage.tangents[:, :2] - np.eye(2)
-
-    for count in SETTLING if settle else SETTLING[:1]:
-        guess = first
-        for _ in range(count):
-            guess = move(tables, force, omega, guess, 0.0, oscillator.period, tangents=False).state
-        root = solve(residual, guess, scale, tolerance=CLOSED)
-        if root.converged:
-            return orbit_at(oscillator, root.x, periods, root.iterations)
+    over_period = OscillatorMap.of(oscillator, periods)
+    closing, root = close(first, lambda guess: ExactClosing(over_period, over_period.scale(first)), settle=settle)
+    if root.converged:
+        return orbit_at(oscillator, root.x, periods, root.iterations)
     words = (
         f"shooting did not converge (residual {root.size:.1e}); start closer, for example from the end of a sweep, or "
         "give more periods if the motion is a subharmonic"
@@ -211,26 +216,23 @@ def piecewise_orbit(
 
 def orbit_at(oscillator: PiecewiseOscillator, start: Array, periods: int, iterations: int = 0) -> PiecewiseOrbit:
     """The orbit through a state known to lie on it."""
-    tables, force, omega = oscillator.regimes, oscillator.coefficients, oscillator.frequency
-    passage = period(tables, force, omega, start, periods)
-    found = measure(tables, force, omega, start, periods)
-    values = np.linalg.eigvals(passage.tangents[:, :2]).astype(complex)
+    over_period = OscillatorMap.of(oscillator, periods)
+    passage, found = over_period(start), over_period.measure(start)
     closes = float(np.abs(passage.state - start).max())
-    m = oscillator.inertia
     return PiecewiseOrbit(
         oscillator=oscillator,
         start=start,
         periods=periods,
-        multipliers=values[np.argsort(-np.abs(values))],
-        monodromy=passage.tangents[:, :2],
-        crossings=passage.crossings,
+        multipliers=by_modulus(passage.tangents),
+        monodromy=passage.tangents,
+        crossings=passage.run.crossings,
         lowest=found["low"],
         highest=found["high"],
         mean=found["mean"],
         sides=CONTACT[int(found["contact"])],
         impacts=found["impacts"],
-        impact_energy=m * found["energy"],
-        impact_impulse=m * found["impulse"],
+        impact_energy=oscillator.inertia * found["energy"],
+        impact_impulse=oscillator.inertia * found["impulse"],
         clearance=_clearance(oscillator, start, periods),
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),

@@ -1,7 +1,6 @@
-"""What a test bench does: the frequency raised or lowered step by step, each step from where the last one ended.
+"""A piecewise linear oscillator, or a driveline, on the bench: settled motion over frequency, up or down.
 
-Every step settles by the exact motion (``numerics/piecewise``) and is then measured. Also the basins of attraction at
-one frequency, and the rattle index, what the impacts of a period amount to, over frequency.
+Also the rattle index, what the impacts of a period amount to, over frequency.
 """
 
 from __future__ import annotations
@@ -14,20 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.closing import refuse_speed
+from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.analyses.orbits.exact_sweep import LineSweep, exact_sweep
-from trunnion.analyses.orbits.jumps import abrupt_changes
-from trunnion.analyses.orbits.piecewise_orbit import (
-    CONTACT,
-    PiecewiseOrbit,
-    contact_state,
-    piecewise_orbit,
-    refuse_unbounded,
-)
+from trunnion.analyses.orbits.piecewise_orbit import CONTACT, contact_state, refuse_unbounded
+from trunnion.analyses.orbits.sweeping import LEAST, MOST, SAME, jumps, stepped, upwards
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
-from trunnion.numerics.piecewise_linear.piecewise import COLUMNS, MOST_EVENTS, kernel
+from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -38,10 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
-BYTES_A_STEP, BYTES_A_START = 128.0, 64.0
-"""What one frequency holds for each number of the state, and what one start of a basin holds."""
-"""Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
+BYTES_A_STEP = 128.0
+"""What one frequency holds for each number of the state."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -75,13 +67,12 @@ class Sweep(Result):
     @property
     def up(self) -> bool:
         """Whether the frequency was raised."""
-        return bool(self.frequency[-1] >= self.frequency[0])
+        return upwards(self.frequency)
 
     @property
     def jumps(self) -> tuple[tuple[float, float], ...]:
         """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
-        places = abrupt_changes(self.peak_to_peak)
-        return tuple((float(self.frequency[i]), float(self.frequency[i + 1])) for i in places)
+        return jumps(self.frequency, self.peak_to_peak[:, None])
 
     def declared(self) -> Iterator[Held]:
         """Extremes, impacts and contact over frequency."""
@@ -178,26 +169,23 @@ def sweep(
     needed = BYTES_A_STEP * states * len(omegas)
     require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
     if isinstance(oscillator, Driveline | Assembly):
-        return exact_sweep(
-            oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same, measured=MEASURED
-        )
+        return exact_sweep(oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same)
     refuse_speed(oscillator.name, speed)
     for omega in omegas:
         refuse_unbounded(oscillator.but(frequency=float(omega)))
     first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
-    k, tables = kernel(), oscillator.regimes
-    rows = np.full((len(omegas), k.ROW), np.nan)
-    record = np.empty((MOST_EVENTS, k.RECORDED))
-    ended = k.sweep(
-        first, omegas, least, most, same, MEASURED, oscillator.coefficients, tables.pieces, tables.guards, tables.then,
-        tables.side, record, rows,
-    )  # fmt: skip
+    maps = [OscillatorMap(float(omega), 1, oscillator) for omega in omegas]
+    rows, settled = np.full((len(omegas), len(COLUMNS)), np.nan), np.zeros(len(omegas), dtype=bool)
+    periods, outcome = np.zeros(len(omegas), dtype=np.int64), Outcome(True, "swept", "every step was run")
+    for i, (found, row) in enumerate(stepped(maps, first, least, most, same, _measured)):
+        settled[i], periods[i] = found.repeats, found.periods
+        if row is None:
+            words = f"the motion at ω = {omegas[i]:g} crosses too often in a period; raise damping"
+            outcome = Outcome(False, "chatter", words)
+            break
+        rows[i] = list(row.values())
     column = dict(zip(COLUMNS, rows.T, strict=True))
     sides = [CONTACT[int(c)] if np.isfinite(c) else "none" for c in column["contact"]]
-    outcome = Outcome(True, "swept", "every step was run")
-    if ended != k.DONE:
-        at = omegas[int(np.flatnonzero(column["settled"] == -1)[0])]
-        outcome = Outcome(False, "chatter", f"the motion at ω = {at:g} crosses too often in a period; raise damping")
     return Sweep(
         oscillator=oscillator,
         frequency=omegas,
@@ -208,11 +196,16 @@ def sweep(
         impacts=column["impacts"],
         impact_energy=oscillator.inertia * column["energy"],
         impact_impulse=oscillator.inertia * column["impulse"],
-        settled=column["settled"] == 1,
-        periods=np.nan_to_num(column["periods"]).astype(np.int64),
-        state=rows[:, -2:],
+        settled=settled,
+        periods=periods,
+        state=np.stack([column["x"], column["v"]], axis=1),
         outcome=outcome,
     )
+
+
+def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float] | None, Array]:
+    row = place.measure(state)
+    return row or None, np.array([row.get("x", np.nan), row.get("v", np.nan)])
 
 
 def rattle_index(
@@ -239,66 +232,3 @@ def rattle_index(
         for name in ("impact_energy", "impact_impulse", "impacts")
     }
     return xr.Dataset(both, coords={"direction": ["up", "down"], "frequency": omegas})
-
-
-@dataclass(frozen=True)
-class Basins:
-    """Which motion is reached from where: numbers (starts of x, starts of x′) into ``attractors``, −1 for none."""
-
-    position: Array
-    velocity: Array
-    number: NDArray[np.int64]
-    attractors: tuple[PiecewiseOrbit, ...]
-
-    @property
-    def shares(self) -> Array:
-        """Share of the starts that each attractor draws (attractors,)."""
-        return np.array([np.mean(self.number == i) for i in range(len(self.attractors))])
-
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
-        """Map of the starts; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, **options)
-
-    def __str__(self) -> str:
-        rows = [
-            f"  {share:.1%}: {orbit.peak_to_peak:.6g} peak to peak, mean {orbit.mean:.6g}, contact {orbit.contact}"
-            for share, orbit in zip(self.shares, self.attractors, strict=True)
-        ]
-        left = float(np.mean(self.number < 0))
-        rest = [f"  {left:.1%}: no motion of that period within the time"] if left else []
-        return "\n".join([f"{len(self.attractors)} attractors from {self.number.size} starts", *rows, *rest])
-
-    __repr__ = __str__
-
-
-def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
-    """Basins of attraction at the oscillator's own frequency, from all pairs of ``position`` and ``velocity``.
-
-    Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.
-    """
-    refuse_unbounded(oscillator)
-    x, v = (np.atleast_1d(np.asarray(a, dtype=float)) for a in (position, velocity))
-    require_memory(
-        BYTES_A_START * float(len(x)) * len(v),
-        key="position, velocity", value=f"{len(x)} x {len(v)}", remedy="ask for fewer starts",
-    )  # fmt: skip
-    starts = np.ascontiguousarray(np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2))
-    k, tables = kernel(), oscillator.regimes
-    ends, counts = np.empty_like(starts), np.zeros(len(starts), dtype=np.int64)
-    record = np.empty((MOST_EVENTS, k.RECORDED))
-    k.basins(
-        starts, LEAST, most, 1e-9, oscillator.frequency, oscillator.coefficients, tables.pieces, tables.guards,
-        tables.then, record, ends, counts,
-    )  # fmt: skip
-    number = np.full(len(starts), -1, dtype=np.int64)
-    found: list[PiecewiseOrbit] = []
-    for i in np.flatnonzero(counts > 0):
-        near = [j for j, orbit in enumerate(found) if np.abs(orbit.start - ends[i]).max() < 1e-5]
-        if not near:
-            orbit = piecewise_orbit(oscillator, ends[i], settle=False)
-            if not orbit.outcome.ok:
-                continue
-            found.append(orbit)
-            near = [len(found) - 1]
-        number[i] = near[0]
-    return Basins(x, v, number.reshape(len(x), len(v)), tuple(found))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.orbits.branch import Names
 from trunnion.analyses.orbits.free_orbit import require_kept_speed
 from trunnion.analyses.orbits.periodic_response import require_forced
 from trunnion.driveline.driveline import Driveline
@@ -16,40 +17,49 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.errors import InputError
+from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 LINE_SCALE = 30
 """A branch of a line is measured in 0.3 rad, thirty times what its integration is."""
+STEP = 1e-4
+"""Of differences by a parameter, over its scale."""
+MOST_STEPS = 200_000
+"""Of the integration over one period."""
 
 
 @dataclass(frozen=True)
-class SystemOver:
+class SystemOver(Names):
     """Systems by the value of a parameter.
 
     at : value → system, and of a line that starts free (value, torque [N m] beyond the balance of its loads) → system;
-    scale (n + 1,) : size of each state and of the parameter that counts as one; label, unit : of the parameter; begin :
-    the value to begin with; curves : the states of a system, the shafts of a line, of which the torques [N m] are
-    looked at.
+    scale (n + 1,) : size of each state and of the parameter that counts as one; begin : the value to begin with; curves
+    : the states of a system, the shafts of a line, of which the torques [N m] are looked at.
     """
 
-    at: Callable[..., System]
-    scale: Array
-    label: str
-    unit: str
-    begin: float
-    line: LineSystem | None
-    curves: tuple[str, ...]
+    at: Callable[..., System] = field(kw_only=True)
+    scale: Array = field(kw_only=True)
+    begin: float = field(kw_only=True)
+    line: LineSystem | None = field(default=None, kw_only=True)
 
     @property
     def free(self) -> bool:
         """Whether it is a line that starts free."""
         return self.line is not None and self.line.assembly.topology.free
 
-    @property
-    def curve_unit(self) -> str:
-        """Unit of what is looked at."""
-        return "1" if self.line is None else "N*m"
+    def map(self, periods: int, tolerance: float, torque: float = 0.0) -> IntegratedMap:
+        """The map over ``periods`` of the forcing, its value the parameter; of a line that starts free its values are
+        the torque beyond the balance, in steps of a size of ``torque``, and the parameter."""
+        step, look = STEP * float(self.scale[-1]), self.observe
+        if not self.free:
+            return IntegratedMap(self.at, (self.begin,), (step,), 0.0, periods, tolerance, MOST_STEPS, look)
+
+        def driven(drive: float, value: float) -> System:
+            return self.at(value, drive)
+
+        steps = STEP * torque, step
+        return IntegratedMap(driven, (0.0, self.begin), steps, 0.0, periods, tolerance, MOST_STEPS, look)
 
     def observe(self, system: System, times: Array, states: Array) -> Array:
         """The curves (times, curves) along states (times, n)."""
@@ -98,7 +108,10 @@ def system_over(
         )  # fmt: skip
     columns = prepared.assembly.packed.resolve(parameter)
     scale = np.append(LINE_SCALE * np.asarray(prepared.system.scale), (high - low) * width)
-    return SystemOver(prepared.varied(parameter), scale, columns.label, columns.unit, first, prepared, prepared.shafts)
+    return SystemOver(
+        columns.label, columns.unit, prepared.shafts, "N*m", at=prepared.varied(parameter), scale=scale, begin=first,
+        line=prepared,
+    )  # fmt: skip
 
 
 def _of_system(system: System, name: str, first: float, width: float) -> SystemOver:
@@ -110,5 +123,5 @@ def _of_system(system: System, name: str, first: float, width: float) -> SystemO
     scale = np.append(np.asarray(system.scale), width)
     unit = system.parameter_units.get(name, "1")
     return SystemOver(
-        lambda value: system.with_parameters({name: value}), scale, name, unit, first, None, system.states
+        name, unit, system.states, at=lambda value: system.with_parameters({name: value}), scale=scale, begin=first
     )
