@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
     from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
     from trunnion.analyses.orbits.piecewise_sweep import rattle_index, sweep
+    from trunnion.analyses.orders.misfire import misfire
     from trunnion.analyses.orders.response import order_response
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
@@ -84,6 +85,8 @@ if TYPE_CHECKING:
         rpm,
     )
     from trunnion.driveline.cardan_angles import cardan_line
+    from trunnion.driveline.cylinders import reciprocating_mass
+    from trunnion.driveline.excitation_file import read_excitation
     from trunnion.driveline.layout import combined_angle, layout
     from trunnion.driveline.parameters import Parameter, Term, pack
     from trunnion.equations.exact_oscillator import exact_oscillator
@@ -131,6 +134,8 @@ _HOME = {
     "layout": "trunnion.driveline.layout",
     "combined_angle": "trunnion.driveline.layout",
     "cardan_line": "trunnion.driveline.cardan_angles",
+    "reciprocating_mass": "trunnion.driveline.cylinders",
+    "read_excitation": "trunnion.driveline.excitation_file",
     "sketch": "trunnion.plots.layout",
     "catalogue": "trunnion.studies.entries",
     "deg": "trunnion.driveline",
@@ -153,6 +158,7 @@ _HOME = {
     "speed_sweep": "trunnion.analyses.linear.speed_sweep",
     "sweep_speeds": "trunnion.analyses.linear.speed_sweep",
     "order_response": "trunnion.analyses.orders.response",
+    "misfire": "trunnion.analyses.orders.misfire",
     "bending_speeds": "trunnion.analyses.linear.bending",
     "harmonic_balance": "trunnion.analyses.orbits.harmonic_balance",
     "kinetostatics": "trunnion.analyses.kinetostatics",

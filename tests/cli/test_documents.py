@@ -41,10 +41,11 @@ def test_the_commands_run(run, command):
     assert result.exit_code == 0, result.stderr
 
 
-def test_the_example_of_orders_runs():
-    (code,) = blocks(ORDERS, "python")
+def test_the_examples_of_orders_run():
+    names = {}
     with contextlib.redirect_stdout(io.StringIO()) as printed:
-        exec(code, {})
+        for code in blocks(ORDERS, "python"):
+            exec(code, names)
     assert "coupling: torque up to" in printed.getvalue() and "rpm" in printed.getvalue()
 
 

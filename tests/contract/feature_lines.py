@@ -170,6 +170,13 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "excitation in time": (same, put("load", excitation=[{"frequency": 100.0, "amplitude": 9.0}])),
     "excitation of a held disk": (flywheel(), flywheel(excitation=[{"order": 2, "amplitude": 50.0}])),
     "unlike damping in series": (in_series(10.0, 10.0), in_series(16.0, 4.0)),
+    "excitation that varies with speed or load": (
+        same, put("load", excitation=[{"order": 2, "quadratic_amplitude": 5e-4}])
+    ),
+    "cylinders": (
+        put("load", excitation=[{"order": 2, "amplitude": 5.0}]),
+        put("load", excitation=[{"order": 2, "amplitude": 5.0}], firing_angles=[0.0, 0.3]),
+    ),
     "branch": (same, branched),
     "free start": (same, free),
     "drive share": (free, lambda line: free(line).replace("hub", drive_share=0.5)),

@@ -34,6 +34,106 @@ def line(*elements, **rest):
 
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
+    # excitations
+    (lambda: Disk(inertia=1, excitation=[{"order": 2}]), "Disk.excitation 1 amplitude: is missing", "40 N*m"),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitude": 1, "quadratic_amplitude": 1}]),
+        "Disk.excitation 1 quadratic_amplitude = 1: stands beside amplitude",
+        "leave one",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"frequency": 2, "quadratic_amplitude": 1}]),
+        "Disk.excitation 1 quadratic_amplitude = 1: belongs to an order",
+        "order instead",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitude": 1, "speeds": [1, 2]}]),
+        "Disk.excitation 1 speeds = [1, 2]: has no amplitudes beside it",
+        "amplitudes",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2]}]),
+        "Disk.excitation 1 speeds: is missing beside amplitudes",
+        "torques",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2], "speeds": [1, 2], "torques": [1, 2]}]),
+        "Disk.excitation 1 torques = [1, 2]: stands beside speeds",
+        "torques",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1], "speeds": [1]}]),
+        "Disk.excitation 1 speeds = [1]: must have two points",
+        "constant",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2, 3], "speeds": [1, 2]}]),
+        "Disk.excitation 1 amplitudes = [1, 2, 3]: must be 2 quantities, as speeds are",
+        "",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2], "speeds": [2, 2]}]),
+        "Disk.excitation 1 speeds = [2, 2]: must rise",
+        "sort",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2], "speeds": [-2, 2]}]),
+        "Disk.excitation 1 speeds = [-2, 2]: must not be negative",
+        "",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": "1 N*m", "speeds": [-2, 2]}]),
+        "Disk.excitation 1 amplitudes = '1 N*m': is not a list of quantities",
+        "speeds",
+    ),
+    (
+        lambda: Disk(inertia=1, excitation="engine.csv"),
+        "Disk.excitation = 'engine.csv': names a file that is not known here",
+        "tn.load",
+    ),
+    (
+        lambda: Disk(inertia=1, firing_angles=["0 deg"]),
+        "Disk.firing_angles = ['0 deg']: have no excitation to repeat",
+        "cylinder",
+    ),
+    (
+        lambda: Disk(inertia=1, firing_angles="0 deg", excitation=[{"order": 2, "amplitude": 1}]),
+        "Disk.firing_angles = '0 deg': is not a list of angles",
+        "540 deg",
+    ),
+    (
+        lambda: Disk(inertia=1, firing_angles=[0], excitation=[{"frequency": 2, "amplitude": 1}]),
+        "Disk.firing_angles = [0]: repeat orders, not a frequency",
+        "orders",
+    ),
+    (
+        lambda: Disk(inertia=1, firing_angles=[0, 1], misfiring=3, excitation=[{"order": 2, "amplitude": 1}]),
+        "Disk.misfiring = 3: is the number of no cylinder",
+        "from 1 to 2",
+    ),
+    (
+        lambda: tn.misfire(line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1)), [1.0]),
+        "driveline.firing_angles: has no cylinders that could misfire",
+        "firing_angles",
+    ),
+    (lambda: tn.reciprocating_mass(0, 0.04, 0.15), "mass = 0: must be positive", "kg"),
+    (lambda: tn.reciprocating_mass(1, 0.04, 0.03), "rod_length = 0.03: must be longer than the crank", "mm"),
+    (lambda: tn.reciprocating_mass(1, 0.04, 0.15, orders=0), "orders = 0: must be from 1 to 24", "orders=6"),
+    (
+        lambda: tn.run_up(
+            line(
+                ConstantSpeed(),
+                Shaft(stiffness=1e4, damping=1),
+                Disk(inertia=1, excitation=[{"order": 2, "quadratic_amplitude": 1}]),
+            ),
+            100,
+            110,
+            acceleration=200,
+            steady=0,
+        ),
+        "Disk 1.excitation: has an amplitude that depends on the speed, which changes here",
+        "tn.order_response",
+    ),
     # limits
     (lambda: Limit(max_torque=1), "limit.of: is missing", 'of = "Shaft 1"'),
     (lambda: Limit(of="Shaft 1"), "limit of Shaft 1.of = 'Shaft 1': limits nothing", "max_torque"),

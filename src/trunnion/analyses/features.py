@@ -83,8 +83,12 @@ _NO_LAW = {
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
-    ("excitation by order", "excitation in time", "excitation of a held disk", "transmission error"), _FORCES
-)
+    (
+        "excitation by order", "excitation that varies with speed or load", "cylinders", "excitation in time",
+        "excitation of a held disk", "transmission error",
+    ),
+    _FORCES,
+)  # fmt: skip
 _HELD: dict[str, Words] = {
     HELD: (
         "a ConstantSpeed holds its rotation",
@@ -133,8 +137,13 @@ _DRIVEN = {
     "free start": "the speed follows from the torques",
     "drive share": "belongs to lines that start free",
 }
+_PASSING = {
+    **_ONE_DRIVE,
+    "excitation that varies with speed or load": "its amplitude would change on the way",
+}
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
         ("Hooke's joint", "joint plane", "tripod joint", "mesh-stiffness variation", "quadratic load"),
         "the stages are then not linear with constant coefficients",
@@ -146,7 +155,8 @@ _RIGID = dict.fromkeys(
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
         "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
-        "excitation in time", "excitation of a held disk", "unlike damping in series", "free start", "drive share",
+        "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
+        "unlike damping in series", "free start", "drive share",
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
@@ -213,6 +223,8 @@ TABLE: dict[str, Row] = {
             "transmission error": _RIGID_MESH,
             "mesh-stiffness variation": _RIGID_MESH,
             "excitation by order": _STEADY,
+            "excitation that varies with speed or load": _STEADY,
+            "cylinders": _STEADY,
             "excitation in time": _STEADY,
             "excitation of a held disk": _STEADY,
             "unlike damping in series": _UNDAMPED_TURN,
@@ -224,8 +236,8 @@ TABLE: dict[str, Row] = {
     "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "simulate": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "run_up": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "safe_accelerations": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "run_up": _row(refused=_PASSING, said=_BY_PLACE, inert=_PASSIVE),
+    "safe_accelerations": _row(refused=_PASSING, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_spectrum": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_sweep": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
@@ -244,6 +256,7 @@ TABLE: dict[str, Row] = {
 NOT_ANALYSES = {
     "campbell_diagram": "natural frequencies and the orders of order_response in one picture",
     "assess": "judges by the analyses above, and prints what each of them says",
+    "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",

@@ -9,7 +9,7 @@ from it (a tube's stiffness, a tooth ratio) is a property.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -130,6 +130,13 @@ class ConstantSpeed(Element):
     """
 
 
+def _angles(value: object) -> object:
+    if isinstance(value, str | dict) or not isinstance(value, Iterable):
+        remedy = 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say'
+        raise InputError("is not a list of angles", value=value, remedy=remedy)
+    return tuple(value)
+
+
 class Disk(Element):
     """A rigid inertia: flywheel, flange, gear, roll, wheel.
 
@@ -144,7 +151,11 @@ class Disk(Element):
         [N m s²/rad²]; positive resists rotation.
     drive_share : in a line that starts free (no ConstantSpeed), the disk's share of the power that balances the
         loads at the mean speed asked for; shares count relative to each other, so one drive has any positive one.
-    excitation : harmonic torques on the disk, see ``Excitation``.
+    excitation : harmonic torques on the disk, see ``Excitation``; in a file also the name of a CSV table beside it.
+    firing_angles : where the disk carries cylinders: ``excitation`` is that of one of them, and each adds it at its
+        own angle [rad], over 720° for four strokes; order k has the phase −k α_c.
+    misfiring : number of one of these cylinders, from 1, that does not fire: it adds only what grows with the square
+        of the speed, the inertia torque of its masses.
     """
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
@@ -168,6 +179,10 @@ class Disk(Element):
         default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
     )
     excitation: Excitations = Field(default=(), description="harmonic torques, in time or in the disk's rotation")
+    firing_angles: Annotated[tuple[Angle, ...], BeforeValidator(_angles)] = Field(
+        default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
+    )
+    misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire, from 1")
 
     @model_validator(mode="before")
     @classmethod
@@ -185,12 +200,27 @@ class Disk(Element):
         positive(self, "inertia", *solid, *rolling)
         not_negative(self, "inner_diameter", "drive_share")
         bore(self)
+        self._check_cylinders()
         return self
 
     @property
     def stated(self) -> dict[str, Any]:
         """The fields that differ from their defaults and do not follow from the material."""
         return without_material(super().stated)
+
+    def _check_cylinders(self) -> None:
+        count, value = len(self.firing_angles), self.misfiring
+        if value is not None and not 1 <= value <= count:
+            remedy = f"write a number from 1 to {count}" if count else "write firing_angles beside it"
+            raise InputError("is the number of no cylinder", key="misfiring", value=value, remedy=remedy)
+        if not self.firing_angles:
+            return
+        if not self.excitation:
+            remedy = "write the excitation of one cylinder"
+            raise InputError("have no excitation to repeat", key="firing_angles", remedy=remedy)
+        if any(one.frequency is not None for one in self.excitation):
+            remedy = "write orders; a torque fixed in time has no cylinders"
+            raise InputError("repeat orders, not a frequency", key="firing_angles", remedy=remedy)
 
     @property
     def moment_of_inertia(self) -> float:

@@ -3,19 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from trunnion.driveline.quantities import ANGLE, FREQUENCY, TORQUE, Angle, Dimensionless, Frequency, Torque
+from trunnion.driveline.quantities import (
+    ANGLE,
+    FREQUENCY,
+    QUADRATIC,
+    SPEED,
+    TORQUE,
+    Angle,
+    Dimensionless,
+    Frequency,
+    QuadraticLoad,
+    Speed,
+    Torque,
+    shown,
+)
 from trunnion.driveline.refusals import numbered, refuse
 from trunnion.errors import InputError
+
+
+def _list(value: object) -> object:
+    if isinstance(value, str | dict) or not isinstance(value, Iterable):
+        remedy = 'write speeds = ["600 rpm", "1800 rpm"], amplitudes = ["40 N*m", "90 N*m"], say'
+        raise InputError("is not a list of quantities", value=value, remedy=remedy)
+    return tuple(value)
 
 
 class Excitation(BaseModel):
     """One harmonic torque, positive in the sense of rotation: A cos(order · rotation + phase), or A cos(ωt + phase).
 
-    Several orders together are an engine-order table.
+    Several orders together are an engine-order table. A is one ``amplitude``; or grows with the square of the disk's
+    speed; or stands in a table over the disk's speed or over the mean torque it drives with, A e^{i phase} linear
+    between its points and refused beyond its ends.
 
     Parameters
     ----------
@@ -23,14 +46,34 @@ class Excitation(BaseModel):
     order : cycles per turn of the disk, 0.5 for a four-stroke cylinder; or else
     frequency : ω [rad/s].
     phase : at zero rotation or time [rad].
+    quadratic_amplitude : A over the square of the disk's mean speed [N m s²/rad²], as of oscillating masses.
+    speeds : of the disk [rad/s], rising: where the table has its points; or else
+    torques : mean torque that the disk drives with [N m], rising.
+    amplitudes : A at these points [N m].
+    phases : at these points [rad], added to ``phase``; 0 by default.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    amplitude: Torque = Field(description="of the torque; positive drives")
+    amplitude: Torque | None = Field(default=None, description="of the torque; positive drives")
     order: Dimensionless | None = Field(default=None, description="cycles per turn of the disk")
     frequency: Frequency | None = Field(default=None, description="in time, instead of an order")
     phase: Angle = Field(default=0.0, description="at zero rotation or time")
+    quadratic_amplitude: QuadraticLoad | None = Field(
+        default=None, description="amplitude over the square of the disk's speed, instead"
+    )
+    speeds: Annotated[tuple[Speed, ...], BeforeValidator(_list)] = Field(
+        default=(), description="of the disk, where a table of amplitudes has its points"
+    )
+    torques: Annotated[tuple[Torque, ...], BeforeValidator(_list)] = Field(
+        default=(), description="mean torques that the disk drives with, instead of speeds"
+    )
+    amplitudes: Annotated[tuple[Torque, ...], BeforeValidator(_list)] = Field(
+        default=(), description="at the points of the table"
+    )
+    phases: Annotated[tuple[Angle, ...], BeforeValidator(_list)] = Field(
+        default=(), description="at the points of the table"
+    )
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -51,18 +94,90 @@ class Excitation(BaseModel):
                 raise InputError("must be positive", key=key, value=value, remedy="a constant is a load_torque")
         return self
 
+    @model_validator(mode="after")
+    def _one_amplitude(self) -> Self:
+        given = [key for key in ("amplitude", "quadratic_amplitude") if getattr(self, key) is not None]
+        given += ["amplitudes"] if self.amplitudes else []
+        if not given:
+            raise InputError("is missing", key="amplitude", remedy='write order = 2 and amplitude = "40 N*m"')
+        if len(given) > 1:
+            raise InputError(f"stands beside {given[0]}", key=given[1], remedy="leave one of the two out")
+        if self.frequency is not None and given != ["amplitude"]:
+            remedy = "write amplitude, or order instead of frequency"
+            raise InputError("belongs to an order of the rotation", key=given[0], remedy=remedy)
+        self._check_table()
+        return self
+
+    def _check_table(self) -> None:
+        points, over = self.points, "torques" if self.torques else "speeds"
+        if not self.amplitudes:
+            lone = next((key for key in ("speeds", "torques", "phases") if getattr(self, key)), None)
+            if lone:
+                raise InputError("has no amplitudes beside it", key=lone, remedy='write amplitudes = ["40 N*m", ...]')
+            return
+        if bool(self.speeds) == bool(self.torques):
+            problem = "stands beside speeds" if self.speeds else "is missing beside amplitudes"
+            remedy = 'give speeds = ["600 rpm", "1800 rpm"], say, or torques'
+            raise InputError(problem, key="torques" if self.speeds else "speeds", remedy=remedy)
+        if len(points) < 2:
+            remedy = "write amplitude for what is constant"
+            raise InputError("must have two points at least", key=over, value=list(points), remedy=remedy)
+        for key in ("amplitudes", "phases"):
+            values = getattr(self, key)
+            if values and len(values) != len(points):
+                raise InputError(f"must be {len(points)} quantities, as {over} are", key=key, value=list(values))
+        if any(b <= a for a, b in zip(points, points[1:], strict=False)):
+            raise InputError("must rise", key=over, value=list(points), remedy="sort them; each once")
+        if self.speeds and self.speeds[0] < 0:
+            raise InputError("must not be negative", key="speeds", value=self.speeds[0], remedy="turning counts as is")
+
+    @property
+    def points(self) -> tuple[float, ...]:
+        """Where its table has its points: speeds [rad/s] or torques [N m]; empty without a table."""
+        return self.speeds or self.torques
+
+    @cached_property
+    def largest(self) -> float:
+        """A [N m]; of a table the largest |A|; over the square of the speed [N m s²/rad²] where it grows so."""
+        if self.amplitudes:
+            return max(abs(a) for a in self.amplitudes)
+        return float(self.amplitude if self.amplitude is not None else self.quadratic_amplitude or 0.0)
+
+    @property
+    def varies(self) -> bool:
+        """Whether its amplitude depends on the speed or the load."""
+        return self.amplitude is None
+
+    @property
+    def covers(self) -> str:
+        """The range of its table in words."""
+        kind, unit = (SPEED, "rpm") if self.speeds else (TORQUE, None)
+        return f"{shown(self.points[0], kind, unit)} to {shown(self.points[-1], kind, unit)}"
+
     @property
     def stated(self) -> dict[str, Any]:
         """The fields that differ from their defaults."""
         return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
 
 
-EXCITATION_KINDS = {"amplitude": TORQUE, "frequency": FREQUENCY, "phase": ANGLE}
+EXCITATION_KINDS = {
+    "amplitude": TORQUE,
+    "frequency": FREQUENCY,
+    "phase": ANGLE,
+    "quadratic_amplitude": QUADRATIC,
+    "speeds": SPEED,
+    "torques": TORQUE,
+    "amplitudes": TORQUE,
+    "phases": ANGLE,
+}
 """Physical kinds of its quantities; an order is a plain number."""
 
 
 def _tables(value: object) -> tuple[Excitation, ...]:
     remedy = 'write excitation = [{ order = 2, amplitude = "40 N*m" }]'
+    if isinstance(value, str) and value.lower().endswith(".csv"):
+        remedy = "use tn.load for a file beside the description, or excitation=tn.read_excitation(path)"
+        raise InputError("names a file that is not known here", value=value, remedy=remedy)
     if isinstance(value, str | dict | Excitation) or not isinstance(value, Iterable):
         raise InputError("is not a list of harmonic torques", value=value, remedy=remedy)
     made, wrong = [], []

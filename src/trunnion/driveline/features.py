@@ -144,6 +144,15 @@ FEATURES = (
     Feature("viscous load", ("Disk.viscous_load",)),
     Feature("quadratic load", ("Disk.quadratic_load",)),
     Feature("excitation by order", ("Disk.excitation", "Excitation.order", "Excitation.amplitude"), _excited("order")),
+    Feature(
+        "excitation that varies with speed or load",
+        (
+            "Excitation.quadratic_amplitude", "Excitation.speeds", "Excitation.torques", "Excitation.amplitudes",
+            "Excitation.phases",
+        ),
+        _excited("varies"),
+    ),
+    Feature("cylinders", ("Disk.firing_angles", "Disk.misfiring")),
     Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited("frequency")),
     Feature(HELD, (), lambda line: [f"{name}.excitation" for name in held_excitations(line)]),
     Feature(

@@ -30,6 +30,7 @@ from typing import Any
 from trunnion.driveline.driveline import Driveline, refuse_too_many
 from trunnion.driveline.elements import Disk, Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
+from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.gears import MESH_KINDS
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
@@ -69,13 +70,17 @@ def load(path: str | os.PathLike[str]) -> Driveline:
     ------
     InputError : the file cannot be read, is not TOML or describes no driveline; names file and place.
     """
-    return loads(_read(Path(path)), source=Path(path).name)
+    return _loads(_read(Path(path)), Path(path).name, Path(path).parent)
 
 
 def loads(text: str, *, source: str = "") -> Driveline:
     """Read a driveline from TOML text; `source` is what messages call it."""
+    return _loads(text, source, None)
+
+
+def _loads(text: str, source: str, folder: Path | None) -> Driveline:
     try:
-        return _driveline(_toml(text), source)
+        return _driveline(_toml(text), source, folder)
     except InputError as error:
         raise _located(error, source) from None
 
@@ -170,8 +175,8 @@ def _cut(message: str) -> str:
     return f"{short(what, 120)}{at}{place}" if at else short(message, 120)
 
 
-def _driveline(table: dict[str, Any], source: str) -> Driveline:
-    """The driveline of a file's content, or everything that is wrong with it."""
+def _driveline(table: dict[str, Any], source: str, folder: Path | None) -> Driveline:
+    """The driveline of a file's content, tables in ``folder`` beside it, or everything that is wrong with it."""
     wrong = [
         InputError("unknown key", key=key, value=value, remedy=nearest(key, [k for k in TOP_KEYS if k not in table]))
         for key, value in table.items()
@@ -189,7 +194,7 @@ def _driveline(table: dict[str, Any], source: str) -> Driveline:
             wrong.extend(error.problems)
 
     if "element" in table or not wrong:
-        read("elements", table.get("element"), lambda value: _elements(value, source))
+        read("elements", table.get("element"), lambda value: _elements(value, source, folder))
     if "operation" in table:
         read("operation", table["operation"], _operation)
     if "limit" in table:
@@ -211,7 +216,7 @@ def _check_format(table: dict[str, Any]) -> None:
         raise InputError("is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}")
 
 
-def _elements(tables: Any, source: str) -> list[Element]:
+def _elements(tables: Any, source: str, folder: Path | None) -> list[Element]:
     if isinstance(tables, dict):
         raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
     if not isinstance(tables, list) or not tables:
@@ -223,7 +228,7 @@ def _elements(tables: Any, source: str) -> list[Element]:
     wrong: list[InputError] = []
     for place, table in enumerate(tables, start=1):
         try:
-            made.append(_element(table, place, seen, source))
+            made.append(_element(table, place, seen, source, folder))
         except InputError as error:
             wrong += error.problems
     if wrong:
@@ -231,7 +236,7 @@ def _elements(tables: Any, source: str) -> list[Element]:
     return made
 
 
-def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element:
+def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Path | None) -> Element:
     if not isinstance(table, dict):
         raise InputError("is not a table", element=f"element {place}", value=table, remedy="write [[element]]")
     data = dict(table)
@@ -253,6 +258,8 @@ def _element(table: Any, place: int, seen: Counter[str], source: str) -> Element
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
+            if folder is not None and isinstance(named := data.get("excitation"), str):
+                data["excitation"] = read_excitation(folder / named)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label) from None
@@ -340,13 +347,19 @@ def _element_blocks(element: Element) -> list[str]:
         if key in HARMONICS:
             kinds = HARMONICS[key]
             for harmonic in value:
-                stated = {k: written(v, kinds[k]) if k in kinds else v for k, v in harmonic.stated.items()}
+                stated = {k: _written(v, kinds.get(k)) for k, v in harmonic.stated.items()}
                 blocks.append(_block(f"[[element.{key}]]", stated))
         elif isinstance(value, tuple):
             table[key] = [v if kind is None else written(v, kind) for v in value]
         else:
             table[key] = value if kind is None else written(value, kind)
     return [_block("[[element]]", table), *blocks]
+
+
+def _written(value: Any, kind: Kind | None) -> Any:
+    if isinstance(value, tuple):
+        return [_written(v, kind) for v in value]
+    return value if kind is None else written(value, kind)
 
 
 def _operation_blocks(operation: Operation) -> list[str]:

@@ -230,7 +230,12 @@ def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
 
 
 _HARMONICS = {
-    "excitation": {"amplitude": "N*m", "frequency": "rad/s", "phase": "rad"},
+    "excitation": {
+        "amplitude": "N*m",
+        "frequency": "rad/s",
+        "phase": "rad",
+        "quadratic_amplitude": "N*m*s^2/rad^2",
+    },
     "transmission_error": {"amplitude": "m", "phase": "rad"},
     "stiffness_variation": {"share": "1", "phase": "rad"},
 }
@@ -259,11 +264,18 @@ def _numbers(element: Element) -> Iterator[tuple[str, float]]:
     for name, keys in _HARMONICS.items():
         for i, harmonic in enumerate(getattr(element, name, ()), start=1):
             for key in keys:
-                if (number := getattr(harmonic, key)) is not None:
+                if (number := _number(harmonic, key)) is not None:
                     yield f"{name} {i} {key}", float(number)
     for name, (single, _) in _LISTS.items():
         for i, number in enumerate(getattr(element, name, ()), start=1):
             yield f"{single} {i}", float(number)
+
+
+def _number(harmonic: Any, key: str) -> float | None:
+    """One number of a harmonic; the amplitude of a table is its largest."""
+    table = key == "amplitude" and getattr(harmonic, "amplitudes", None)
+    number: float | None = harmonic.largest if table else getattr(harmonic, key)
+    return number
 
 
 def _fields(element: Element, numbers: dict[str, float]) -> dict[str, Any]:
@@ -278,8 +290,18 @@ def _fields(element: Element, numbers: dict[str, float]) -> dict[str, Any]:
         name = owner if owner in _HARMONICS else next(n for n, (single, _) in _LISTS.items() if single == owner)
         every = fields.setdefault(name, list(getattr(element, name)))
         old = every[int(place) - 1]
-        every[int(place) - 1] = {**old.stated, part: number} if part else number
+        every[int(place) - 1] = _with(old, part, number) if part else number
     return fields
+
+
+def _with(harmonic: Any, part: str, number: float) -> dict[str, Any]:
+    """What a harmonic states with one number changed; a table keeps its shape."""
+    stated = dict(harmonic) if isinstance(harmonic, dict) else harmonic.stated
+    amplitudes = stated.get("amplitudes", ())
+    if part != "amplitude" or not amplitudes:
+        return {**stated, part: number}
+    largest = max(abs(a) for a in amplitudes)
+    return {**stated, "amplitudes": tuple(a * number / largest for a in amplitudes)}
 
 
 def default_names(line: Driveline) -> Sequence[str]:

@@ -21,6 +21,7 @@ from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import assemble
+from trunnion.equations.harmonic_torques import cylinders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -62,8 +63,13 @@ def exact_oscillator(line: Driveline, speed: float | None = None) -> PiecewiseOs
         if isinstance(disk, Disk):
             mean -= inertia * lever * disk.load_torque
             for h in disk.excitation:
+                if h.amplitude is None:
+                    raise InputError(
+                        "has an amplitude that depends on the speed or the load", element="driveline",
+                        key="excitation", remedy="use tn.periodic_response or tn.order_response",
+                    )  # fmt: skip
                 frequency = h.frequency if h.frequency is not None else (h.order or 0.0) * rate * turning.speed(h)
-                parts.append((frequency, inertia * lever * h.amplitude * np.exp(1j * h.phase)))
+                parts.append((frequency, inertia * lever * h.amplitude * np.exp(1j * h.phase) * cylinders(disk, h)))
     if isinstance(spring, GearPair):
         for e in spring.transmission_error:
             frequency = e.order * (spring.teeth_in or 0) * turning.speed(e)

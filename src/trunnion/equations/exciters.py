@@ -18,8 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.topology import Topology
 
@@ -34,7 +36,8 @@ class Exciter:
     ``order`` is K in cycles per turn of the input, 0 for a torque fixed in time, whose frequency [rad/s] stands in
     the packed column ``frequency`` (−1 otherwise); ``own_order`` counts per turn of the disk. ``station`` is where a
     torque acts, ``compliance`` the mesh of a transmission error; the other is −1. ``held`` torques act on a rotation
-    that a ConstantSpeed prescribes, and do nothing.
+    that a ConstantSpeed prescribes, and do nothing. ``amplitude`` and ``phase`` are packed columns, ``number`` counts
+    the harmonics of a disk from 1.
     """
 
     element: str
@@ -47,6 +50,7 @@ class Exciter:
     compliance: int = -1
     over: float = 1.0
     held: bool = False
+    number: int = 0
 
     @property
     def in_time(self) -> bool:
@@ -69,10 +73,11 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
                     line.names[place],
                     Fraction(str(own)) * abs(topo.speed_ratio[s]),
                     own,
-                    column(place, f"excitation {h} amplitude"),
+                    column(place, f"excitation {h} {_size_of(harmonic)}"),
                     column(place, f"excitation {h} phase"),
                     column(place, f"excitation {h} frequency"),
                     station=s,
+                    number=h,
                     held=held,
                 )
             )
@@ -88,8 +93,14 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
     return tuple(found)
 
 
-def size(exciter: Exciter, table: Array) -> Complex:
+def _size_of(harmonic: Excitation) -> str:
+    return "amplitude" if harmonic.quadratic_amplitude is None else "quadratic_amplitude"
+
+
+def size(assembly: Assembly, exciter: Exciter, table: Array) -> Complex:
     """A e^{i phase} of an exciter, (case,): torque [N m], or transmission error as a twist [rad]."""
+    if exciter.station >= 0:
+        return harmonic_torque(assembly.packed, assembly.topology, exciter.station, exciter.number, table)
     phase = table[:, exciter.phase]
     return np.asarray(exciter.over * table[:, exciter.amplitude] * np.exp(1j * phase))
 

@@ -14,8 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
 from trunnion.equations.line_regimes import line_regimes, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
@@ -219,9 +221,12 @@ class LineSystem:
             stations[s, core.QUADRATIC] += row[column(i, "quadratic_load")]
             element = assembly.line.elements[i]
             for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
-                keys = [column(i, f"excitation {h} {k}") for k in ("amplitude", "frequency", "phase")]
-                amplitude, angle = row[keys[0]], row[keys[2]]
-                frequency = row[keys[1]] if keys[1] >= 0 else 0.0
+                torque = harmonic_torque(
+                    assembly.packed, topo, s, h, _at(course, row, harmonic, assembly.line.names[i])
+                )
+                amplitude, angle = float(np.abs(torque[0])), float(np.angle(torque[0]))
+                place = column(i, f"excitation {h} frequency")
+                frequency = row[place] if place >= 0 else 0.0
                 sense = float(np.sign(mean[s]))
                 order = sense * (harmonic.order or 0.0)
                 harmonics.append([s, sense * amplitude, order, frequency, angle])
@@ -304,6 +309,22 @@ class LineSystem:
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
         return np.concatenate([d[places], v[places] * self.speed])
+
+
+def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:
+    """The packed numbers at the speed that a harmonic has its amplitude at."""
+    if not harmonic.varies:
+        return row[None]
+    if course.acceleration:
+        raise InputError(
+            "has an amplitude that depends on the speed, which changes here",
+            element=name,
+            key="excitation",
+            remedy="give it an amplitude, or use tn.order_response",
+        )
+    table = row[None].copy()
+    table[:, 0] = course.speed
+    return table
 
 
 def _straight(coefficients: LineCoefficients) -> LineCoefficients:

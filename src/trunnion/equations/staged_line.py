@@ -25,6 +25,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exact_oscillator import Turning, common_frequency
+from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.topology import Topology
@@ -222,6 +223,8 @@ def _refuse_inexact(line: Driveline) -> None:
             found = "angle", "bends the line, so that no stage is linear with constant coefficients"
         elif isinstance(element, GearPair) and element.stiffness_variation:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"
+        elif isinstance(element, Disk) and any(one.varies for one in element.excitation):
+            found = "excitation", "has an amplitude that depends on the speed or the load"
         elif isinstance(element, Disk) and element.quadratic_load:
             found = "quadratic_load", "is not linear in the speed, so that no motion is exact"
         if found:
@@ -301,8 +304,8 @@ class _Builder:
         for station, i in self.topo.disks:
             element, mean = self.assembly.line.elements[i], float(self.topo.speed_ratio[station])
             for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
-                amplitude, phase = (self.row[column(i, f"excitation {h} {k}")] for k in ("amplitude", "phase"))
-                push = self._push(station) * float(np.sign(mean)) * amplitude * np.exp(1j * phase)
+                torque = harmonic_torque(self.assembly.packed, self.topo, station, h, self.row[None])[0]
+                push = self._push(station) * float(np.sign(mean)) * torque
                 # By order at the mean rotation: the torque does not follow the deviation of its own disk.
                 cycles = abs(mean) * (harmonic.order or 0.0)
                 frequency = 0.0 if harmonic.order else float(self.row[column(i, f"excitation {h} frequency")])

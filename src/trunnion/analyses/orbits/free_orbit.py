@@ -128,7 +128,8 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     unsteady = [column(topo.stations[s].element, "angle") for s in (*topo.joints, *topo.tripods)]
     for _, i in topo.disks:
         count = len(getattr(elements[i], "excitation", None) or ())
-        unsteady += [column(i, f"excitation {h} amplitude") for h in range(1, count + 1)]
+        keys = ("amplitude", "quadratic_amplitude")
+        unsteady += [c for h in range(1, count + 1) for k in keys if (c := column(i, f"excitation {h} {k}")) >= 0]
 
     def at(system: System, x: Array) -> Neutral:
         by_speed = _any(line, system, loads)

@@ -290,7 +290,7 @@ class _Case:
         for exciter, _ in group.members:
             if only is not None and exciter is not only:
                 continue
-            sizes = size(exciter, table)
+            sizes = size(self.assembly, exciter, table)
             if exciter.compliance < 0:
                 force += torque_on_unknowns(self.topo, exciter, sizes, base)
                 continue

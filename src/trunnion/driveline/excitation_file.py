@@ -1,0 +1,142 @@
+"""Tables of harmonic torques from a spreadsheet: one row an order, or an order at a speed or at a mean torque.
+
+::
+
+    order,speed [rpm],amplitude [N*m],phase [deg]
+    2,600,180,-90
+    2,1800,240,-84
+    4,600,35,10
+
+The first line names the columns, each with its unit: order, amplitude, and where there are any phase, and speed (of
+the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, Kind, parse
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError, short
+
+COLUMNS: dict[str, Kind] = {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE}
+LARGEST_TABLE = 1_000_000
+"""Bytes; a table of 20 orders at 50 speeds has 30 000."""
+_HEAD = re.compile(r"([a-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
+
+
+def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
+    """Harmonic torques of a CSV file, one for each order.
+
+    Raises
+    ------
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; an
+        order with two rows for one speed.
+    """
+    place = Path(path)
+    rows = _rows(place)
+    columns = _columns(place.name, rows[0])
+    by_order: dict[float, list[dict[str, float]]] = {}
+    for number, row in enumerate(rows[1:], start=2):
+        values = _values(f"{place.name}: row {number}", row, columns)
+        by_order.setdefault(values["order"], []).append(values)
+    over = next((key for key in ("speed", "torque") if key in columns), None)
+    if not by_order:
+        raise InputError("has no rows below its first line", key=place.name, remedy="write one row an order")
+    return tuple(_harmonic(place.name, order, found, over) for order, found in sorted(by_order.items()))
+
+
+def _rows(path: Path) -> list[list[str]]:
+    try:
+        if path.stat().st_size > LARGEST_TABLE:
+            problem = f"has {path.stat().st_size} bytes, a table of excitations at most {LARGEST_TABLE}"
+            raise InputError(problem, key=str(path), remedy="name the table of orders")
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        there = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+        remedy = nearest(path.name, there) if there else "put it beside the driveline's file"
+        raise InputError("file not found", key=str(path), remedy=remedy) from None
+    except (OSError, ValueError):
+        raise InputError("cannot be read as text in UTF-8", key=str(path), remedy="save it as CSV") from None
+    head = text.partition("\n")[0]
+    mark = next((m for m in (";", "\t") if m in head), ",")
+    rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines(), delimiter=mark)]
+    rows = [row for row in rows if any(row) and not row[0].startswith("#")]
+    if not rows:
+        raise InputError("is empty", key=path.name, remedy="write order,amplitude [N*m] in its first line")
+    return rows
+
+
+def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
+    """Place and unit of every column."""
+    found: dict[str, tuple[int, str]] = {}
+    for i, cell in enumerate(head):
+        match = _HEAD.fullmatch(cell.lower().strip())
+        name = match.group(1) if match else cell
+        if name not in COLUMNS:
+            raise InputError("is not a column of such a table", element=source, key=cell, remedy=nearest(name, COLUMNS))
+        given = _HEAD.fullmatch(cell.strip().replace(cell.strip()[: len(name)], name, 1))
+        unit = (given.group(2) if given else None) or ""
+        if not unit and COLUMNS[name] is not RATIO:
+            remedy = f'write "{name} [{_usual(COLUMNS[name])}]" in the first line'
+            raise InputError("has no unit", element=source, key=name, remedy=remedy)
+        if name in found:
+            raise InputError("stands twice", element=source, key=name, remedy="leave one of the columns out")
+        found[name] = i, unit
+    for name in ("order", "amplitude"):
+        if name not in found:
+            remedy = "write order,amplitude [N*m] in the first line"
+            raise InputError("is missing among the columns", element=source, key=name, remedy=remedy)
+    if "speed" in found and "torque" in found:
+        remedy = "a table goes over one of the two; leave the other out"
+        raise InputError("stands beside speed", element=source, key="torque", remedy=remedy)
+    return found
+
+
+def _usual(kind: Kind) -> str:
+    return {SPEED: "rpm", ANGLE: "deg"}.get(kind, kind.unit)
+
+
+def _values(where: str, row: Sequence[str], columns: dict[str, tuple[int, str]]) -> dict[str, float]:
+    values: dict[str, float] = {}
+    for name, (i, unit) in columns.items():
+        cell = row[i] if i < len(row) else ""
+        if not cell:
+            raise InputError("is missing", element=where, key=name, remedy="write a number in every column")
+        try:
+            values[name] = parse(f"{cell} {unit}" if unit else float(cell), COLUMNS[name])
+        except (InputError, ValueError) as error:
+            problem = error.problem if isinstance(error, InputError) else "is not a number"
+            remedy = error.remedy if isinstance(error, InputError) else "write 2 or 2.5, say"
+            raise InputError(problem, element=where, key=name, value=short(cell, 40), remedy=remedy) from None
+    return values
+
+
+def _harmonic(source: str, order: float, rows: list[dict[str, float]], over: str | None) -> Excitation:
+    where: dict[str, Any] = {"element": source, "key": f"order {order:g}"}
+    if over is None:
+        if len(rows) > 1:
+            remedy = "add a column speed [rpm], or leave all rows but one out"
+            raise InputError("stands in several rows", **where, remedy=remedy)
+        return Excitation(order=order, amplitude=rows[0]["amplitude"], phase=rows[0].get("phase", 0.0))
+    rows = sorted(rows, key=lambda row: row[over])
+    points = tuple(row[over] for row in rows)
+    if len(set(points)) < len(points):
+        raise InputError(f"has two rows for one {over}", **where, remedy="leave one of them out")
+    if len(points) < 2:
+        raise InputError(f"has one {over} only", **where, remedy="give two at least: the ends of the range")
+    try:
+        return Excitation(
+            order=order,
+            amplitudes=tuple(row["amplitude"] for row in rows),
+            phases=tuple(row["phase"] for row in rows) if "phase" in rows[0] else (),
+            **{f"{over}s": points},
+        )
+    except InputError as error:
+        raise error.each(lambda one: InputError(one.problem, **where, value=one.value, remedy=one.remedy)) from None

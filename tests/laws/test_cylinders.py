@@ -1,0 +1,228 @@
+"""Excitation by cylinders: slider crank by its exact mechanism, firing angles, tables over speed and load, misfire."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.laws.slider_crank import inertia_harmonics
+
+
+def piston(angle, r, length):
+    """Distance of the pin from the crank's centre, by Pythagoras."""
+    return r * np.cos(angle) + np.sqrt(length**2 - (r * np.sin(angle)) ** 2)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.25, 0.4, 0.7])
+def test_inertia_torque_by_fft_of_the_exact_mechanism(share):
+    """Power balance: the crank gives what the kinetic energy of the piston takes, −d/dt ½ m ẋ² = T ω.
+
+    ẋ from a difference of complex steps, the torque from a difference of the kinetic energy: no formula is shared.
+    """
+    m, r, w, count = 1.3, 0.045, 180.0, 256
+    angle = 2 * np.pi * np.arange(count) / count
+    energy = m * ((piston(angle + 1e-30j, r, r / share).imag / 1e-30) * w) ** 2 / 2
+    spectrum = np.fft.fft(energy) / count
+    orders = np.fft.fftfreq(count, 1 / count)
+    torque = -np.fft.ifft(1j * orders * spectrum * count).real
+    sines = 2 * np.fft.rfft(torque)[1:9] / count
+    found, inertia = tn.reciprocating_mass(m, r, r / share, orders=8)
+    assert np.abs(sines.real).max() < 1e-9 * np.abs(sines).max()
+    by_mechanism = -sines.imag
+    ours = np.array([one.quadratic_amplitude for one in found]) * w**2
+    assert ours == pytest.approx(by_mechanism, rel=1e-9, abs=1e-10 * np.abs(by_mechanism).max())
+    assert inertia == pytest.approx(2 * energy.mean() / w**2, rel=1e-12)
+    if share <= 0.4:
+        every, _ = tn.reciprocating_mass(m, r, r / share, orders=24)
+        wave = sum(one.quadratic_amplitude * w**2 * np.cos(one.order * angle + one.phase) for one in every)
+        assert wave == pytest.approx(torque, abs=1e-9 * np.abs(torque).max())
+
+
+def test_the_leading_terms_are_those_of_the_textbooks():
+    """T/(m r² ω²) = λ/4 sin θ − ½ sin 2θ − ¾ λ sin 3θ − λ²/4 sin 4θ + …, errors of higher order in λ."""
+    for share in (0.05, 0.1, 0.2):
+        b, mean = inertia_harmonics(share, 4)
+        assert b == pytest.approx([share / 4, -0.5, -0.75 * share, -(share**2) / 4], abs=0.6 * share**3)
+        assert mean == pytest.approx(0.5 * (1 + share**2 / 4), abs=share**4)
+
+
+def engine(**changes):
+    parts = [
+        tn.Disk(inertia=0.4, name="engine", **changes),
+        tn.Shaft(stiffness=2e4, damping=6.0, name="shaft"),
+        tn.Disk(inertia=1.1, name="machine"),
+    ]
+    return tn.Driveline(parts)
+
+
+GAS = [{"order": k / 2, "amplitude": 300.0 / k, "phase": 0.3 * k} for k in range(1, 9)]
+FOUR = [0.0, math.pi, 3 * math.pi, 2 * math.pi]
+
+
+def test_cylinders_repeat_what_is_listed_once():
+    """Four strokes, four cylinders: half orders and odd ones cancel, orders 2 and 4 add up fourfold."""
+    found = tn.order_response(engine(excitation=GAS, firing_angles=FOUR), [150.0])
+    assert list(found.order) == [2.0, 4.0]
+    fourfold = [dict(one, amplitude=4 * one["amplitude"]) for one in GAS if one["order"] in (2.0, 4.0)]
+    same = tn.order_response(engine(excitation=fourfold), [150.0])
+    assert found.torque == pytest.approx(same.torque, rel=1e-12)
+
+
+def test_firing_angles_are_phases_of_minus_k_alpha():
+    uneven = [0.0, 1.1, 5.0]
+    written = [
+        dict(one, phase=one["phase"] - one["order"] * angle) for angle in uneven for one in GAS
+    ]  # fmt: skip
+    ours = tn.order_response(engine(excitation=GAS, firing_angles=uneven), [90.0, 150.0])
+    by_hand = tn.order_response(engine(excitation=written), [90.0, 150.0])
+    assert ours.torque == pytest.approx(by_hand.torque, rel=1e-11)
+    line = engine(excitation=GAS, firing_angles=uneven).replace("engine", drive_share=1.0)
+    twin = engine(excitation=written).replace("engine", drive_share=1.0)
+    one, other = (tn.simulate(each, 0.3, speed=90.0) for each in (line, twin))
+    assert one.torque[-1] == pytest.approx(other.torque[-1], rel=1e-5), "the nonlinear equations count them too"
+
+
+def test_amplitudes_over_speed_by_hand():
+    """Half-way between two points of the table A e^{i phase} is the mean of both; it scales the constant response."""
+    table = {"order": 2, "speeds": [100.0, 200.0], "amplitudes": [10.0, 30.0], "phases": [0.0, math.pi / 2]}
+    unit = tn.order_response(engine(excitation=[{"order": 2, "amplitude": 1.0}]), [100.0, 150.0, 200.0]).torque
+    found = tn.order_response(engine(excitation=[table]), [100.0, 150.0, 200.0]).torque
+    assert found[:, 0, 0] == pytest.approx(unit[:, 0, 0] * np.array([10.0, 5 + 15j, 30j]), rel=1e-12)
+    squares = tn.order_response(engine(excitation=[{"order": 2, "quadratic_amplitude": 2e-3}]), [100.0, 150.0, 200.0])
+    assert squares.torque == pytest.approx(unit * (2e-3 * np.array([1e4, 2.25e4, 4e4]))[:, None, None], rel=1e-12)
+
+
+def test_amplitudes_behind_a_reduction_go_by_the_disks_own_speed():
+    def geared(excitation):
+        return tn.Driveline(
+            [
+                tn.ConstantSpeed(),
+                tn.Shaft(stiffness=1e5, damping=20.0),
+                tn.Disk(inertia=0.1),
+                tn.Ratio(ratio=4),
+                tn.Shaft(stiffness=2e4, damping=6.0),
+                tn.Disk(inertia=0.5, name="fan", excitation=[excitation]),
+            ]
+        )
+
+    by_square = tn.order_response(geared({"order": 5, "quadratic_amplitude": 0.01}), [120.0]).torque
+    constant = tn.order_response(geared({"order": 5, "amplitude": 0.01 * 30.0**2}), [120.0]).torque
+    assert by_square == pytest.approx(constant, rel=1e-12)
+    table = {"order": 5, "speeds": [20.0, 40.0], "amplitudes": [9.0, 9.0]}
+    assert tn.order_response(geared(table), [120.0]).torque == pytest.approx(constant, rel=1e-12)
+
+
+def test_amplitudes_over_the_mean_torque_of_the_disk():
+    """It drives with what its share of the load is: 80 N m at every speed, a quarter of the way from 60 to 140 N m."""
+    table = {"order": 2, "torques": [60.0, 140.0], "amplitudes": [20.0, 60.0]}
+    loaded = engine(excitation=[table], drive_share=1.0).replace("machine", load_torque=80.0)
+    constant = engine(excitation=[{"order": 2, "amplitude": 30.0}], drive_share=1.0)
+    constant = constant.replace("machine", load_torque=80.0)
+    ours, theirs = (tn.order_response(line, [150.0]) for line in (loaded, constant))
+    assert ours.torque == pytest.approx(theirs.torque, rel=1e-12)
+
+
+def test_the_nonlinear_motion_takes_the_amplitude_of_its_speed():
+    line = engine(excitation=[{"order": 2, "quadratic_amplitude": 1e-3}], drive_share=1.0)
+    same = engine(excitation=[{"order": 2, "amplitude": 1e-3 * 150.0**2}], drive_share=1.0)
+    one, other = (tn.periodic_response(each, 150.0) for each in (line, same))
+    assert one.torque_peak_to_peak == pytest.approx(other.torque_peak_to_peak, rel=1e-9)
+
+
+def test_a_table_is_not_extrapolated():
+    table = {"order": 2, "speeds": [100.0, 200.0], "amplitudes": [10.0, 30.0]}
+    with pytest.raises(
+        tn.InputError, match="engine.excitation 1: is a table from 954.93 rpm to 1909.86 rpm, which does"
+    ):
+        tn.order_response(engine(excitation=[table]), [150.0, 210.0])
+    judged = tn.assess(tn.Driveline(engine(excitation=[table]).elements, limits=[tn.Limit(of="shaft", max_torque=1.0)]),
+                       (150.0, 210.0))  # fmt: skip
+    assert "does not cover" in judged.check("max torque of shaft").because
+
+
+def test_a_misfire_brings_half_orders_and_the_worst_is_found():
+    line = engine(excitation=GAS, firing_angles=FOUR)
+    speeds = np.linspace(200.0, 400.0, 61)
+    found = tn.misfire(line, speeds)
+    assert found.vibratory_torque.shape == (4, 1)
+    by_hand = []
+    for number in range(4):
+        left = [angle for c, angle in enumerate(FOUR) if c != number]
+        by_hand.append(
+            np.nanmax(tn.order_response(engine(excitation=GAS, firing_angles=left), speeds).vibratory_torque)
+        )
+    assert found.vibratory_torque[:, 0] == pytest.approx(by_hand, rel=1e-9)
+    assert found.vibratory_torque.min() > found.normal[0]
+    name, number = found.worst
+    assert name == "engine" and found.line.elements[0].misfiring == number
+    assert 0.5 in found.response.order
+    masses, _ = tn.reciprocating_mass(1.0, 0.05, 0.17)
+    only = engine(excitation=masses, firing_angles=FOUR)
+    silent = tn.misfire(only, [150.0])
+    assert silent.vibratory_torque == pytest.approx(np.full((4, 1), silent.normal[0])), "masses go on moving"
+
+
+CSV = """order,speed [rpm],amplitude [N*m],phase [deg]
+# measured
+2,600,180,-90
+2,1800,240,-84
+4,1800,35,10
+4,600,30,0
+"""
+
+
+def test_a_table_beside_the_file(tmp_path):
+    (tmp_path / "engine.csv").write_text(CSV, encoding="utf-8")
+    text = tn.dumps(engine()).replace('name = "engine"', 'name = "engine"\nexcitation = "engine.csv"')
+    (tmp_path / "line.toml").write_text(text, encoding="utf-8")
+    line = tn.load(tmp_path / "line.toml")
+    two, four = line.elements[0].excitation
+    assert (two.order, four.amplitudes) == (2.0, (30.0, 35.0))
+    assert two.speeds == pytest.approx([20 * math.pi, 60 * math.pi]) and two.phases[0] == pytest.approx(-math.pi / 2)
+    assert tn.loads(tn.dumps(line)) == line, "written in full, it needs no second file"
+    assert tn.read_excitation(tmp_path / "engine.csv") == line.elements[0].excitation
+    semicolons = CSV.replace(",", ";")
+    (tmp_path / "semicolons.csv").write_text(semicolons, encoding="utf-8-sig")
+    assert tn.read_excitation(tmp_path / "semicolons.csv") == line.elements[0].excitation
+    (tmp_path / "plain.csv").write_text("order,amplitude [kN*m]\n0.5,0.02\n1,0.01\n", encoding="utf-8")
+    assert [one.amplitude for one in tn.read_excitation(tmp_path / "plain.csv")] == [20.0, 10.0]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("order,amplitude\n2,3\n", 'table.csv.amplitude: has no unit; write "amplitude [N*m]"'),
+        ("order,amplitud [N*m]\n2,3\n", "table.csv.amplitud [N*m]: is not a column of such a table; did you mean"),
+        ("order,speed [rpm]\n2,3\n", "table.csv.amplitude: is missing among the columns"),
+        ("order,amplitude [N*m]\n2,\n", "table.csv: row 2.amplitude: is missing"),
+        ("order,amplitude [N*m]\n2,x\n", "table.csv: row 2.amplitude = 'x': "),
+        ("order,amplitude [rpm]\n2,3\n", "table.csv: row 2.amplitude = '3': rpm is not"),
+        ("order,amplitude [N*m]\ntwo,3\n", "table.csv: row 2.order = 'two': is not a number"),
+        ("order,amplitude [N*m]\n2,3\n2,4\n", "table.csv.order 2: stands in several rows"),
+        ("order,speed [rpm],amplitude [N*m]\n2,600,4\n", "table.csv.order 2: has one speed only"),
+        ("order,speed [rpm],amplitude [N*m]\n2,600,4\n2,600,5\n", "table.csv.order 2: has two rows for one speed"),
+        ("order,speed [rpm],torque [N*m],amplitude [N*m]\n2,1,1,1\n", "table.csv.torque: stands beside speed"),
+        ("order,order,amplitude [N*m]\n2,2,1\n", "table.csv.order: stands twice"),
+        ("order,amplitude [N*m]\n", "table.csv: has no rows below its first line"),
+        ("order,amplitude [N*m]\n-2,3\n", "must be positive"),
+        ("", "table.csv: is empty"),
+    ],
+)
+def test_what_is_wrong_with_a_table_is_said_in_one_line(tmp_path, content, message):
+    (tmp_path / "table.csv").write_text(content, encoding="utf-8")
+    with pytest.raises(tn.InputError) as caught:
+        tn.read_excitation(tmp_path / "table.csv")
+    assert message in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_table_that_is_not_there(tmp_path):
+    text = tn.dumps(engine()).replace('name = "engine"', 'name = "engine"\nexcitation = "engin.csv"')
+    (tmp_path / "line.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "engine.csv").write_text(CSV, encoding="utf-8")
+    with pytest.raises(tn.InputError, match='file not found; did you mean "engine.csv"'):
+        tn.load(tmp_path / "line.toml")
+    with pytest.raises(tn.InputError, match="names a file that is not known here"):
+        tn.loads(text)
