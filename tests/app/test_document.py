@@ -108,7 +108,7 @@ def test_exported_python_computes_what_the_call_gives() -> None:
     line = tn.loads(starter("two-shaft"))
     call = Call("tn.order_response", (LINE, Call("np.linspace", (50.0, 60.0, 3))), {"orders": (2.0,)})
     there: dict[str, object] = {}
-    exec(script(starter("two-shaft"), {"orders": call}, "orders"), there)
+    exec(script(starter("two-shaft"), {"orders": (call, starter("two-shaft"))}, "orders"), there)
     assert (there["orders"].torque == call.evaluate(line).torque).all()
 
 

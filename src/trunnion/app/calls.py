@@ -55,9 +55,15 @@ THE_LINE = Call("line")
 """The driveline itself, where it is shown as it is."""
 
 
-def script(toml: str, results: Mapping[str, Call], title: str) -> str:
-    """Python that computes ``results``, by name, for the driveline ``toml``."""
-    body = [f"{name} = {call.text()}\nprint({name})" for name, call in results.items() if call != THE_LINE]
+def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str) -> str:
+    """Python that computes ``results`` for the driveline ``toml``: by name, each call with the file of its line."""
+    body, now = [], toml
+    for name, (call, of) in results.items():
+        if call == THE_LINE:
+            continue
+        change = f"line = tn.loads({_block(of)})\n" if of != now else ""
+        body.append(f"{change}{name} = {call.text()}\nprint({name})")
+        now = of
     return "\n".join(
         [
             f'"""{title}: what the application showed."""',

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from typing import Any
 
 from bokeh.models import ColumnDataSource, HoverTool, Legend
@@ -58,3 +59,8 @@ def hover(made: Any, renderers: list[Any], tips: list[tuple[str, str]], **more: 
 def source(**columns: Any) -> Any:
     """Columns that a figure draws."""
     return ColumnDataSource(data=columns)
+
+
+def text(words: object) -> str:
+    """Words for an HTML pane."""
+    return html.escape(str(words))

@@ -196,9 +196,15 @@ class Session:
                 if place >= len(steps[side]):
                     continue
                 step = steps[side][place]
-                answer = await self.pool.run(step.job(lines[side]), self, partial(self._progress, done, total))
-                remarks += answer.remarks
-                self.locked(partial(view.of(side).show, step.name, answer.value))
+                try:
+                    answer = await self.pool.run(step.job(lines[side]), self, partial(self._progress, done, total))
+                except TrunnionError as error:
+                    if not step.soft:
+                        raise
+                    self.locked(partial(view.of(side).refused, step.name, str(error)))
+                else:
+                    remarks += answer.remarks
+                    self.locked(partial(view.of(side).show, step.name, answer.value))
                 done += 1
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
 
@@ -243,14 +249,14 @@ class Session:
             return await self._bytes(Job(toml, call, "report"))
         steps = {step.name: step for step in view.steps(self.document.line)}
         if (name, ending) == ("view", "py"):
-            calls = {step.name: step.call for step in steps.values()}
+            calls = {step.name: (step.call, step.toml(toml)) for step in steps.values()}
             return script(toml, calls, f"{view.title} of {self.document.line.name or 'a driveline'}").encode()
         step = steps[name]
         drawn = ("png", "svg") if step.picture else ()
         if ending not in (*drawn, *step.files):
             raise KeyError(ending)
         options = {"ending": ending, "method": step.picture, "options": dict(step.drawing), "columns": step.columns}
-        return await self._bytes(Job(toml, step.call, "file", options))
+        return await self._bytes(Job(step.toml(toml), step.call, "file", options))
 
     async def _bytes(self, job: Job) -> bytes:
         body: bytes = (await self.pool.run(job, self)).value

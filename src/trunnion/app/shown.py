@@ -8,7 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 Plain = dict[str, Any]
+MOST_ORDERS = 8
+MOST_SAMPLES = 3000
 
 
 def nothing(result: Any) -> None:
@@ -94,3 +98,135 @@ def torque_limits(result: Any) -> Plain:
         "vibratory": result.vibratory_torque,
         "peak": result.peak_torque,
     }
+
+
+def orders(result: Any, spring: str) -> Plain:
+    """Torque of one shaft over speed: by order, the largest first, and over the cycle."""
+    from trunnion.analyses.orders.result import order_name
+
+    at = result.springs.index(spring)
+    size = np.abs(result.torque[:, :, at])
+    most = np.nan_to_num(size).max(axis=0)
+    top = [int(k) for k in np.argsort(-most)[:MOST_ORDERS] if most[k] > 0]
+    return {
+        "speed": result.speed,
+        "spring": spring,
+        "names": [order_name(float(result.order[k]), float(result.frequency[k])) for k in top],
+        "sizes": [size[:, k] for k in top],
+        "vibratory": result.vibratory_torque[:, at],
+        "peak": result.peak_torque[:, at],
+        "bound": result.sum_is_bound,
+        "findings": [str(f) for f in result.findings],
+    }
+
+
+def wave(result: Any, spring: str) -> Plain:
+    """Torque of one shaft over a period, at the one speed of the result."""
+    form = result.wave()
+    return {"time": form.time, "torque": form.torque[:, result.springs.index(spring)], "spring": spring}
+
+
+def campbell(result: Any) -> Plain:
+    """Modes, excitations and crossings."""
+    return {
+        "speed": result.speed,
+        "mode": list(result.mode),
+        "frequency": result.frequency,
+        "lines": [(one.name, one.order * result.speed + one.frequency) for one in result.lines],
+        "crossing_speed": np.array([c.speed for c in result.crossings]),
+        "crossing_frequency": np.array([c.frequency for c in result.crossings]),
+        "crossing": [
+            f"{c.line.name} ({', '.join(c.line.causes)}) on mode {c.mode}, amplification {c.amplification:.3g}"
+            for c in result.crossings
+        ],
+    }
+
+
+def modes(result: Any) -> Plain:
+    """Frequencies, damping and shapes."""
+    return {
+        "frequency": result.frequency,
+        "damping": result.damping_ratio,
+        "shape": result.shape,
+        "names": list(result.names),
+    }
+
+
+def remedies(result: Any) -> list[Plain]:
+    """Changes that help, as sentences and numbers."""
+    return [{"sentence": r.sentence, "variable": r.variable, "after": r.after} for r in result.remedies]
+
+
+def chart(result: Any, zoom: Any = None) -> Plain:
+    """Growth per turn of the input over the box, or over a part of it with points of its own."""
+    if zoom is not None:
+        result = result.zoom(*zoom)
+    with np.errstate(divide="ignore"):
+        growth = np.expm1(np.log(result.spectral_radius) * 2 * np.pi / result.period)
+    return {"x": result.x, "y": result.y, "growth": growth, "verdict": result.verdict, "text": str(result)}
+
+
+def point(result: Any) -> Plain:
+    """Multipliers, verdict and the fastest disturbance."""
+    names = [str(n) for n in result.names]
+    z = np.asarray(result.multipliers)
+    at = result.set_aside if len(z) > result.set_aside else 0
+    column = int(np.argsort(-np.abs(z), kind="stable")[0 if at == 0 else at])
+    mode = result.floquet_modes[: len(names), column]
+    largest = mode[np.argmax(np.abs(mode))] if len(mode) else 1.0
+    turns = result.period / (2 * np.pi)
+    return {
+        "speed": result.speed,
+        "multipliers": z,
+        "radius": result.spectral_radius,
+        "error": result.error_estimate,
+        "verdict": str(result.verdict),
+        "growth": result.growth_rate,
+        "per_turn": math.expm1(math.log(result.spectral_radius) / turns) if result.spectral_radius > 0 else -1.0,
+        "resonance": str(result.resonance or ""),
+        "mode": mode / largest if largest else mode,
+        "names": names,
+    }
+
+
+def motion(result: Any, speed: float) -> Plain:
+    """Twist of every shaft over the turns of the input, at a constant speed [rad/s]."""
+    turns = np.asarray(result.time) * speed / (2 * np.pi)
+    keep = slice(None, None, max(1, len(turns) // MOST_SAMPLES))
+    return {"turns": turns[keep], "names": list(result.shafts), "twist": [v[keep] for v in np.asarray(result.twist).T]}
+
+
+def resonances(result: Any) -> Plain:
+    """Speeds and names of parametric resonances that can open."""
+    rows = [r for r in result.resonances if r.opens]
+    return {"speed": [r.speed for r in rows], "name": [f"{r.kind} {r.formula}" for r in rows]}
+
+
+def turn(result: Any) -> Plain:
+    """Shafts and joints over the input angle."""
+    mean = result.speed.mean(axis=1, keepdims=True)
+    couple = np.linalg.norm(result.secondary_couple, axis=1)
+    return {
+        "input_angle": result.input_angle,
+        "shafts": list(result.shafts),
+        "deviation": result.speed / mean - 1,
+        "torque": result.transmitted,
+        "joints": list(result.joints),
+        "joint_angle": result.joint_angle,
+        "forks": list(result.forks),
+        "couple": couple,
+        "irregularity": result.irregularity,
+        "equivalent": result.equivalent_angle,
+        "acceleration": result.peak_acceleration,
+        "findings": [str(f) for f in result.findings],
+    }
+
+
+def phasing(result: Any) -> Plain:
+    """Fork offsets that make the output uniform."""
+    return {"offsets": dict(result.offsets), "text": str(result)}
+
+
+def drawn(result: Any) -> str:
+    """A figure as SVG."""
+    return _picture(result, "svg").decode("utf-8")

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from trunnion.app.views.base import View
 from trunnion.app.views.driveline import DrivelineView
+from trunnion.app.views.joints import JointsView
+from trunnion.app.views.orders import OrdersView
+from trunnion.app.views.stability import StabilityView
 from trunnion.app.views.verdict import VerdictView
 
-VIEWS: tuple[type[View], ...] = (DrivelineView, VerdictView)
+VIEWS: tuple[type[View], ...] = (DrivelineView, VerdictView, OrdersView, StabilityView, JointsView)
 """In the order of the page."""

@@ -12,6 +12,7 @@ import panel as pn
 from trunnion.app.calls import Call
 from trunnion.app.jobs import Job
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.speeds import speed_factor
 
@@ -31,7 +32,8 @@ class Step:
     """One computation of a view: its name, the call, what is shown of it, and what may be downloaded.
 
     files: endings of its data; picture: method that draws it ("" for none); drawing: its arguments; columns: variables
-    that a CSV holds, for results of many axes; slow: seconds are to be expected.
+    that a CSV holds, for results of many axes; line: a changed line that the step is about; soft: a refusal
+    leaves the other steps standing and is shown in its place.
     """
 
     name: str
@@ -43,10 +45,16 @@ class Step:
     files: tuple[str, ...] = ("csv", "nc")
     columns: tuple[str, ...] = ()
     title: str = ""
+    line: Driveline | None = None
+    soft: bool = False
 
     def job(self, toml: str) -> Job:
-        """The computation for a line."""
-        return Job(toml, self.call, self.show, self.options)
+        """The computation for a line, or for the changed one that the step has of its own."""
+        return Job(self.toml(toml), self.call, self.show, self.options)
+
+    def toml(self, toml: str) -> str:
+        """The file of the line that is computed."""
+        return toml if self.line is None else dumps(self.line)
 
 
 class Side(Protocol):
@@ -57,8 +65,8 @@ class Side(Protocol):
     def show(self, name: str, data: Any) -> None:
         """Show what the step ``name`` gave."""
 
-    def clear(self) -> None:
-        """Show that there is nothing."""
+    def refused(self, name: str, sentence: str) -> None:
+        """Say why the step ``name`` gave nothing; asked for of soft steps only."""
 
 
 class View:

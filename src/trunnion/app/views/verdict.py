@@ -11,11 +11,12 @@ from bokeh.models import Span
 
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
+from trunnion.app.helping import Help
 from trunnion.app.views.base import Step, View, select, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
 
 if TYPE_CHECKING:
-    from trunnion.app.session import Session
+    pass
 
 ALL = "as stated and every load case"
 
@@ -38,8 +39,7 @@ class VerdictView(View):
 
     def steps(self, line: Driveline) -> list[Step]:
         """The assessment, then the torques that its limits stand against."""
-        case = self.settings["load"]
-        keywords = {} if case == ALL else {"load_case": case}
+        keywords = self.keywords()
         low, high = speed_range(line)
         speeds = Call("tn.sweep_speeds", (LINE, low, high))
         return [
@@ -61,9 +61,14 @@ class VerdictView(View):
             ),
         ]
 
+    def keywords(self) -> dict[str, Any]:
+        """The load as an argument of the calls."""
+        case = self.settings["load"]
+        return {} if case == ALL else {"load_case": case}
+
     def side(self) -> Any:
         """Sentence, margins, table."""
-        return _Side(self.session)
+        return _Side(self)
 
 
 def load_cases(line: Driveline) -> list[str]:
@@ -72,7 +77,8 @@ def load_cases(line: Driveline) -> list[str]:
 
 
 class _Side:
-    def __init__(self, session: Session) -> None:
+    def __init__(self, view: VerdictView) -> None:
+        self.view, session = view, view.session
         self.session = session
         self.sentence = pn.pane.HTML("", sizing_mode="stretch_width")
         self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], tools="")
@@ -90,11 +96,11 @@ class _Side:
         )
         figures.hover(self.torque, [drawn], [("", "@name")])
         self.table = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.help = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.help = Help(session)
         self.panel = pn.Column(
             self.sentence,
             pn.pane.Bokeh(self.margins, sizing_mode="stretch_width"),
-            self.help,
+            self.help.panel,
             pn.pane.Bokeh(self.torque, sizing_mode="stretch_width"),
             self.table,
             sizing_mode="stretch_width",
@@ -129,6 +135,7 @@ class _Side:
             "said": [r["because"] for r, _ in rows],
         }
         self.table.object = _table(data)
+        self.help.clear(data["verdict"] != "satisfied", self.view.keywords())
 
     def _torque(self, data: Any) -> None:
         unit, factor = unit_of(self.session.document.line)

@@ -1,0 +1,81 @@
+"""A figure of many curves that are replaced together: names below it, values under the pointer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.events import Tap
+from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem, Span
+
+from trunnion.app import figures
+
+MOST = 24
+"""Curves that one figure shows."""
+
+
+class Curves:
+    """Curves on common axes. ``set`` replaces all of them."""
+
+    def __init__(
+        self,
+        x: str,
+        y: str,
+        *,
+        height: int = 320,
+        title: str = "",
+        tap: Callable[[float], None] | None = None,
+        **more: Any,
+    ) -> None:
+        self.figure = figures.plot(x, y, height=height, title=title, **more)
+        self.source = ColumnDataSource(data={"xs": [], "ys": [], "colour": [], "dash": [], "width": [], "name": []})
+        drawn = self.figure.multi_line(
+            "xs", "ys", line_color="colour", line_dash="dash", line_width="width", source=self.source
+        )
+        self.figure.add_tools(
+            HoverTool(renderers=[drawn], tooltips=[("", "@name"), ("", "($x, $y)")], line_policy="interp")
+        )
+        self.legend = Legend(items=[LegendItem(label={"field": "name"}, renderers=[drawn])], ncols=3)
+        self.legend.label_text_font_size = "12px"
+        self.legend.spacing = 8
+        self.legend.margin = 2
+        self.legend.padding = 2
+        self.legend.border_line_color = None
+        self.figure.add_layout(self.legend, "below")
+        self.cursor = Span(location=None, dimension="height", line_color=figures.INK, line_dash="dotted", line_width=2)
+        self.figure.add_layout(self.cursor)
+        if tap:
+            self.figure.on_event(Tap, lambda event: tap(float(event.x)))
+        self.panel = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
+
+    def set(
+        self,
+        curves: Sequence[tuple[str, Any, Any]],
+        *,
+        dashes: Sequence[str] = (),
+        colours: Sequence[str] = (),
+        x: str = "",
+        y: str = "",
+        title: str = "",
+        cursor: float | None = None,
+    ) -> None:
+        """Curves as (name, x, y), at most ``MOST``; labels that are given replace the old ones."""
+        shown = list(curves)[:MOST]
+        looks = [figures.look(k) for k in range(len(shown))]
+        self.source.data = {
+            "xs": [np.asarray(a, dtype=float) for _, a, _ in shown],
+            "ys": [np.asarray(b, dtype=float) for _, _, b in shown],
+            "colour": [colours[k] if k < len(colours) else look["line_color"] for k, look in enumerate(looks)],
+            "dash": [dashes[k] if k < len(dashes) else look["line_dash"] for k, look in enumerate(looks)],
+            "width": [2.0] * len(shown),
+            "name": [name for name, _, _ in shown],
+        }
+        self.cursor.location = cursor
+        if x:
+            self.figure.xaxis.axis_label = x
+        if y:
+            self.figure.yaxis.axis_label = y
+        if title:
+            self.figure.title.text = title

@@ -1,0 +1,320 @@
+"""Stability over two parameters; a click shows the multipliers there, the growing mode, and the motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.events import RangesUpdate, Tap
+from bokeh.models import BoxAnnotation, ColorBar, ColumnDataSource, CustomJSTickFormatter, HoverTool, LinearColorMapper
+
+from trunnion.app import figures
+from trunnion.app.calls import LINE, Call
+from trunnion.app.curves import Curves
+from trunnion.app.point import Point
+from trunnion.app.variants import kind_of, parameters, shown_unit, with_number
+from trunnion.app.views.base import MOST_POINTS, Step, View, count, number, select, speed_range, unit_of
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.parameters import SPEED, pack
+from trunnion.driveline.quantities import DEGREE
+from trunnion.errors import InputError
+from trunnion.reporting.overview import angle_range
+
+COARSE = (16, 12)
+TURNS = 30
+"""Of the motion after a disturbance."""
+GROWTH = 0.05
+"""Growth per turn at the ends of the colours."""
+_STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
+_UNSTABLE = ("#f6c49a", "#e8935a", "#d55e00", "#9c4300", "#5c2700")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A parameter along an axis: its ends in SI, and the unit it is shown in with its size in SI."""
+
+    path: str
+    low: float
+    high: float
+    unit: str
+    size: float
+
+    def request(self, points: int) -> tuple[str, float, float, int]:
+        """As ``stability_chart`` takes it."""
+        return (self.path, self.low, self.high, points)
+
+    @property
+    def label(self) -> str:
+        """With its unit."""
+        return f"{'input speed' if self.path == SPEED else self.path} [{self.unit}]"
+
+
+class StabilityView(View):
+    """The chart and one point of it."""
+
+    name = "stability"
+    title = "Stability"
+    about = (
+        "Where a small disturbance grows, over any two parameters. Click a point, or type it, for its multipliers, the "
+        "growing mode and the motion. Zooming in shows more points of the same chart."
+    )
+    defaults = {
+        "x": SPEED, "x_low": 0.0, "x_high": 0.0, "y": "", "y_low": 0.0, "y_high": 0.0, "across": 60, "up": 60,
+        "at_x": 0.0, "at_y": 0.0, "look": False,
+    }  # fmt: skip
+
+    def make_controls(self) -> Any:
+        """Axes, ends (0 and 0: by themselves), points, the point looked at."""
+        fields = {key: number(label, 0.0, width=105) for key, label in _ENDS.items()}
+        for key, widget in fields.items():
+            self.bind(key, widget)
+        self.at = {key: self.bind(key, number(label, 0.0, width=150)) for key, label in _AT.items()}
+        for widget in self.at.values():
+            widget.param.watch(lambda event: self.settings.update(look=True) if not self._quiet else None, "value")
+        across = self.bind("across", count("Points across", 60, 2, MOST_POINTS))
+        up = self.bind("up", count("Points up", 60, 2, MOST_POINTS))
+        x, y = (select(f"Along {k}", options=[]) for k in "xy")
+        for key, widget in (("x", x), ("y", y)):
+            widget.param.watch(lambda event, key=key: self._other_axis(key, event.new), "value")
+            self.bind(key, widget)
+        rows = [
+            pn.FlexBox(x, fields["x_low"], fields["x_high"], across),
+            pn.FlexBox(y, fields["y_low"], fields["y_high"], up),
+            pn.FlexBox(*self.at.values()),
+        ]
+        return pn.Column(*rows, sizing_mode="stretch_width", margin=0)
+
+    def _other_axis(self, key: str, path: str | None) -> None:
+        """Ends and point belong to the old axes."""
+        if not self._quiet and path:
+            self.settings.update({key: path, "look": False, f"{key}_low": 0.0, f"{key}_high": 0.0})
+            self.adapt(self.session.document.line)
+
+    def adapt(self, line: Driveline) -> None:
+        """Parameters of the line."""
+        paths = [SPEED, *parameters(line)]
+        if self.settings["y"] not in paths:
+            self.settings["y"] = next((p for p in paths if p.endswith(".angle")), paths[1] if len(paths) > 1 else "")
+        self.choose("x", paths)
+        self.choose("y", paths[1:])
+        for key, end in (("x", "at_x"), ("y", "at_y")):
+            axis = self.axis(line, key)
+            self.at[end].name = f"Look at {axis.label}"
+            if not self.settings["look"]:
+                self.settings[end] = float(f"{_now(line, axis) / axis.size:.6g}")
+        self.fill()
+
+    def axis(self, line: Driveline, key: str) -> Axis:
+        """The axis as set, or by itself about the value of the line."""
+        path = str(self.settings[key])
+        low, high = float(self.settings[f"{key}_low"]), float(self.settings[f"{key}_high"])
+        if path == SPEED:
+            unit, factor = unit_of(line)
+            ends = (low / factor, high / factor) if low < high else speed_range(line)
+            return Axis(path, *ends, unit, 1 / factor)
+        now = pack(line).value(path)
+        unit, size = shown_unit(kind_of(line, path), now)
+        if low < high:
+            return Axis(path, low * size, high * size, unit, size)
+        if path.endswith(".angle"):
+            return Axis(path, *angle_range(line), "deg", DEGREE)
+        ends = sorted((now / 4, now * 4)) if now else (0.0, size)
+        return Axis(path, float(ends[0]), float(ends[1]), unit, size)
+
+    def axes(self, line: Driveline) -> tuple[Axis, Axis]:
+        """Both."""
+        if self.settings["x"] == self.settings["y"]:
+            remedy = "choose another along y"
+            raise InputError("stands on both axes", key=str(self.settings["x"]), remedy=remedy)
+        return self.axis(line, "x"), self.axis(line, "y")
+
+    def point(self, line: Driveline) -> tuple[float, float]:
+        """The point looked at, in SI: as set, or the operating point."""
+        x, y = self.axes(line)
+        if self.settings["look"]:
+            return float(self.settings["at_x"]) * x.size, float(self.settings["at_y"]) * y.size
+        return tuple(_now(line, axis) for axis in (x, y))  # type: ignore[return-value]
+
+    def steps(self, line: Driveline) -> list[Step]:
+        """A coarse chart, the point, the full chart, the names of what opens, the motion."""
+        x, y = self.axes(line)
+        fixed = {} if SPEED in (x.path, y.path) else {"speed": _speed(line)}
+        across, up = int(self.settings["across"]), int(self.settings["up"])
+        steps = []
+        if across > COARSE[0] and up > COARSE[1]:
+            coarse = Call("tn.stability_chart", (LINE, x.request(COARSE[0]), y.request(COARSE[1])), fixed)
+            steps.append(Step("coarse", coarse, "chart", picture="", files=()))
+        chart = Call("tn.stability_chart", (LINE, x.request(across), y.request(up)), fixed)
+        unit = {"unit": unit_of(line)[0]}
+        full = Step("chart", chart, "chart", drawing=unit, title="stability chart")
+        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",))
+        return [*steps, *self._at(line, x, y), full, *([names] if x.path == SPEED else [])]
+
+    def _at(self, line: Driveline, x: Axis, y: Axis) -> list[Step]:
+        at = dict(zip((x.path, y.path), self.point(line), strict=True))
+        speed = at.pop(SPEED, None) or _speed(line)
+        there = line
+        for path, value in at.items():
+            there = with_number(there, path, value)
+        multipliers = Call("tn.stability", (LINE,), {"speed": speed})
+        motion = Call("tn.simulate", (LINE,), {"turns": float(TURNS), "speed": speed})
+        return [
+            Step(
+                "point", multipliers, "point", picture="", files=("nc",), title="multipliers at the point", line=there
+            ),
+            Step(
+                "motion",
+                motion,
+                "motion",
+                {"speed": speed},
+                title="motion from untwisted shafts",
+                files=("nc",),
+                line=there,
+            ),
+        ]
+
+    def side(self) -> Any:
+        """Chart, multipliers, mode, motion."""
+        return _Side(self)
+
+    def clicked(self, x: float, y: float) -> None:
+        """A point was chosen in the chart, in the units shown."""
+        self.settings.update(at_x=float(f"{x:.6g}"), at_y=float(f"{y:.6g}"), look=True)
+        self.fill()
+        self.session.setting_chosen()
+
+
+_ENDS = {"x_low": "x from", "x_high": "x to", "y_low": "y from", "y_high": "y to"}
+_AT = {"at_x": "Look at x", "at_y": "Look at y"}
+
+
+def _speed(line: Driveline) -> float:
+    if line.operation and line.operation.speed:
+        return line.operation.speed
+    low, high = speed_range(line)
+    return (low + high) / 2
+
+
+def _now(line: Driveline, axis: Axis) -> float:
+    value = _speed(line) if axis.path == SPEED else pack(line).value(axis.path)
+    return min(max(value, axis.low), axis.high)
+
+
+class _Side:
+    def __init__(self, view: StabilityView) -> None:
+        self.view = view
+        self.figure = figures.plot("", "", height=430, title="stability chart", x_range=(0, 1), y_range=(0, 1))
+        self.figure.grid.visible = False
+        self.image = ColumnDataSource(data={"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        palette = [*_STABLE, *_UNSTABLE]
+        mapper = LinearColorMapper(palette=palette, low=-GROWTH, high=GROWTH, nan_color="#9a9a9a")
+        drawn = self.figure.image("image", "x", "y", "dw", "dh", source=self.image, color_mapper=mapper)
+        bar = ColorBar(color_mapper=mapper, title="growth per turn [%]", width=14, padding=4)
+        bar.formatter = CustomJSTickFormatter(code="return (100 * tick).toFixed(0)")
+        self.figure.add_layout(bar, "right")
+        self.figure.add_tools(HoverTool(renderers=[drawn], tooltips=[("growth per turn", "@image")]))
+        self.box = BoxAnnotation(line_color=figures.BLUE, line_width=2, fill_alpha=0.0)
+        self.figure.add_layout(self.box)
+        self.names = ColumnDataSource(data={"x0": [], "y0": [], "x1": [], "y1": [], "name": []})
+        lines = self.figure.segment("x0", "y0", "x1", "y1", source=self.names, color=figures.INK, line_dash="dotted")
+        figures.hover(self.figure, [lines], [("", "@name")], line_policy="interp")
+        self.here = ColumnDataSource(data={"x": [], "y": []})
+        self.figure.scatter("x", "y", source=self.here, marker="x", size=14, line_width=3, color=figures.INK)
+        self.figure.on_event(Tap, lambda event: view.clicked(float(event.x), float(event.y)))
+        self.figure.on_event(RangesUpdate, self._zoomed)
+        self.point = Point()
+        self.motion = Curves("turns of the input", "twist [deg]", height=240)
+        self.said = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.extent: tuple[Axis, Axis] | None = None
+        self.panel = pn.Column(
+            pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"),
+            self.said,
+            self.point.panel,
+            self.motion.panel,
+            sizing_mode="stretch_width",
+            margin=0,
+        )
+
+    def show(self, name: str, data: Any) -> None:
+        """What a step gave."""
+        if name in ("coarse", "chart"):
+            self._chart(name, data)
+        elif name == "point":
+            self.point.set(data, unit_of(self.view.session.document.line))
+        elif name == "motion":
+            curves = [(n, data["turns"], np.rad2deg(v)) for n, v in zip(data["names"], data["twist"], strict=True)]
+            title = "twist of the shafts after a start from untwisted shafts"
+            self.motion.set(curves, title=title)
+        else:
+            self._named(data)
+
+    def _chart(self, name: str, data: Any) -> None:
+        line = self.view.session.document.line
+        x, y = self.view.axes(line)
+        self._image(data, x, y)
+        if self.extent != (x, y):
+            self.extent = (x, y)
+            self.figure.x_range.update(start=x.low / x.size, end=x.high / x.size)
+            self.figure.y_range.update(start=y.low / y.size, end=y.high / y.size)
+            self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = x.label, y.label
+        at = self.view.point(line)
+        self.here.data = {"x": [at[0] / x.size], "y": [at[1] / y.size]}
+        self._operating(line, x, y)
+        if name == "chart":
+            self.chart_call = next(s for s in self.view.steps(line) if s.name == "chart")
+        text = "coarse, the full chart follows" if name == "coarse" else data["text"].replace("\n", "<br>")
+        self.said.object = f"<div style='font-size:13px' data-chart='{name}'>{text}</div>"
+
+    def _image(self, data: Any, x: Axis, y: Axis) -> None:
+        step_x, step_y = (float(data[k][1] - data[k][0]) for k in ("x", "y"))
+        self.image.data = {
+            "image": [data["growth"].astype(np.float32)],
+            "x": [(data["x"][0] - step_x / 2) / x.size],
+            "y": [(data["y"][0] - step_y / 2) / y.size],
+            "dw": [(data["x"][-1] - data["x"][0] + step_x) / x.size],
+            "dh": [(data["y"][-1] - data["y"][0] + step_y) / y.size],
+        }
+
+    def _operating(self, line: Driveline, x: Axis, y: Axis) -> None:
+        ends: dict[str, float | None] = {"left": None, "right": None, "bottom": None, "top": None}
+        operation = line.operation
+        for axis, low, high in ((x, "left", "right"), (y, "bottom", "top")):
+            span = operation and {SPEED: operation.speed_range}.get(axis.path)
+            if operation and axis.path.endswith(".angle"):
+                span = operation.angle_range
+            if span:
+                ends[low], ends[high] = span[0] / axis.size, span[1] / axis.size
+        self.box.update(**ends, visible=any(v is not None for v in ends.values()))
+
+    def _named(self, data: Any) -> None:
+        x, y = self.view.axes(self.view.session.document.line)
+        inside = [(s, n) for s, n in zip(data["speed"], data["name"], strict=True) if x.low <= s <= x.high]
+        self.names.data = {
+            "x0": [s / x.size for s, _ in inside],
+            "x1": [s / x.size for s, _ in inside],
+            "y0": [y.low / y.size] * len(inside),
+            "y1": [y.high / y.size] * len(inside),
+            "name": [n for _, n in inside],
+        }
+
+    def _zoomed(self, event: Any) -> None:
+        """More points of the same chart where the picture shows a part of it."""
+        if self.extent is None or not hasattr(self, "chart_call"):
+            return
+        ends = []
+        for axis, low, high in ((self.extent[0], event.x0, event.x1), (self.extent[1], event.y0, event.y1)):
+            a, b = max(low * axis.size, axis.low), min(high * axis.size, axis.high)
+            if not a < b:
+                return
+            ends.append((a, b))
+        self.view.session.beside(self._refine(ends))
+
+    async def _refine(self, ends: list[tuple[float, float]]) -> None:
+        across, up = int(self.view.settings["across"]), int(self.view.settings["up"])
+        zoom = ((*ends[0], across), (*ends[1], up))
+        data = await self.view.session.ask(self.chart_call.call, "chart", "now", zoom=zoom)
+        if self.extent is not None:
+            x, y = self.extent
+            self.view.session.locked(lambda: self._image(data, x, y))

@@ -1,0 +1,132 @@
+"""Numbers that the views show, against the public functions; long computations, their end, two sessions."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from served import Look
+
+import trunnion as tn
+from trunnion.driveline.starter import starter
+
+STABILITY = "?view=stability&stability.across=20&stability.up=16"
+
+
+def line() -> tn.Driveline:
+    return tn.loads(starter("two-shaft"))
+
+
+def value(look: Look, name: str) -> str:
+    return str(look.page.locator(f"td[data-value='{name}']").inner_text())
+
+
+def number(text: str) -> float:
+    return float(text.split("±")[0].split("%")[0])
+
+
+def agrees(look: Look, x: float, y: float) -> None:
+    """What the page shows of the point x rpm, y deg is what ``stability`` gives."""
+    look.page.locator("td[data-value='speed']", has_text=re.compile(rf"^{re.escape(f'{x:.6g}')} rpm$")).wait_for()
+    there = tn.stability(line().replace("HookeJoint 1", angle=f"{y!r} deg"), speed=tn.rpm(x))
+    assert number(value(look, "spectral radius")) == pytest.approx(there.spectral_radius, abs=1e-8)
+    assert value(look, "verdict") == str(there.verdict)
+    shown = sorted(float(v) for v in value(look, "multipliers").split(","))
+    assert shown == pytest.approx(sorted(np.abs(there.multipliers)), abs=1e-8)
+
+
+def test_a_typed_point_shows_its_multipliers(look: Look) -> None:
+    look.at(STABILITY)
+    look.type("Look at HookeJoint 1.angle [deg]", "19.5")
+    look.type("Look at input speed [rpm]", "707")
+    agrees(look, 707.0, 19.5)
+
+
+def test_a_click_in_the_chart_shows_the_multipliers_there(look: Look) -> None:
+    look.at(STABILITY)
+    look.page.locator("[data-chart='chart']").wait_for()
+    chart = look.page.locator(".bk-Figure, .bk-Figure-wrapper, .bk-Canvas").first.bounding_box()
+    before = look.page.url
+    look.page.mouse.click(chart["x"] + 0.4 * chart["width"], chart["y"] + 0.4 * chart["height"])
+    look.page.wait_for_function("url => document.location.href !== url", arg=before)
+    at = dict(re.findall(r"stability\.(at_[xy])=([^&]+)", look.page.url))
+    agrees(look, float(at["at_x"]), float(at["at_y"]))
+
+
+@pytest.mark.parametrize("view", ["Driveline", "Verdict", "Orders", "Stability", "Joints"])
+def test_every_view_computes_and_asks_nobody_outside(look: Look, view: str) -> None:
+    look.at(f"?view={view.lower()}&stability.across=20&stability.up=16")
+    assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
+    assert look.page.get_by_text("Save", exact=True).count() == 1
+    unnamed = look.page.evaluate(UNNAMED)
+    assert unnamed == []
+
+
+UNNAMED = """() => {
+  const found = []
+  const walk = (root) => {
+    for (const node of root.querySelectorAll('*')) {
+      if (node.shadowRoot) walk(node.shadowRoot)
+      if (!node.matches('input, select, button, textarea')) continue
+      const label = (node.labels && node.labels.length) || node.getAttribute('aria-label') || node.title ||
+        node.textContent.trim() || (root.host && root.querySelector('label') )
+      if (!label) found.push(node.outerHTML.slice(0, 200))
+    }
+  }
+  walk(document)
+  return found
+}"""
+"""Controls without a label."""
+
+
+def saved(look: Look, name: str, folder: Path) -> Path:
+    """Follow a link of the list of files."""
+    with look.page.expect_download() as waiting:
+        look.page.locator(f"a[href$='{name}']").click()
+    path = folder / name.rpartition("/")[2]
+    waiting.value.save_as(path)
+    return path
+
+
+def test_exported_python_gives_the_numbers_on_screen(look: Look, tmp_path: Path) -> None:
+    look.at(STABILITY + "&stability.at_x=707.0&stability.at_y=19.5&stability.look=True")
+    program = saved(look, "stability/view.py", tmp_path).read_text(encoding="utf-8")
+    there: dict[str, Any] = {}
+    exec(program, there)
+    assert number(value(look, "spectral radius")) == pytest.approx(there["point"].spectral_radius, abs=1e-9)
+    chart = tn.load_chart(saved(look, "stability/chart.nc", tmp_path))
+    assert (chart.spectral_radius == there["chart"].spectral_radius).all()
+    text = saved(look, "stability/chart.csv", tmp_path).read_text(encoding="utf-8")
+    assert len(text.splitlines()) == 1 + 20 * 16
+    assert saved(look, "stability/chart.png", tmp_path).read_bytes().startswith(b"\x89PNG")
+    assert b"<svg" in saved(look, "stability/chart.svg", tmp_path).read_bytes()
+    assert tn.load(saved(look, "driveline/driveline.toml".replace("driveline/", ""), tmp_path)) == line()
+
+
+def test_a_long_run_is_cancelled_while_another_session_answers(look: Look, browser: Any) -> None:
+    truck = "?view=stability&stability.across=400&stability.up=400"
+    look.page.goto(look.server.address)
+    look.settled()
+    begin = look.page.get_by_label("Begin with")
+    begin.select_option(label=next(o for o in begin.locator("option").all_inner_texts() if o.startswith("truck")))
+    look.page.get_by_role("button", name="Begin", exact=True).click()
+    look.page.get_by_label("name of engine").wait_for()
+    packed = look.page.url.partition("line=")[2]
+    look.page.goto(look.server.address + truck + "&line=" + packed)
+    look.page.locator("[data-chart='coarse']").wait_for()
+    other = browser.new_context().new_page()
+    other.set_default_timeout(180_000)
+    other.goto(look.server.address + "?view=verdict")
+    other.locator("[data-verdict]").wait_for()
+    assert look.page.locator("[data-state=busy]").count() == 1
+    other.context.close()
+    look.page.get_by_role("button", name="Cancel").click()
+    begin_wait = time.monotonic()
+    look.page.get_by_text("cancelled", exact=True).wait_for()
+    print(f"cancelled after {time.monotonic() - begin_wait:.2f} s")
+    look.view("Verdict")
+    look.page.locator("[data-verdict]").wait_for()
