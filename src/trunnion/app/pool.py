@@ -37,11 +37,12 @@ class Worker:
         self.answered: asyncio.Future[Answer] | None = None
         self.tell: Callable[[float], None] = _nobody
         self.used_by: object = None
+        self.ended = False
         threading.Thread(target=self._listen, daemon=True).start()
 
     @property
     def alive(self) -> bool:
-        return self.process.poll() is None
+        return not self.ended and self.process.poll() is None
 
     def begin(self, job: Job, tell: Callable[[float], None]) -> asyncio.Future[Answer]:
         """Start a job; the future holds its last answer."""
@@ -62,6 +63,7 @@ class Worker:
 
     def end(self) -> None:
         """End the process, whatever it does."""
+        self.ended = True
         self.process.kill()
         with suppress(OSError):
             assert self.process.stdin
@@ -102,7 +104,7 @@ class Pool:
         self.most = most or max(3, min(6, os.cpu_count() or 1))
         self.idle: list[Worker] = []
         self.busy: set[Worker] = set()
-        self.freed = asyncio.Condition()
+        self.waiting: list[asyncio.Future[None]] = []
         self.closed = False
 
     def start(self, jobs: tuple[Job, ...]) -> None:
@@ -133,7 +135,7 @@ class Pool:
             _LAST_TASKS.add(task)
             task.add_done_callback(_LAST_TASKS.discard)
             raise
-        await self._give_back(worker)
+        self._give_back(worker)
         if answer.kind == "refused":
             raise InputError(answer.value)
         if answer.kind != "done":
@@ -141,28 +143,32 @@ class Pool:
         return answer
 
     async def _borrow(self, owner: object) -> Worker:
-        async with self.freed:
-            while True:
-                self.idle = [w for w in self.idle if w.alive]
-                if self.idle:
-                    own = [w for w in self.idle if w.used_by is owner]
-                    worker = (own or self.idle)[-1]
-                    self.idle.remove(worker)
-                    break
-                if len(self.busy) < self.most:
-                    worker = Worker(self.loop, self.threads)
-                    break
-                await self.freed.wait()
-            worker.used_by = owner
-            self.busy.add(worker)
-            return worker
+        while True:
+            self.idle = [w for w in self.idle if w.alive]
+            if self.idle:
+                own = [w for w in self.idle if w.used_by is owner]
+                worker = (own or self.idle)[-1]
+                self.idle.remove(worker)
+                break
+            if len(self.busy) < self.most:
+                worker = Worker(self.loop, self.threads)
+                break
+            freed = self.loop.create_future()
+            self.waiting.append(freed)
+            await freed
+        worker.used_by = owner
+        self.busy.add(worker)
+        return worker
 
-    async def _give_back(self, worker: Worker) -> None:
-        async with self.freed:
-            self.busy.discard(worker)
-            if worker.alive:
-                self.idle.append(worker)
-            self.freed.notify()
+    def _give_back(self, worker: Worker) -> None:
+        """Without waiting for anything, so that no cancellation can lose a worker."""
+        self.busy.discard(worker)
+        if worker.alive:
+            self.idle.append(worker)
+        waiting, self.waiting = self.waiting, []
+        for freed in waiting:
+            if not freed.done():
+                freed.set_result(None)
 
     async def _dismiss(self, worker: Worker, grace: float) -> None:
         worker.ask_to_stop()
@@ -172,7 +178,7 @@ class Pool:
             worker.end()
             if not self.closed and len(self.idle) < 2:
                 self.idle.append(Worker(self.loop, self.threads))
-        await self._give_back(worker)
+        self._give_back(worker)
 
     def close(self) -> None:
         """End all of them."""

@@ -1,0 +1,84 @@
+"""Worker processes: answers, refusals, ends, and that none is lost."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+from trunnion.app.calls import LINE, Call
+from trunnion.app.jobs import Job
+from trunnion.app.pool import SUPERSEDED, Pool
+from trunnion.driveline.starter import starter
+from trunnion.errors import ComputationError, InputError
+
+MODES = Job(starter("two-shaft"), Call("tn.natural_frequencies", (LINE,)), "text")
+LONG = Job(starter("two-shaft"), Call("tn.simulate", (LINE,), {"turns": 1e6, "dense": False}), "nothing")
+WRONG = Job(starter("two-shaft"), Call("tn.stability", (LINE,), {"speed": -1.0}), "nothing")
+
+
+def on_pool(work: Callable[[Pool], Awaitable[None]], most: int = 2) -> None:
+    """Do ``work`` with a pool, and end its workers."""
+
+    async def whole() -> None:
+        pool = Pool(asyncio.get_running_loop(), 1, most)
+        try:
+            await asyncio.wait_for(work(pool), 240)
+        finally:
+            pool.close()
+
+    asyncio.run(whole())
+
+
+def test_answers_come_back_and_refusals_are_raised() -> None:
+    async def work(pool: Pool) -> None:
+        assert "2 natural frequencies" in (await pool.run(MODES, self_)).value
+        with pytest.raises(InputError):
+            await pool.run(WRONG, self_)
+        assert len(pool.idle) == 1
+        assert not pool.busy
+
+    self_ = object()
+    on_pool(work)
+
+
+@pytest.mark.parametrize("message", [(), (SUPERSEDED,)])
+def test_a_cancelled_job_ends_and_the_next_one_is_answered(message: tuple[str, ...]) -> None:
+    async def work(pool: Pool) -> None:
+        owner = object()
+        await pool.run(MODES, owner)
+        for _ in range(2):
+            task = asyncio.ensure_future(pool.run(LONG, owner))
+            await asyncio.sleep(0.2)
+            task.cancel(*message)
+            with pytest.raises(asyncio.CancelledError):
+                await task
+            assert (await pool.run(MODES, owner)).kind == "done"
+        while pool.busy:
+            await asyncio.sleep(0.05)
+
+    on_pool(work)
+
+
+def test_who_waits_for_a_worker_gets_one() -> None:
+    async def work(pool: Pool) -> None:
+        answers = await asyncio.gather(*(pool.run(MODES, object()) for _ in range(6)))
+        assert {a.kind for a in answers} == {"done"}
+        assert len(pool.idle) == 1
+
+    on_pool(work, most=1)
+
+
+def test_a_worker_that_dies_is_said_and_replaced() -> None:
+    async def work(pool: Pool) -> None:
+        owner = object()
+        await pool.run(MODES, owner)
+        task = asyncio.ensure_future(pool.run(LONG, owner))
+        await asyncio.sleep(0.2)
+        next(iter(pool.busy)).process.kill()
+        with pytest.raises(ComputationError, match="ended"):
+            await task
+        assert (await pool.run(MODES, owner)).kind == "done"
+
+    on_pool(work)
