@@ -120,8 +120,8 @@ class StabilityView(View):
             return Axis(path, low * size, high * size, unit, size)
         if path.endswith(".angle"):
             return Axis(path, *angle_range(line), "deg", DEGREE)
-        ends = sorted((now / 4, now * 4)) if now else (0.0, size)
-        return Axis(path, float(ends[0]), float(ends[1]), unit, size)
+        first, last = (now / 4, now * 4) if now else (0.0, size)
+        return Axis(path, min(first, last), max(first, last), unit, size)
 
     def axes(self, line: Driveline) -> tuple[Axis, Axis]:
         """Both."""
