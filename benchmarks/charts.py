@@ -183,7 +183,8 @@ def kernel_rate(line: tn.Driveline, speed: tuple[float, float], angle: tuple[flo
         if label.startswith("HookeJoint") and label.endswith(".angle"):
             table[:, c] = np.repeat(np.linspace(*angle, side), side)
     topology = assembly.topology
-    program, numbers = chain_program(topology), chain_lanes(topology, assembly.coefficients(table))
+    coefficients = assembly.coefficients(table)
+    program, numbers = chain_program(topology, coefficients), chain_lanes(topology, coefficients)
     period = 2 * np.pi * float(require_period(line, topology))
     begin = symmetry_phase(program, numbers, period)
     window = Window(0.0 if begin is None else begin, period, begin is not None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
 import trunnion as tn
@@ -50,6 +51,59 @@ def test_json_against_the_function(run, here):
     assert not (here / "trunnion-out").exists()
 
 
+FORKED = """
+format = 1
+[[element]]
+type = "ConstantSpeed"
+[[element]]
+type = "Shaft"
+stiffness = "1 MN*m/rad"
+name = "trunk"
+[[element]]
+type = "Disk"
+inertia = 0.1
+name = "hub"
+[[element]]
+type = "HookeJoint"
+angle = "20 deg"
+[[element]]
+type = "Shaft"
+stiffness = "1 MN*m/rad"
+name = "left"
+[[element]]
+type = "Disk"
+inertia = 0.1
+load_torque = 40
+name = "left wheel"
+[[element]]
+type = "HookeJoint"
+angle = "7 deg"
+after = "hub"
+[[element]]
+type = "Shaft"
+stiffness = "1 MN*m/rad"
+name = "right"
+[[element]]
+type = "Disk"
+inertia = 0.1
+name = "right wheel"
+"""
+
+
+@pytest.mark.parametrize(("branch", "degrees"), [("left", 20.0), ("right wheel", 7.0)])
+def test_the_output_is_the_end_of_the_branch_asked_for(run, here, branch, degrees):
+    (here / "forked.toml").write_text(FORKED, encoding="utf-8")
+    call = ("kinetostatics", "forked.toml", "--branch", branch, "--output-torque", "30 N*m", "-o", "turn.nc", "--json")
+    result = run(*call)
+    assert result.exit_code == 0, result.stderr
+    data = json.loads(result.stdout)
+    beta = tn.deg(degrees)
+    assert data["output"] == f"{branch.split()[0]} wheel"
+    assert data["irregularity"] == pytest.approx(float(np.tan(beta) * np.sin(beta)), rel=1e-4)
+    expected = tn.kinetostatics(tn.load("forked.toml"), 1.0, branch=branch, output_torque=30.0)
+    assert data["drive_torque"]["largest"] == pytest.approx(float(expected.drive_torque.max()), rel=1e-12)
+
+
 def test_phasing(run, here):
     steering = tn.Driveline(
         [
@@ -82,6 +136,7 @@ def test_phasing(run, here):
         (("-o", "turn.doc"), "--output", ".png"),
         (("--phase",), "driveline", "Shaft between two Hooke's joints"),
         (("--turns", "0"), "--turns", "--help"),
+        (("--branch", "sheel"), "branch", "did you mean"),
     ],
 )
 def test_refusals(run, options, place, remedy):

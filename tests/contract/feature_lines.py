@@ -129,6 +129,11 @@ def branched(line: tn.Driveline) -> tn.Driveline:
     )
 
 
+def rippled() -> Change:
+    ripple = [{"order": 1, "amplitude": 0.01}, {"order": 6, "amplitude": 2e-3, "phase": 0.3}]
+    return jointed(tn.RzeppaJoint(angle=0.3, ripple=ripple, name="extra"))
+
+
 END = (tn.Shaft(stiffness=1e4, damping=5, name="end"), tn.ConstantSpeed(name="far"))
 STRAIGHT_JOINT = jointed(tn.IdealJoint(name="extra"))
 CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
@@ -151,6 +156,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     ),
     "ideal joint": (STRAIGHT_JOINT, jointed(tn.IdealJoint(angle=0.3, name="extra"))),
     "tripod joint": (STRAIGHT_JOINT, jointed(tn.TripodJoint(angle=0.3, radius=0.05, length=0.5, name="extra"))),
+    "ripple of a Rzeppa joint": (STRAIGHT_JOINT, rippled()),
     "double Cardan joint": (STRAIGHT_JOINT, CENTRED),
     "double Cardan joint off centre": (
         CENTRED, jointed(tn.DoubleCardanJoint(angle=0.3, distance_ratio=1.3, name="extra"))

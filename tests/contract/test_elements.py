@@ -21,6 +21,7 @@ from trunnion.driveline import (
     Operation,
     PiecewiseShaft,
     Ratio,
+    RzeppaJoint,
     Shaft,
     deg,
     rpm,
@@ -39,6 +40,12 @@ ONE_OF_EACH = [
     Disk(outer_diameter=0.3, thickness=0.02, density=7850, after="drive"),
     HookeJoint(angle="12 deg", plane="15 deg"),
     IdealJoint(),
+    RzeppaJoint(
+        angle="8 deg",
+        plane=0.1,
+        reference_angle="10 deg",
+        ripple=[{"order": 6, "amplitude": "0.01 deg", "phase": "30 deg", "growth": 2}],
+    ),
     Ratio(ratio=-4.1),
     Ratio(teeth_in=10, teeth_out=41),
 ]

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from oracles.comparisons import set_distance
 from oracles.package_kernels import chain_kernel
-from oracles.random_lines import random_geared_line, random_line
+from oracles.random_lines import random_geared_line, random_line, random_uneven_line
 from oracles.trees import Tree
+from oracles.written_out import nonlinear_line
 
 import trunnion as tn
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import line_matrices
-from trunnion.equations.nonlinear import nonlinear_line
 
 SPEED = 37.0
 TIMES = (0.0, 0.013, 0.071, 0.2)
@@ -36,7 +36,7 @@ def base(assembly: Assembly, time: float, *, twisted: bool) -> tuple[np.ndarray,
 
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.parametrize("twisted", [False, True])
-@pytest.mark.parametrize("made", [random_line, random_geared_line])
+@pytest.mark.parametrize("made", [random_line, random_geared_line, random_uneven_line])
 def test_matrices_are_exact_derivatives(seed: int, twisted: bool, made: Callable[[int], tn.Driveline]) -> None:
     """M, C, K and the forcing against the complex-step derivatives of the virtual work.
 
@@ -64,9 +64,10 @@ def test_matrices_are_exact_derivatives(seed: int, twisted: bool, made: Callable
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_nonlinear_equations_do_no_virtual_work(seed: int) -> None:
+@pytest.mark.parametrize("made", [random_line, random_uneven_line])
+def test_nonlinear_equations_do_no_virtual_work(seed: int, made: Callable[[int], tn.Driveline]) -> None:
     """``acceleration`` at random states, far from the base, leaves no residual."""
-    line, rng = random_line(seed), np.random.default_rng(seed + 1000)
+    line, rng = made(seed), np.random.default_rng(seed + 1000)
     assembly, tree = assemble(line), Tree(line, SPEED)
     equations = nonlinear_line(assembly, assembly.table(1, SPEED))
     for time in TIMES:
@@ -120,9 +121,10 @@ def test_static_torque_balances_mean_power(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_chain_kernel_integrates_the_same_matrices(seed: int) -> None:
+@pytest.mark.parametrize("made", [random_line, random_uneven_line])
+def test_chain_kernel_integrates_the_same_matrices(seed: int, made: Callable[..., tn.Driveline]) -> None:
     """The compiled kernel and the dense integrator on the same trees, loads and angle-dependent inertia."""
-    line = random_line(seed, steepest=0.5)
+    line = made(seed, steepest=0.5)
     if assemble(line).topology.period_turns() > 8:
         line = _without_odd_teeth(line)
     matrix, _, trace = chain_kernel(line, SPEED)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from jointed_lines import three_shafts, two_shafts
-from oracles.random_lines import random_line
+from oracles.random_lines import random_line, random_uneven_line
+from oracles.written_out import nonlinear_line
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
-from trunnion.equations.nonlinear import nonlinear_line
 
 SPEED = 37.0
 
@@ -22,8 +23,7 @@ def straight_angles(line: LineSystem) -> np.ndarray:
     """Angles of the unknowns at t = 0 with straight joints: what deviations are counted from."""
     topo = line.assembly.topology
     co = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False)
-    co.angle[:] = 0.0
-    motion = base_motion(topo, co, np.zeros(1), ratio_values(topo))
+    motion = base_motion(topo, co.straight, np.zeros(1), ratio_values(topo))
     return motion.angle[0, 0, [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]]
 
 
@@ -33,9 +33,10 @@ def mean_rates(line: LineSystem) -> np.ndarray:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_compiled_equations_are_the_written_ones(seed: int) -> None:
-    """Branches, ratios, several joints in a group, tubes, loads: the same accelerations to rounding."""
-    assembly = assemble(random_line(seed))
+@pytest.mark.parametrize("made", [random_line, random_uneven_line])
+def test_compiled_equations_are_the_written_ones(seed: int, made: Callable[[int], tn.Driveline]) -> None:
+    """Branches, ratios, joints of all kinds, several in a group, tubes, loads: the same accelerations to rounding."""
+    assembly = assemble(made(seed))
     line = line_system(assembly, SPEED)
     slow = nonlinear_line(assembly, assembly.table(1, SPEED))
     rng = np.random.default_rng(seed)
@@ -285,8 +286,3 @@ def test_wrong_excitations_are_refused(value: Any, words: str) -> None:
     with pytest.raises(tn.InputError, match=words) as refusal:
         tn.Disk(inertia=1.0, excitation=value)
     assert "\n" not in str(refusal.value) and str(refusal.value).startswith("Disk.excitation")
-
-
-def test_linear_analyses_refuse_what_they_do_not_have() -> None:
-    with pytest.raises(tn.InputError, match="tripod joint.*tn.periodic_response"):
-        tn.stability(loaded_lines()["tripods"].replace("Disk 4", viscous_load=None, quadratic_load=None), SPEED)

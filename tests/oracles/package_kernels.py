@@ -25,7 +25,7 @@ def chain_kernel(
     topo = assembly.topology
     coefficients = assembly.coefficients(table)
     by_speed = loaded_by_speed(topo, coefficients)
-    program, lanes = chain_program(topo, by_speed), chain_lanes(topo, coefficients, by_speed)
+    program, lanes = chain_program(topo, coefficients, by_speed), chain_lanes(topo, coefficients, by_speed)
     period = 2 * np.pi * float(require_period(line, topo))
     begin = symmetry_phase(program, lanes, period) if halved else None
     window = Window(0.0 if begin is None else begin, period, begin is not None)

@@ -9,8 +9,35 @@ import numpy as np
 import trunnion as tn
 
 
-def random_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
-    """Shafts, tubes with density, several joints and ratios in one group, disks behind joints, a branch."""
+def random_joint(rng: np.random.Generator, steepest: float) -> tn.driveline.elements.Joint:
+    """Any kind that does not pass rotation unchanged; tripods and ripple more uneven than any that is built."""
+    bend = {"angle": float(rng.uniform(0.1, steepest)), "plane": float(rng.uniform(-3, 3))}
+    kind = int(rng.integers(4))
+    if kind == 0:
+        side = str(rng.choice(["input", "output"]))
+        return tn.TripodJoint(**bend, radius=0.05, length=float(rng.uniform(0.1, 0.5)), spider=side)
+    if kind == 1:
+        ripple = [
+            {"order": m, "amplitude": float(rng.uniform(0, 0.3)) / m**2, "phase": float(rng.uniform(-3, 3))}
+            for m in (2, 6)
+        ]
+        bend["reference_angle"] = float(rng.uniform(bend["angle"], 1.2))
+        return tn.RzeppaJoint(**bend, ripple=[h | {"growth": int(rng.integers(1, 4))} for h in ripple])
+    if kind == 2:
+        return tn.DoubleCardanJoint(**bend, distance_ratio=float(rng.uniform(0.4, 2.5)))
+    return tn.HookeJoint(**bend)
+
+
+def random_uneven_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
+    """As ``random_line``, with joints of all kinds."""
+    return random_line(seed, steepest, kinds=True)
+
+
+def random_line(seed: int, steepest: float = 1.1, *, kinds: bool = False) -> tn.Driveline:
+    """Shafts, tubes with density, several joints and ratios in one group, disks behind joints, a branch.
+
+    The joints are Hooke's, or of all ``kinds``.
+    """
     rng = np.random.default_rng(seed)
     elements: list[Any] = [tn.ConstantSpeed(name="drive")]
     disks: list[str] = []
@@ -32,7 +59,9 @@ def random_line(seed: int, steepest: float = 1.1) -> tn.Driveline:
             return [first, tn.Shaft(stiffness=2 * stiffness, fork_offset=float(rng.uniform(-1, 1)))]
         return [tn.Shaft(stiffness=stiffness, damping=float(rng.uniform(0, 5)), **turned)]
 
-    def hooke() -> tn.HookeJoint:
+    def hooke() -> Any:
+        if kinds:
+            return random_joint(rng, steepest)
         return tn.HookeJoint(angle=float(rng.uniform(0.1, steepest)), plane=float(rng.uniform(-3, 3)))
 
     def group() -> list[Any]:

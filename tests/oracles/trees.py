@@ -18,6 +18,42 @@ from oracles.chains import QUARTER, Numpy, joint_law
 Array = NDArray[np.float64]
 
 
+def _hooke(joint: Any, chi: Any) -> tuple[Any, Any, Any]:
+    psi, eta, slope, _ = joint_law(Numpy, chi, np.cos(joint.angle))
+    return psi + QUARTER, eta, slope
+
+
+def _two_crosses(joint: Any, chi: Any) -> tuple[Any, Any, Any]:
+    """One cross after the other; the centres' distances from the point where the axes meet give their angles."""
+    first = np.arctan(np.sin(joint.angle) / (joint.distance_ratio + np.cos(joint.angle)))
+    psi, eta, slope, _ = joint_law(Numpy, chi, np.cos(first))
+    last, ratio, more, _ = joint_law(Numpy, psi + QUARTER, np.cos(joint.angle - first))
+    return last + QUARTER - np.pi, ratio * eta, more * eta**2 + ratio * slope
+
+
+def _tripod(joint: Any, chi: Any) -> tuple[Any, Any, Any]:
+    """The output runs ahead by A sin 3χ, A = R/2L tan β tan²(β/2); a driving spider by as much behind."""
+    a = joint.radius / (2 * joint.length) * np.tan(joint.angle) * (1 - np.cos(joint.angle)) / (1 + np.cos(joint.angle))
+    a = -a if joint.spider == "input" else a
+    return chi + a * np.sin(3 * chi), 1 + 3 * a * np.cos(3 * chi), -9 * a * np.sin(3 * chi)
+
+
+def _rzeppa(joint: Any, chi: Any) -> tuple[Any, Any, Any]:
+    psi, eta, slope = chi, 1.0, 0.0
+    for h in joint.ripple:
+        a, m = h.amplitude, h.order
+        if joint.reference_angle is not None:
+            a = a * (np.tan(joint.angle) / np.tan(joint.reference_angle)) ** h.growth
+        psi = psi + a * np.sin(m * chi + h.phase)
+        eta, slope = eta + m * a * np.cos(m * chi + h.phase), slope - m * m * a * np.sin(m * chi + h.phase)
+    return psi, eta, slope
+
+
+LAWS = {
+    "HookeJoint": _hooke, "TripodJoint": _tripod, "RzeppaJoint": _rzeppa, "DoubleCardanJoint": _two_crosses,
+}  # fmt: skip
+
+
 @dataclass
 class _Point:
     """A point: owner unknown (−1: prescribed), angle a, r = ∂a/∂owner, ∂r/∂owner, mean speed ratio."""
@@ -87,10 +123,10 @@ class Tree:
                 far = _Point(own, angle[own], 1.0, 0.0, before.mean)
                 springs.append((near, far, far.angle - near.angle - offset, 1 / soft, lossy / soft**2))
                 points.append(far)
-            elif element.kind == "HookeJoint":
-                psi, eta, slope, _ = joint_law(Numpy, before.angle - element.plane, np.cos(element.angle))
+            elif element.kind in LAWS:
+                psi, eta, slope = LAWS[element.kind](element, before.angle - element.plane)
                 r1 = eta * before.r1 + slope * before.r**2
-                points.append(_Point(before.owner, psi + QUARTER, eta * before.r, r1, before.mean))
+                points.append(_Point(before.owner, psi, eta * before.r, r1, before.mean))
             elif element.kind == "Ratio":
                 over = 1 / element.speed_ratio
                 mean = before.mean * over

@@ -76,10 +76,7 @@ def _row(
 
 _TORSION = {"bending stiffness": "torsion does not bend the tubes"}
 _EVEN = {"ideal joint": "passes rotation unchanged", "double Cardan joint": "centred, it passes rotation unchanged"}
-_NO_LAW = {
-    "tripod joint": "the linear equations have no tripod",
-    "double Cardan joint off centre": "the equations have no joint off centre",
-}
+_UNEVEN = ("Hooke's joint", "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre")
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -112,7 +109,7 @@ _BASE = {
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
     **_SERIES,
-    "Hooke's joint": (_ALIGNED, "joint angles zero"),
+    **dict.fromkeys(_UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
     "viscous load": "damping ratios are those of the shafts alone",
     "quadratic load": "damping ratios are those of the shafts alone",
@@ -129,7 +126,6 @@ _MODES_INERT = {
 }
 _UNDAMPED = "the names stand at the frequencies of the undamped line"
 _ONE_DRIVE = {
-    "double Cardan joint off centre": "the equations have no joint off centre",
     "prescribed far end": "the nonlinear equations have one prescribed speed",
 }
 _DRIVEN = {
@@ -145,7 +141,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
-        ("Hooke's joint", "joint plane", "tripod joint", "mesh-stiffness variation", "quadratic load"),
+        (*_UNEVEN, "joint plane", "mesh-stiffness variation", "quadratic load"),
         "the stages are then not linear with constant coefficients",
     ),
 }
@@ -167,16 +163,18 @@ _STEADY = "torques are those of steady running; ask periodic_response() or simul
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 TABLE: dict[str, Row] = {
-    "natural_frequencies": _row(refused=_NO_LAW, said=_MODES_SAID, inert=_MODES_INERT),
+    "natural_frequencies": _row(said=_MODES_SAID, inert=_MODES_INERT),
     "resonance_speeds": _row(
-        refused=_NO_LAW,
         said={
             "viscous load": "resonance speeds are those of the line without it",
             "quadratic load": "resonance speeds are those of the line without it",
         },
         inert={
             **_MODES_INERT,
-            "Hooke's joint": "the speeds are those at which a bent joint of any angle can resonate",
+            **dict.fromkeys(
+                ("Hooke's joint", "double Cardan joint off centre"),
+                "the speeds are those at which a bent joint of any angle can resonate",
+            ),
             **dict.fromkeys(
                 (
                     "damping",
@@ -190,26 +188,25 @@ TABLE: dict[str, Row] = {
             ),
         },
     ),
-    "stability": _row(refused={**_NO_LAW, **_FAR_END}, said=_BY_PLACE, inert=_PASSIVE),
+    "stability": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "stability_chart": _row(
-        refused={**_NO_LAW, **_BASE},
+        refused=_BASE,
         said=_SERIES,
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     "stable_limit": _row(
-        refused={**_NO_LAW, **_BASE},
+        refused=_BASE,
         said=_SERIES,
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
-    "speed_sweep": _row(refused={**_NO_LAW, **_FAR_END}, said=_BY_PLACE, inert=_PASSIVE),
+    "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
-        refused={**_NO_LAW, **_BASE},
+        refused=_BASE,
         said=_BY_PLACE,
         inert=_PASSIVE,
     ),
     "bending_speeds": _row(
-        refused=_NO_LAW,
-        inert={f.key: _TUBE for f in FEATURES if f.key not in (*_NO_LAW, *_TUBES)},
+        inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
     ),
     "kinetostatics": _row(
         refused={"prescribed far end": "the output follows from the input"},

@@ -293,6 +293,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "HookeJoint": {"angle": "12 deg"},
     "IdealJoint": {"angle": "12 deg"},
     "TripodJoint": {"angle": "8 deg", "radius": "30 mm", "length": "0.5 m"},
+    "RzeppaJoint": {"angle": "8 deg"},
     "DoubleCardanJoint": {"angle": "20 deg"},
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
 }

@@ -39,8 +39,12 @@ def kinetostatics(
     elastic: Annotated[bool, typer.Option("--elastic", help="Let the shafts twist under their torque.")] = False,
     inertia: Annotated[bool, typer.Option("--inertia", help="Count the inertia torques of the rigid line.")] = False,
     torque: Annotated[
-        str, typer.Option("--output-torque", help='At the end of the line, beside its loads: "150 N*m".')
+        str, typer.Option("--output-torque", help='At the end of the line or branch, beside its loads: "150 N*m".')
     ] = "0",
+    branch: Annotated[
+        str | None,
+        typer.Option("--branch", metavar="ELEMENT", help="The output is the end of the branch with this element."),
+    ] = None,
     friction: Annotated[
         str | None,
         typer.Option("--friction", metavar="MU:PIN:ARM", help="Of the crosses: 0.005:12mm:40mm (pin and arm radius)."),
@@ -90,6 +94,7 @@ def kinetostatics(
     result = compute(
         line,
         at,
+        branch=branch,
         rigid=not elastic,
         inertia=inertia,
         output_torque=_quantity(torque, TORQUE, "--output-torque"),
@@ -100,7 +105,7 @@ def kinetostatics(
         points=points,
     )
     limits = check_limits(result, irregularity=irregularity)
-    phasing = phase_forks(line, pitch) if phase or pitch else None
+    phasing = phase_forks(line, pitch, branch=branch) if phase or pitch else None
     written = [_write(result, path, unit) for path in to] if to else _files(result, file_stem(file), unit)
     if as_json:
         content = kinetostatics_json(result) | {

@@ -250,7 +250,7 @@ def _range(line: Driveline, first: float | None, last: float | None) -> tuple[fl
 
     if first is not None and last is not None:
         return first, last
-    low, high = speed_range(assemble(line, tripods=True))
+    low, high = speed_range(assemble(line))
     return first or low, last or high
 
 

@@ -262,7 +262,7 @@ def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, h
         return first, last
     usual = 0.3, 1.3
     if isinstance(subject, Driveline):
-        usual = speed_range(assemble(subject, tripods=True))
+        usual = speed_range(assemble(subject))
     elif isinstance(subject, PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
         usual = 0.5 * subject.frequency, 1.5 * subject.frequency
     return usual[0] if first is None else first, usual[1] if last is None else last

@@ -3,6 +3,7 @@
 Importing this package loads pydantic and nothing heavier; pint is loaded when the first unit is read.
 """
 
+from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import (
     ConstantSpeed,
@@ -45,6 +46,8 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "TransmissionError",
+    "Ripple",
+    "RzeppaJoint",
     "TripodJoint",
     "deg",
     "dump",

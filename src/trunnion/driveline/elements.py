@@ -9,10 +9,13 @@ from it (a tube's stiffness, a tooth ratio) is a property.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Literal, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import (
     BaseModel,
     BeforeValidator,
@@ -43,6 +46,8 @@ from trunnion.driveline.quantities import (
 )
 from trunnion.driveline.refusals import refuse
 from trunnion.errors import InputError, InputRemark
+from trunnion.laws import double_cardan, hooke, tripod
+from trunnion.laws.joint import JointLaw
 
 LONGEST_NAME = 80
 LARGE_ANGLE = 45 * DEGREE
@@ -233,8 +238,25 @@ class Disk(Element):
         return disk_inertia(self.outer_diameter, self.inner_diameter, self.thickness, self.density)
 
 
-class _Joint(Element):
-    """What all kinds of joint share: a bend angle below 90°."""
+Numbers = Callable[[str], NDArray[np.float64]]
+"""The values of an element's number by its key, one or many, as they broadcast against the angle of a law."""
+
+
+class Joint(Element):
+    """What all kinds of joint share: a bend angle below 90°, and a law of how they pass rotation on.
+
+    A kind of joint that does not pass rotation unchanged has ``orders`` and a ``law``; all equations follow from them.
+    """
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Orders of its unevenness in cycles per turn of its own shaft, multiples left out; empty where there is none
+        at any angle."""
+        return ()
+
+    def law(self, number: Numbers) -> JointLaw:
+        """How it passes rotation on, ``number(key)`` being the values of its numbers; asked for only with orders."""
+        raise NotImplementedError(f"{self.kind} has no orders and so no law")
 
     @field_validator("angle", check_fields=False)
     @classmethod
@@ -254,7 +276,7 @@ class _Joint(Element):
             )
 
 
-class HookeJoint(_Joint):
+class HookeJoint(Joint):
     """A Hooke's (Cardan, universal) joint: a cross between two forks.
 
     Parameters
@@ -268,8 +290,17 @@ class HookeJoint(_Joint):
     angle: Angle = Field(description="bend angle between the two shafts")
     plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
 
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Twice a turn."""
+        return (2,)
 
-class IdealJoint(_Joint):
+    def law(self, number: Numbers) -> JointLaw:
+        """That of one cross."""
+        return hooke.law(number("angle"))
+
+
+class IdealJoint(Joint):
     """A constant-velocity joint: passes rotation unchanged.
 
     Parameters
@@ -282,7 +313,7 @@ class IdealJoint(_Joint):
     plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
 
 
-class TripodJoint(_Joint):
+class TripodJoint(Joint):
     """A tripod joint: three trunnions of one shaft in three axial tracks of the other.
 
     Parameters
@@ -316,8 +347,18 @@ class TripodJoint(_Joint):
         positive(self, "radius", "length")
         return self
 
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Three times a turn."""
+        return (3,)
 
-class DoubleCardanJoint(_Joint):
+    def law(self, number: Numbers) -> JointLaw:
+        """ψ = χ ± A sin 3χ, minus where the spider drives."""
+        found = tripod.law(number("angle"), number("radius") / number("length"))
+        return found if self.spider == "output" else replace(found, amplitude=tuple(-a for a in found.amplitude))
+
+
+class DoubleCardanJoint(Joint):
     """Two crosses on a common centre yoke.
 
     Parameters
@@ -343,6 +384,15 @@ class DoubleCardanJoint(_Joint):
     def _consistent(self) -> Self:
         positive(self, "distance_ratio", "yoke_length")
         return self
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Twice a turn without centring; a centred one passes rotation unchanged."""
+        return (2,) if self.distance_ratio is not None else ()
+
+    def law(self, number: Numbers) -> JointLaw:
+        """That of two unequally bent crosses without inertia between them."""
+        return double_cardan.law(number("angle"), number("distance_ratio"))
 
 
 MOST_TEETH = 100_000

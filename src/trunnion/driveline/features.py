@@ -105,11 +105,21 @@ FEATURES = (
     Feature("Hooke's joint", ("HookeJoint.angle",)),
     Feature("fork offset", ("Shaft.fork_offset", "Coupling.fork_offset", "PiecewiseShaft.fork_offset")),
     Feature(
-        "joint plane", ("HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "DoubleCardanJoint.plane")
+        "joint plane",
+        (
+            "HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "RzeppaJoint.plane", "DoubleCardanJoint.plane",
+        ),
     ),
     Feature("ideal joint", ("IdealJoint.angle",)),
     Feature(
         "tripod joint", ("TripodJoint.angle", "TripodJoint.radius", "TripodJoint.length", "TripodJoint.spider")
+    ),
+    Feature(
+        "ripple of a Rzeppa joint",
+        (
+            "RzeppaJoint.angle", "RzeppaJoint.ripple", "RzeppaJoint.reference_angle", "Ripple.amplitude",
+            "Ripple.order", "Ripple.phase", "Ripple.growth",
+        ),
     ),
     Feature("double Cardan joint", ("DoubleCardanJoint.angle", "DoubleCardanJoint.yoke_length")),
     Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",), _off_centre),

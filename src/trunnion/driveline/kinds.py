@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.elements import (
     ConstantSpeed,
     Disk,
@@ -27,6 +28,7 @@ KINDS: dict[str, type[Element]] = {
         HookeJoint,
         IdealJoint,
         TripodJoint,
+        RzeppaJoint,
         DoubleCardanJoint,
         Ratio,
         GearPair,

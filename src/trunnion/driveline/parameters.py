@@ -51,6 +51,7 @@ UNITS = {
     "drive_share": "1",
     "angle": "rad",
     "plane": "rad",
+    "reference_angle": "rad",
     "radius": "m",
     "distance_ratio": "1",
     "yoke_length": "m",
@@ -238,6 +239,7 @@ _HARMONICS = {
     },
     "transmission_error": {"amplitude": "m", "phase": "rad"},
     "stiffness_variation": {"share": "1", "phase": "rad"},
+    "ripple": {"amplitude": "rad", "phase": "rad"},
 }
 """Numbers of each harmonic of a list, and their units."""
 _LISTS = {"breakpoints": ("breakpoint", "rad"), "stiffnesses": ("stiffness", "N*m/rad")}

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -108,6 +109,7 @@ def json_schema() -> dict[str, Any]:
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
+            "Ripple": _model(Ripple),
         },
     }
 

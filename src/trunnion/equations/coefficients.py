@@ -6,14 +6,14 @@ evaluates a whole row of points at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import DoubleCardanJoint, HookeJoint, IdealJoint, Ratio, TripodJoint
+from trunnion.driveline.elements import Joint, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.parameters import PackedLine, pack
@@ -22,6 +22,7 @@ from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Mesh, Topology, topology
 from trunnion.errors import InputError
+from trunnion.laws.joint import JointLaw
 
 Array = NDArray[np.float64]
 
@@ -48,15 +49,15 @@ class MeshWave:
 class LineCoefficients:
     """What the equations of a line need, one row per case (axes: case, then as named).
 
-    speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad]
-    per compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
+    speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad] per
+    compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
     station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
-    drive_share carries included in ``load``; not_carried [N m] per station: its mean where the line is taken untwisted,
-    a base state in which no torque acts (0 otherwise); angle [rad] per joint; ``shift`` [rad] per station: what a shaft
-    adds to the angle at its far end (fork offset and static twist), and what a joint subtracts from its input angle to
-    measure it from its own plane. ``loss`` [N m/rad] per compliance is ηk where a loss factor holds at all frequencies:
-    the stiffness is then k + i·loss·sgn(frequency). ``waves``: meshes
-    whose stiffness varies about the one given here.
+    drive_share carries included in ``load``; not_carried [N m] per station: its mean where the line is taken
+    untwisted, a base state in which no torque acts (0 otherwise); ``joints``: the law of each joint, its numbers
+    (case, 1); ``shift`` [rad] per station: what a shaft adds to the angle at its far end (fork offset and static
+    twist), and what a joint subtracts from its input angle to measure it from its own plane. ``loss`` [N m/rad] per
+    compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
+    ``waves``: meshes whose stiffness varies about the one given here.
     """
 
     speed: Array
@@ -69,10 +70,15 @@ class LineCoefficients:
     viscous: Array
     quadratic: Array
     not_carried: Array
-    angle: Array
+    joints: tuple[JointLaw, ...]
     shift: Array
     loss: Array
     waves: tuple[MeshWave, ...] = ()
+
+    @property
+    def straight(self) -> LineCoefficients:
+        """The same without any bend."""
+        return replace(self, joints=tuple(law.straight() for law in self.joints))
 
 
 @dataclass(frozen=True)
@@ -131,9 +137,20 @@ class Assembly:
         return lowest_elastic_frequency(self)
 
 
-def assemble(line: Driveline, *, tripods: bool = False) -> Assembly:
-    """Pack ``line`` and sort it into stations and compliances; ``tripods`` as in ``topology``."""
-    return Assembly(line, pack(line), topology(line, tripods=tripods))
+def assemble(line: Driveline) -> Assembly:
+    """Pack ``line`` and sort it into stations and compliances."""
+    return Assembly(line, pack(line), topology(line))
+
+
+def joint_laws(assembly: Assembly, table: Array) -> tuple[JointLaw, ...]:
+    """The law of every joint of the topology at the rows of ``table``; its numbers (case, 1)."""
+    return tuple(_joint_law(assembly, table, assembly.topology.stations[j].element) for j in assembly.topology.joints)
+
+
+def _joint_law(assembly: Assembly, table: Array, place: int) -> JointLaw:
+    element = assembly.line.elements[place]
+    assert isinstance(element, Joint)
+    return element.law(lambda key: table[:, assembly.packed.column(place, key), None])
 
 
 def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
@@ -225,11 +242,13 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
     """
     line, total = assembly.line, np.zeros(len(table))
     ratio, i = 1.0, line.parents[joint]
-    while i is not None and not isinstance(line.elements[i], HookeJoint | TripodJoint):
+    while i is not None:
         element = line.elements[i]
+        if isinstance(element, Joint) and element.orders:
+            break
         if isinstance(element, Ratio | GearPair):
             ratio *= element.speed_ratio
-        elif isinstance(element, IdealJoint | DoubleCardanJoint):
+        elif isinstance(element, Joint):
             total += table[:, assembly.packed.column(i, "plane")] / ratio
         i = line.parents[i]
     return total
@@ -268,11 +287,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             own = twist[:, e] if has_stages(assembly.line.elements[i]) else torque[:, e] / each[i]
             forks = column(i, "fork_offset")
             shift[:, s] = own + (table[:, forks] if forks >= 0 else 0.0)
-        elif here.link in (Link.HOOKE, Link.TRIPOD):
+        elif here.link is Link.JOINT:
             shift[:, s] = -table[:, column(here.element, "plane")]
             shift[:, s] -= _planes_in_front(assembly, table, here.element)
-    joints = [topo.stations[j].element for j in topo.joints]
-    angle = np.stack([table[:, column(i, "angle")] for i in joints], axis=1) if joints else np.zeros((cases, 0))
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,
@@ -284,7 +301,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         viscous=loads.viscous,
         quadratic=loads.quadratic,
         not_carried=np.zeros_like(mean) if twisted else mean,
-        angle=angle,
+        joints=joint_laws(assembly, table),
         shift=shift,
         loss=loss,
         waves=tuple(_mesh_wave(assembly, table, mesh) for mesh in topo.meshes if mesh.stiffness),

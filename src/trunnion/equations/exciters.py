@@ -11,7 +11,7 @@ so K = k |R| with R the mean speed ratio of the disk. A transmission error e add
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -123,8 +123,7 @@ def base_of_excitation(topo: Topology, coefficients: LineCoefficients, untwisted
     """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
     ratios = ratio_values(topo)
     motion = base_motion(topo, coefficients, tau, ratios)
-    straight = replace(untwisted, angle=np.zeros_like(untwisted.angle))
-    uniform = base_motion(topo, straight, tau, ratios)
+    uniform = base_motion(topo, untwisted.straight, tau, ratios)
     return BaseOfExcitation(motion.relative, motion.angle - uniform.angle)
 
 

@@ -2,11 +2,11 @@
 
 With τ the input angle, each station s has an angle a_s(τ) (fork phases and static twist included), a speed
 w = da/dτ and an acceleration w′ = d²a/dτ². Within its group it follows the group's first station by
-r = da_s/da_ref, with r₁ = dr/da_ref and r₂ = dr₁/da_ref. A Hooke's joint with input angle χ multiplies
+r = da_s/da_ref, with r₁ = dr/da_ref and r₂ = dr₁/da_ref. A joint with input angle χ multiplies, by its law,
 
     w → ηw,  w′ → η_χ w² + ηw′,  r → ηr,  r₁ → ηr₁ + η_χ r²,  r₂ → ηr₂ + 3η_χ r r₁ + η_χχ r³;
 
-a ratio ρ divides all of them by ρ. The output fork of a joint stands a quarter turn from its input fork.
+a ratio ρ divides all of them by ρ. The output fork of a Hooke's joint stands a quarter turn from its input fork.
 """
 
 from __future__ import annotations
@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
-from trunnion.laws import hooke
 
 Array = NDArray[np.float64]
-QUARTER_TURN = np.pi / 2
 
 
 @dataclass(frozen=True)
@@ -41,11 +39,11 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
 
     ``ratios`` are the values of the line's Ratio elements by station (see ``ratio_values``).
     """
-    cases = len(coefficients.angle)
+    cases = len(coefficients.speed)
     tau = np.broadcast_to(tau, (cases, np.shape(tau)[-1]))
     shape = (*tau.shape, len(topo.stations))
     a, w, w1, r, r1, r2 = (np.zeros(shape) for _ in range(6))
-    joint = 0
+    laws = list(coefficients.joints)
     for s, station in enumerate(topo.stations):
         b = station.before
         shift = coefficients.shift[:, s, None]
@@ -54,14 +52,11 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
         elif station.link is Link.SHAFT:
             a[..., s], w[..., s], w1[..., s] = a[..., b] + shift, w[..., b], w1[..., b]
             r[..., s] = 1.0
-        elif station.link is Link.HOOKE:
-            beta = coefficients.angle[:, joint, None]
-            joint += 1
-            chi = a[..., b] + shift
-            eta, slope = hooke.ratio(chi, beta), hooke.ratio_slope(chi, beta)
-            curvature = hooke.ratio_curvature(chi, beta)
+        elif station.link is Link.JOINT:
+            law = laws.pop(0)
+            output, eta, slope, curvature = law.at(a[..., b] + shift)
             rb, rb1, rb2, wb, wb1 = r[..., b], r1[..., b], r2[..., b], w[..., b], w1[..., b]
-            a[..., s] = hooke.output_angle(chi, beta) + QUARTER_TURN
+            a[..., s] = output + law.turned
             w[..., s], w1[..., s] = eta * wb, slope * wb**2 + eta * wb1
             r[..., s], r1[..., s] = eta * rb, eta * rb1 + slope * rb**2
             r2[..., s] = eta * rb2 + 3 * slope * rb * rb1 + curvature * rb**3

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import LineCoefficients
-from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
-from trunnion.equations.topology import Link, Mesh, Topology
+from trunnion.equations.kinematics import ratio_values
+from trunnion.equations.topology import TIED, Link, Mesh, Topology
+from trunnion.laws.fourier import FourierLaw
+from trunnion.laws.hooke import CrossLaw
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 
 Array = NDArray[np.float64]
@@ -17,7 +21,8 @@ Array = NDArray[np.float64]
 class _Walk:
     """Per station: which joint last changed its speed (and by what since), the same within its group, phase."""
 
-    def __init__(self, topo: Topology, shift: Array) -> None:
+    def __init__(self, topo: Topology, shift: Array, turned: Sequence[float]) -> None:
+        """``turned`` [rad]: from the input to the output arm of every joint."""
         ratios = ratio_values(topo)
         count = len(topo.stations)
         self.speed: list[tuple[int, float]] = [(-1, 1.0)] * count
@@ -32,24 +37,27 @@ class _Walk:
             if station.link is Link.SHAFT:
                 self.speed[s] = self.speed[b]
                 self.phase[:, s] = self.phase[:, b] + shift[:, s]
-            elif station.link is Link.HOOKE:
+            elif station.link is Link.JOINT:
                 joint = len(self.joint_input)
                 self.joint_input.append((self.speed[b], self.within[b]))
                 self.joint_phase.append(self.phase[:, b] + shift[:, s])
                 self.speed[s] = self.within[s] = (joint, 1.0)
-                self.phase[:, s] = QUARTER_TURN
+                self.phase[:, s] = turned[joint]
             else:
                 (j, rate), (g, factor) = self.speed[b], self.within[b]
                 self.speed[s], self.within[s] = (j, rate / ratios[s]), (g, factor / ratios[s])
                 self.phase[:, s] = self.phase[:, b] / ratios[s]
 
 
-def chain_program(topo: Topology, by_speed: frozenset[int] = frozenset()) -> ChainProgram:
+def chain_program(
+    topo: Topology, coefficients: LineCoefficients, by_speed: frozenset[int] = frozenset()
+) -> ChainProgram:
     """The topology as index arrays; see ``ChainProgram``.
 
-    ``by_speed``: stations with loads that depend on the speed, as ``loaded_by_speed`` finds them.
+    ``coefficients``: any of the line, for the form of its joints' laws. ``by_speed``: stations with loads that depend
+    on the speed, as ``loaded_by_speed`` finds them.
     """
-    walk = _Walk(topo, np.zeros((1, len(topo.stations))))
+    walk = _Walk(topo, np.zeros((1, len(topo.stations))), [0.0] * len(topo.joints))
     n = topo.size
     parent = np.full(n, -1, dtype=np.int64)
     near: list[tuple[int, float]] = [(-1, 0.0)] * n
@@ -60,6 +68,7 @@ def chain_program(topo: Topology, by_speed: frozenset[int] = frozenset()) -> Cha
         parent[i] = topo.coordinate[group]
         near[i] = walk.within[compliance.near]
         near_speed[i] = walk.speed[topo.reference[group]]
+    first, ripples = _ripples(topo, coefficients)
     members = _members(topo, by_speed)
     member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
     return ChainProgram(
@@ -72,7 +81,20 @@ def chain_program(topo: Topology, by_speed: frozenset[int] = frozenset()) -> Cha
         *_split([walk.within[s] for s in members]),
         *_split(member_speed),
         *_split([(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates]),
+        ripple_first=first,
+        ripple_order=np.array([order for order, _ in ripples]),
+        ripple_cycles=np.array([cycles for _, cycles in ripples]),
     )
+
+
+def _ripples(topo: Topology, coefficients: LineCoefficients) -> tuple[NDArray[np.int64], list[tuple[float, float]]]:
+    """Where the harmonics of every joint begin and the last end; of each its order and cycles per turn of the input."""
+    first, ripples = [0], list[tuple[float, float]]()
+    for station, law in zip(topo.joints, coefficients.joints, strict=True):
+        if isinstance(law, FourierLaw):
+            ripples += [(float(m), abs(m * float(topo.speed_ratio[station]))) for m in law.orders]
+        first.append(len(ripples))
+    return np.array(first, dtype=np.int64), ripples
 
 
 def _varying(topo: Topology) -> list[tuple[int, Mesh]]:
@@ -113,14 +135,17 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     owner = [topo.coordinate[topo.group_of(s)] for s in members]
     sign = np.sign([float(topo.speed_ratio[s]) for s in members])
     load = co.load - co.not_carried
-    walk = _Walk(topo, co.shift)
+    walk = _Walk(topo, co.shift, [law.turned for law in co.joints])
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
     waves = [
         np.concatenate([getattr(wave, key).T for wave in co.waves]) if co.waves else np.zeros((0, cases))
         for key in ("share", "phase")
     ]
+    cosine = [law.cosine if isinstance(law, CrossLaw) else np.ones((cases, 1)) for law in co.joints]
+    ripples = [law for law in co.joints if isinstance(law, FourierLaw)]
+    sizes, phases = ([part for law in ripples for part in getattr(law, key)] for key in ("amplitude", "phase"))
     return ChainLanes(
-        cosine=np.ascontiguousarray(np.cos(co.angle).T),
+        cosine=_rows(cosine, cases),
         phase=phase,
         stiffness=np.ascontiguousarray(stiffness.T),
         damping=np.ascontiguousarray(damping.T),
@@ -133,8 +158,16 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
         wave_share=np.ascontiguousarray(waves[0]),
         wave_phase=np.ascontiguousarray(waves[1]),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
+        ripple=_rows(sizes, cases),
+        ripple_phase=_rows(phases, cases),
         frequency=np.sqrt(np.where(trace > 0, trace / n, 1.0)),
     )
+
+
+def _rows(columns: Sequence[Array], cases: int) -> Array:
+    """Numbers (case, 1) of each of several laws as rows (law, case)."""
+    rows = [np.broadcast_to(column, (cases, 1))[:, 0] for column in columns]
+    return np.stack(rows) if rows else np.zeros((0, cases))
 
 
 def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
@@ -147,8 +180,8 @@ def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
 
 def _behind_joint(topo: Topology, station: int) -> bool:
     """True if a joint lies between the station and the first station of its group."""
-    while topo.stations[station].link in (Link.HOOKE, Link.RATIO):
-        if topo.stations[station].link is Link.HOOKE:
+    while topo.stations[station].link in TIED:
+        if topo.stations[station].link is Link.JOINT:
             return True
         station = topo.stations[station].before
     return False

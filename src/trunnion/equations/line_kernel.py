@@ -49,8 +49,10 @@ PER_STAGE = 3 + GUARDS * PER_GUARD
 # Per harmonic torque; order 0 means in time.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
-# Links, as in ``topology.Link``.
-ROOT, SHAFT, HOOKE, RATIO, TRIPOD = range(5)
+# Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
+# the number of its harmonics and SIZE their place among the numbers: order, amplitude and phase of each.
+ROOT, SHAFT, CROSS, RATIO, FOURIER = range(5)
+PER_RIPPLE = 3
 
 
 @njit(cache=True, nogil=True)
@@ -72,7 +74,7 @@ def walk(theta, omega, d_rate, p, count, place, d, v, r, r1, r2):
             r[s], r1[s], r2[s] = r[b] * over, r1[b] * over, r2[b] * over
             continue
         chi = p[q + MEAN] * theta + d[b] + p[q + PHASE]
-        if link == HOOKE:
+        if link == CROSS:
             c, sn = math.cos(2 * chi), math.sin(2 * chi)
             t, cosine, square = p[q + SIZE], p[q + COSINE], p[q + SQUARE]
             lead = math.atan(t * sn / (1 - t * c))
@@ -81,9 +83,12 @@ def walk(theta, omega, d_rate, p, count, place, d, v, r, r1, r2):
             slope = -eta * square * sn * below
             curvature = -2 * eta * square * below * (c - square * sn * sn * below)
         else:
-            a = p[q + SIZE]
-            c, sn = math.cos(3 * chi), math.sin(3 * chi)
-            lead, eta, slope, curvature = a * sn, 1 + 3 * a * c, -9 * a * sn, -27 * a * c
+            lead, eta, slope, curvature = 0.0, 1.0, 0.0, 0.0
+            for i in range(int(p[q + COSINE])):
+                at = int(p[q + SIZE]) + i * PER_RIPPLE
+                m, a = p[at], p[at + 1]
+                c, sn = a * math.cos(m * chi + p[at + 2]), a * math.sin(m * chi + p[at + 2])
+                lead, eta, slope, curvature = lead + sn, eta + m * c, slope - m * m * sn, curvature - m * m * m * c
         d[s], v[s] = d[b] + lead, eta * v[b]
         r[s] = eta * r[b]
         r1[s] = eta * r1[b] + slope * r[b] * r[b]

@@ -16,15 +16,17 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.parameters import SPEED, Parameter
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
-from trunnion.equations.kinematics import QUARTER_TURN, base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_regimes import line_regimes, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link, common_rate
 from trunnion.errors import InputError
-from trunnion.laws import tripod
+from trunnion.laws.fourier import FourierLaw
+from trunnion.laws.hooke import CrossLaw
+from trunnion.laws.joint import JointLaw
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
@@ -147,7 +149,7 @@ class LineSystem:
         topo = self.assembly.topology
         disks = [e for e in self.assembly.line.elements if isinstance(e, Disk)]
         shaken = any(h.order is not None for d in disks for h in d.excitation)
-        return bool(topo.joints or topo.tripods or topo.meshes) or shaken
+        return bool(topo.joints or topo.meshes) or shaken
 
     def _numbers(self, values: Mapping[str, float]) -> Array:
         return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))
@@ -186,12 +188,12 @@ class LineSystem:
             share = drive_places(topo, assembly.packed.column, table)
             load = load + drive_torques(topo, share, np.array([drive]))[0]
         stations = np.zeros((len(topo.stations), core.PER_STATION))
-        phase, joint = np.zeros(len(topo.stations)), 0
+        phase, joints = np.zeros(len(topo.stations)), dict(zip(topo.joints, co.joints, strict=True))
         column = assembly.packed.column
         for s, station in enumerate(topo.stations):
             group = station.group
             out = stations[s]
-            out[core.BEFORE], out[core.LINK] = station.before, station.link
+            out[core.BEFORE], out[core.LINK] = station.before, getattr(core, station.link.name, core.ROOT)
             out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
             out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
             out[core.INERTIA] = co.inertia[0, s]
@@ -203,18 +205,8 @@ class LineSystem:
                 phase[s] = chi
             elif station.link is Link.RATIO:
                 phase[s] = before / ratios[s]
-            elif station.link is Link.HOOKE:
-                beta = co.angle[0, joint]
-                joint += 1
-                out[core.SIZE] = np.tan(beta / 2) ** 2
-                out[core.COSINE], out[core.SQUARE] = np.cos(beta), np.sin(beta) ** 2
-                out[core.PHASE], phase[s] = chi, chi + QUARTER_TURN
-            elif station.link is Link.TRIPOD:
-                i = station.element
-                angle, radius, length = (row[column(i, k)] for k in ("angle", "radius", "length"))
-                driven = getattr(assembly.line.elements[i], "spider", "output") == "output"
-                size = float(tripod.amplitude(angle, radius / length))
-                out[core.SIZE], out[core.PHASE], phase[s] = (size if driven else -size), chi, chi
+            elif station.link is Link.JOINT:
+                out[core.PHASE], phase[s] = chi, chi + joints[s].turned
         harmonics = []
         for s, i in topo.disks:
             stations[s, core.VISCOUS] += row[column(i, "viscous_load")]
@@ -242,8 +234,11 @@ class LineSystem:
                 law = [begin, laws[e].stride, laws[e].stages, len(laws[e].error), len(laws[e].wave)]
                 begin += laws[e].numbers.size
             compliances.append([*ends, co.stiffness[0, e], co.damping[0, e], *law])
-        head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
         law_numbers = np.concatenate([law.numbers for law in laws.values()] or [np.zeros(0)])
+        for s, joint in joints.items():
+            ripple = _put_joint(core, joint, stations[s], begin)
+            law_numbers, begin = np.append(law_numbers, ripple), begin + ripple.size
+        head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
         head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 3 * len(compliances))
         parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics), law_numbers, scratch]
@@ -294,7 +289,7 @@ class LineSystem:
         topo = self.assembly.topology
         co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
         base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
-        plain = base_motion(topo, _straight(co), np.array([theta]), ratio_values(topo))
+        plain = base_motion(topo, co.straight, np.array([theta]), ratio_values(topo))
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d = (base.angle - plain.angle)[0, 0, places]
         v = (base.speed - plain.speed)[0, 0, places] * self.speed
@@ -305,7 +300,7 @@ class LineSystem:
         topo, table = self.assembly.topology, self.assembly.table(1, self.speed)
         plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
         held = self.assembly.coefficients(table, free_play=True)
-        motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, _straight(plain))]
+        motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, plain.straight)]
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
         return np.concatenate([d[places], v[places] * self.speed])
@@ -327,8 +322,16 @@ def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:
     return table
 
 
-def _straight(coefficients: LineCoefficients) -> LineCoefficients:
-    return replace(coefficients, angle=np.zeros_like(coefficients.angle))
+def _put_joint(core: ModuleType, law: JointLaw, out: Array, place: int) -> Array:
+    """Put a law into its station's numbers; what of it stands at ``place`` among all numbers."""
+    if isinstance(law, CrossLaw):
+        t, cosine = float(law.t[0, 0]), float(law.cosine[0, 0])
+        out[core.LINK], out[core.SIZE], out[core.COSINE], out[core.SQUARE] = core.CROSS, t, cosine, 4 * t / (1 + t) ** 2
+        return np.zeros(0)
+    assert isinstance(law, FourierLaw)
+    out[core.LINK], out[core.SIZE], out[core.COSINE] = core.FOURIER, place, len(law.orders)
+    parts = [np.broadcast_to(part, (1, 1))[0, 0] for part in (*law.amplitude, *law.phase)]
+    return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
 
 
 def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
@@ -338,7 +341,7 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
     ------
     InputError : a second prescribed speed; what ``assemble`` refuses.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line, tripods=True)
+    assembly = line if isinstance(line, Assembly) else assemble(line)
     refuse_second_speed(assembly)
     return LineSystem(assembly, float(speed))
 

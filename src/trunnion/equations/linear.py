@@ -138,7 +138,8 @@ def periodic_linear_system(
 
     aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
-    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, topo.fastest)
+    fastest = float(max(topo.rates, default=0))
+    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, HookeJoint, TripodJoint
+from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
@@ -201,9 +201,9 @@ def staged_line(line: Driveline | Assembly, speed: float | None = None) -> Stage
         raise InputError(
             f"is a {type(line).__name__}, which has no exact motion by stages", key="line", remedy="give a Driveline"
         )
-    assembly = line if isinstance(line, Assembly) else assemble(line, tripods=True)
+    assembly = line if isinstance(line, Assembly) else assemble(line)
     refuse_second_speed(assembly)
-    _refuse_inexact(assembly.line)
+    _refuse_inexact(assembly)
     return _Builder(assembly, Turning(assembly.line, speed)).build()
 
 
@@ -215,11 +215,14 @@ def twisting_of(topo: Topology, turns: bool) -> Array:
     return np.array(rows)
 
 
-def _refuse_inexact(line: Driveline) -> None:
+def _refuse_inexact(assembly: Assembly) -> None:
     elsewhere = "use tn.simulate, tn.periodic_response or tn.periodic_branch, which locate changes of stage"
+    line, topo = assembly.line, assembly.topology
+    laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
+    uneven = {line.names[topo.stations[j].element] for j, law in laws if law.uneven}
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
-        if isinstance(element, HookeJoint | TripodJoint) and element.angle:
+        if name in uneven:
             found = "angle", "bends the line, so that no stage is linear with constant coefficients"
         elif isinstance(element, GearPair) and element.stiffness_variation:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"

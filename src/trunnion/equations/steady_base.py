@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.loads import drive_places, given_shares, mean_load, station_loads
 from trunnion.errors import InputError
 
@@ -46,9 +46,8 @@ def refuse_own_motion(assembly: Assembly, remedy: str, *, bends: bool = False) -
 
 
 def bent(assembly: Assembly) -> bool:
-    """Whether any joint of the line is bent."""
-    topo, packed = assembly.topology, assembly.packed
-    return any(packed.values[packed.column(topo.stations[j].element, "angle")] for j in topo.joints)
+    """Whether any joint of the line is bent, so that it turns unevenly."""
+    return any(law.uneven for law in joint_laws(assembly, assembly.table(1)))
 
 
 def require_balance(assembly: Assembly, table: Array) -> None:

@@ -15,15 +15,7 @@ from enum import IntEnum
 from fractions import Fraction
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import (
-    ConstantSpeed,
-    Disk,
-    DoubleCardanJoint,
-    HookeJoint,
-    IdealJoint,
-    Ratio,
-    TripodJoint,
-)
+from trunnion.driveline.elements import ConstantSpeed, Disk, Joint, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
@@ -35,23 +27,26 @@ class Link(IntEnum):
 
     ROOT = 0
     SHAFT = 1
-    HOOKE = 2
+    JOINT = 2
     RATIO = 3
-    TRIPOD = 4
 
 
-TIED = (Link.HOOKE, Link.RATIO, Link.TRIPOD)
+TIED = (Link.JOINT, Link.RATIO)
 """Links that tie a station rigidly to the one in front of it."""
 
 
 @dataclass(frozen=True)
 class Station:
-    """One rotation: ``before`` is the station in front (−1 at the root), ``element`` the link's element."""
+    """One rotation: ``before`` is the station in front (−1 at the root), ``element`` the link's element.
+
+    ``orders``: of the unevenness of a joint, in cycles per turn of its own shaft.
+    """
 
     before: int
     link: Link
     element: int
     group: int
+    orders: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,13 +116,8 @@ class Topology:
 
     @property
     def joints(self) -> tuple[int, ...]:
-        """Stations behind a HookeJoint, in order."""
-        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.HOOKE)
-
-    @property
-    def tripods(self) -> tuple[int, ...]:
-        """Stations behind a TripodJoint, in order."""
-        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.TRIPOD)
+        """Stations behind a joint that does not pass rotation unchanged, in order."""
+        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.JOINT)
 
     def group_of(self, station: int) -> int:
         """The group a station belongs to."""
@@ -137,12 +127,14 @@ class Topology:
     def rates(self) -> tuple[Fraction, ...]:
         """Cycles per turn of the input of everything that makes the linear coefficients vary.
 
-        Hooke's joints excite with the frequency 2 |speed_ratio| per input turn, tripods with 3 |speed_ratio|, and the
-        stiffness of a mesh with its harmonics.
+        Joints excite with their orders times |speed_ratio|, and the stiffness of a mesh with its harmonics.
         """
-        rates = [abs(2 * self.speed_ratio[j]) for j in self.joints]
-        rates += [abs(3 * self.speed_ratio[j]) for j in self.tripods]
+        rates = [rate for j in self.joints for rate in self.joint_rates(j)]
         return tuple(rates + [rate for mesh in self.meshes for rate in mesh.stiffness_rates])
+
+    def joint_rates(self, station: int) -> list[Fraction]:
+        """Cycles per turn of the input of the unevenness of the joint in front of a station."""
+        return [abs(order * self.speed_ratio[station]) for order in self.stations[station].orders]
 
     @property
     def fastest(self) -> float:
@@ -161,24 +153,22 @@ LONGEST_PERIOD = 60
 """Turns of the input beyond which a line counts as having no common period."""
 
 
-def topology(line: Driveline, *, tripods: bool = False) -> Topology:
+def topology(line: Driveline) -> Topology:
     """Sort the elements of ``line`` into stations, groups and compliances.
-
-    ``tripods`` takes TripodJoints as the nonlinear equations do; the linear ones do not have them.
 
     Raises
     ------
     InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
         no inertia at all.
     """
-    return _merge_massless(line, _walk(line, tripods))
+    return _merge_massless(line, _walk(line))
 
 
 def require_period(line: Driveline, topo: Topology) -> Fraction:
     """Period in turns of the input, or an InputError where ratios leave none of a usable length."""
     turns = topo.period_turns()
     if turns > LONGEST_PERIOD:
-        varying = [topo.joints or topo.tripods, any(mesh.stiffness for mesh in topo.meshes)]
+        varying = [bool(topo.joints), any(mesh.stiffness for mesh in topo.meshes)]
         what = " and ".join(name for name, some in zip(("joints", "meshes"), varying, strict=True) if some)
         for i, element in enumerate(line.elements):
             if not isinstance(element, Ratio | GearPair) or element.teeth_in is not None:
@@ -221,19 +211,19 @@ class _Draft:
     tube_ends: list[tuple[int, int]]
     speed_ratio: list[Fraction]
 
-    def add(self, before: int, link: Link, element: int, ratio: Fraction) -> int:
+    def add(self, before: int, link: Link, element: int, ratio: Fraction, orders: tuple[int, ...] = ()) -> int:
         if link in (Link.ROOT, Link.SHAFT):
             group = len(self.reference)
             self.reference.append(len(self.stations))
             self.prescribed.append(False)
         else:
             group = self.stations[before].group
-        self.stations.append(Station(before, link, element, group))
+        self.stations.append(Station(before, link, element, group, orders))
         self.speed_ratio.append(ratio)
         return len(self.stations) - 1
 
 
-def _walk(line: Driveline, tripods: bool) -> _Draft:
+def _walk(line: Driveline) -> _Draft:
     draft = _Draft([], [], [], [], [], [], [])
     behind: list[int] = []
     for i, element in enumerate(line.elements):
@@ -258,27 +248,12 @@ def _walk(line: Driveline, tripods: bool) -> _Draft:
             near = draft.add(here, Link.RATIO, i, ratio / element.fraction)
             here = draft.add(near, Link.SHAFT, i, ratio / element.fraction)
             draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
-        elif isinstance(element, HookeJoint):
-            here = draft.add(here, Link.HOOKE, i, ratio)
         elif isinstance(element, Ratio):
             here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
-        elif isinstance(element, TripodJoint) and tripods:
-            here = draft.add(here, Link.TRIPOD, i, ratio)
-        elif isinstance(element, TripodJoint):
-            raise InputError(
-                "is a tripod joint, which the linear equations do not have",
-                element=line.names[i],
-                remedy="write an IdealJoint instead (its speed ratio differs by 3A of tn.kinetostatics only), or "
-                "use tn.periodic_response and tn.simulate, which have it",
-            )
-        elif isinstance(element, DoubleCardanJoint) and element.distance_ratio is not None:
-            raise InputError(
-                "is a double-Cardan joint without centring, which the dynamic equations do not have",
-                element=line.names[i],
-                key="distance_ratio",
-                remedy="leave it out for a centred joint, or write two HookeJoints with a Shaft and a Disk",
-            )
-        elif not isinstance(element, IdealJoint | DoubleCardanJoint):
+        elif isinstance(element, Joint):
+            if element.orders:
+                here = draft.add(here, Link.JOINT, i, ratio, element.orders)
+        else:
             raise InputError("is not an element of a driveline", element=line.names[i])
         behind.append(here)
     return draft

@@ -15,6 +15,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.laws.hooke import CrossLaw
+
 Array = NDArray[np.float64]
 
 
@@ -28,18 +30,12 @@ def halves(angle: ArrayLike, distance_ratio: ArrayLike = 1.0) -> tuple[Array, Ar
     return first, angle - first
 
 
-def output_angle(chi: ArrayLike, first: ArrayLike, second: ArrayLike) -> Array:
-    """ψ(χ) [rad] of two crosses bent by ``first`` and ``second`` in one plane, continuous, with ψ(0) = 0.
+def law(angle: ArrayLike, distance_ratio: ArrayLike = 1.0) -> CrossLaw:
+    """Both crosses bent in one plane, as one: tan ψ = tan χ · cos β₂/cos β₁.
 
-    The second cross sees the yoke a quarter turn later, so it takes back what the first has added:
-    tan ψ = tan χ · cos β₂/cos β₁.
+    The second cross sees the yoke a quarter turn later, so it takes back what the first has added. Its
+    t = (cos β₂ − cos β₁)/(cos β₂ + cos β₁) = tan(β/2) tan((β₁ − β₂)/2); the two quarter turns of the forks are taken
+    back, so that the joint counts as one that passes rotation unchanged.
     """
-    chi = np.asarray(chi, dtype=float)
-    q = np.cos(second) / np.cos(first)
-    return chi + np.arctan2((q - 1) * np.sin(2 * chi), (q + 1) - (q - 1) * np.cos(2 * chi))
-
-
-def ratio(chi: ArrayLike, first: ArrayLike, second: ArrayLike) -> Array:
-    """η = dψ/dχ [1] = q/(cos²χ + q² sin²χ), q = cos β₂/cos β₁."""
-    q = np.cos(second) / np.cos(first)
-    return q / (np.cos(chi) ** 2 + (q * np.sin(chi)) ** 2)
+    first, second = halves(angle, distance_ratio)
+    return CrossLaw(np.tan(np.asarray(angle) / 2) * np.tan((first - second) / 2), turned=0.0)

@@ -4,46 +4,114 @@
 input fork lies in that plane. With bend angle β and t = tan²(β/2)
 
     ψ = atan(tan χ / cos β)  (unwrapped)  =  χ + atan[t sin 2χ / (1 − t cos 2χ)]
-    η = dψ/dχ = cos β / D,   D = 1 − sin²β cos²χ
+    η = dψ/dχ = cos β / (1 − sin²β cos²χ) = (1 − t²)/E,   E = 1 − 2t cos 2χ + t²
 
 so η runs from 1/cos β (χ = 0) to cos β (χ = 90°). Papers that start with the fork square to the plane
-write sin²χ instead of cos²χ: the same joint 90° later. The second form of ψ needs no unwrapping.
-The output fork stands 90° from the input fork; that quarter turn is added by the assembly of a line,
+write sin²χ instead of cos²χ: the same joint 90° later. The second forms need no unwrapping and lose no figures
+at small angles. The output fork stands 90° from the input fork; that quarter turn is added by the assembly of a line,
 not here. All functions broadcast over numpy arrays; angles in rad.
+
+Every joint with tan ψ = tan χ / c has this law, with t = (1 − c)/(1 + c): two crosses on one yoke for example.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.laws.joint import Passed
+from trunnion.numerics import jets
+
 Array = NDArray[np.float64]
+QUARTER_TURN = np.pi / 2
+
+
+@dataclass(frozen=True)
+class CrossLaw:
+    """tan ψ = tan χ (1 + t)/(1 − t), |t| < 1; ``turned`` [rad] from the input arm to the output arm."""
+
+    t: Array
+    turned: float = QUARTER_TURN
+
+    @property
+    def cosine(self) -> Array:
+        """c = (1 − t)/(1 + t), of one cross cos β."""
+        return np.asarray((1 - self.t) / (1 + self.t))
+
+    @property
+    def numbers(self) -> tuple[Array, ...]:
+        """t."""
+        return (self.t,)
+
+    @property
+    def uneven(self) -> bool:
+        """See ``JointLaw``."""
+        return bool(np.any(self.t))
+
+    @property
+    def spread(self) -> float:
+        """See ``JointLaw``: harmonics fall off as t^h."""
+        return float(np.max(np.abs(self.t)))
+
+    def at(self, chi: Array) -> Passed:
+        """See ``JointLaw``."""
+        t, chi = self.t, np.asarray(chi, dtype=float)
+        cosine, sine = np.cos(2 * chi), np.sin(2 * chi)
+        over = 1 / (1 - 2 * t * cosine + t**2)
+        ratio = (1 - t**2) * over
+        slope = -4 * t * sine * ratio * over
+        curvature = -8 * t * ratio * over * (cosine - 4 * t * sine**2 * over)
+        return Passed(chi + np.arctan2(t * sine, 1 - t * cosine), ratio, slope, curvature)
+
+    def output_jet(self, chi: Array) -> Array:
+        """See ``JointLaw``: ψ̇ = η χ̇ integrated term by term."""
+        start = self.at(chi[0]).output
+        if len(chi) == 1:
+            return np.asarray(start[None])
+        return jets.integral(jets.multiply(self.ratio_jet(chi[:-1]), jets.rate(chi)), start)
+
+    def ratio_jet(self, chi: Array) -> Array:
+        """See ``JointLaw``."""
+        below, _, _ = self.denominator_jet(chi)
+        return jets.divide(jets.constant(self.cosine, below), below)
+
+    def denominator_jet(self, chi: Array) -> tuple[Array, Array, Array]:
+        """Jets of D = 1 − sin²β cos²χ, sin χ and cos χ."""
+        sine, cosine = jets.sine_cosine(chi)
+        below = -(4 * self.t / (1 + self.t) ** 2) * jets.multiply(cosine, cosine)
+        below[0] += 1.0
+        return below, sine, cosine
+
+    def straight(self) -> CrossLaw:
+        """See ``JointLaw``."""
+        return CrossLaw(np.zeros_like(self.t), self.turned)
+
+
+def law(angle: ArrayLike) -> CrossLaw:
+    """One cross bent by ``angle`` β [rad]."""
+    return CrossLaw(np.tan(np.asarray(angle, dtype=float) / 2) ** 2)
 
 
 def output_angle(chi: ArrayLike, angle: ArrayLike) -> Array:
     """ψ(χ) [rad], continuous in χ, with ψ(0) = 0."""
-    chi = np.asarray(chi, dtype=float)
-    t = np.tan(np.asarray(angle, dtype=float) / 2) ** 2
-    return np.asarray(chi + np.arctan2(t * np.sin(2 * chi), 1 - t * np.cos(2 * chi)))
+    return law(angle).at(np.asarray(chi)).output
 
 
 def ratio(chi: ArrayLike, angle: ArrayLike) -> Array:
     """η = dψ/dχ [1], between cos β and 1/cos β."""
-    return np.cos(angle) / _denominator(chi, angle)
+    return law(angle).at(np.asarray(chi)).ratio
 
 
 def ratio_slope(chi: ArrayLike, angle: ArrayLike) -> Array:
-    """dη/dχ [1/rad] = −cos β sin²β sin 2χ / D²."""
-    sine2 = np.sin(angle) ** 2
-    return -np.cos(angle) * sine2 * np.sin(2 * np.asarray(chi)) / _denominator(chi, angle) ** 2
+    """dη/dχ [1/rad] = −cos β sin²β sin 2χ / D², D = 1 − sin²β cos²χ."""
+    return law(angle).at(np.asarray(chi)).slope
 
 
 def ratio_curvature(chi: ArrayLike, angle: ArrayLike) -> Array:
     """d²η/dχ² [1/rad²] = −2 cos β sin²β (cos 2χ / D² − sin²β sin²2χ / D³)."""
-    sine2 = np.sin(angle) ** 2
-    d = _denominator(chi, angle)
-    two_chi = 2 * np.asarray(chi)
-    return -2 * np.cos(angle) * sine2 * (np.cos(two_chi) / d**2 - sine2 * np.sin(two_chi) ** 2 / d**3)
+    return law(angle).at(np.asarray(chi)).curvature
 
 
 def irregularity(angle: ArrayLike) -> Array:
@@ -60,7 +128,3 @@ def mean_square_ratio(angle: ArrayLike) -> Array:
 def largest_lead(angle: ArrayLike) -> Array:
     """Largest |ψ − χ| [rad]: sin δ = tan²(β/2)."""
     return np.arcsin(np.tan(np.asarray(angle, dtype=float) / 2) ** 2)
-
-
-def _denominator(chi: ArrayLike, angle: ArrayLike) -> Array:
-    return np.asarray(1 - np.sin(angle) ** 2 * np.cos(chi) ** 2)

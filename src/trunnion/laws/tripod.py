@@ -17,6 +17,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.laws.fourier import FourierLaw
+
 Array = NDArray[np.float64]
 
 
@@ -25,19 +27,24 @@ def amplitude(angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
     return np.asarray(radius_over_length) / 2 * np.tan(angle) * np.tan(np.asarray(angle) / 2) ** 2
 
 
+def law(angle: ArrayLike, radius_over_length: ArrayLike) -> FourierLaw:
+    """ψ = χ + A sin 3χ; of a driving spider take −A."""
+    return FourierLaw((3,), (amplitude(angle, radius_over_length),), (np.zeros(()),))
+
+
 def output_angle(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
     """ψ(χ) [rad], continuous in χ, with ψ(0) = 0."""
-    return np.asarray(chi) + amplitude(angle, radius_over_length) * np.sin(3 * np.asarray(chi))
+    return law(angle, radius_over_length).at(np.asarray(chi)).output
 
 
 def ratio(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
     """η = dψ/dχ [1] = 1 + 3A cos 3χ."""
-    return 1 + 3 * amplitude(angle, radius_over_length) * np.cos(3 * np.asarray(chi))
+    return law(angle, radius_over_length).at(np.asarray(chi)).ratio
 
 
 def ratio_slope(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
     """dη/dχ [1/rad] = −9A sin 3χ."""
-    return -9 * amplitude(angle, radius_over_length) * np.sin(3 * np.asarray(chi))
+    return law(angle, radius_over_length).at(np.asarray(chi)).slope
 
 
 def orbit_radius(angle: ArrayLike, radius: ArrayLike) -> Array:

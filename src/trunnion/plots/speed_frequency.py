@@ -55,9 +55,9 @@ def crossings(line: Driveline | Assembly, low: float, high: float) -> tuple[Cros
 
 
 def shaft_ratios(assembly: Assembly) -> tuple[set[float], list[float]]:
-    """Speed ratios over the input at which joints excite, and those of all shafts, descending."""
+    """Speed ratios over the input at which joints excite twice a turn, and those of all shafts, descending."""
     topo = assembly.topology
-    excited = {abs(float(topo.speed_ratio[j])) for j in topo.joints}
+    excited = {abs(float(topo.speed_ratio[j])) for j in topo.joints if ORDERS[0] in topo.stations[j].orders}
     shafts = {abs(float(topo.speed_ratio[c.near])) for c in topo.compliances}
     return excited, sorted(excited | shafts, reverse=True)
 

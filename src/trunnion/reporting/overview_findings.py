@@ -13,7 +13,7 @@ from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint
+from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent
@@ -68,10 +68,13 @@ def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
                 Gravity.CAUTION, f"{name} is bent by {angle:.3g}°, more than most Hooke's joints allow (45°)."
             )
     if not any(isinstance(element, HookeJoint) for element in line.elements):
-        yield Finding(
-            Gravity.NOTE,
-            "The line has no Hooke's joint, so nothing excites it parametrically; no chart is drawn.",
+        uneven = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Joint) and e.orders]
+        why = (
+            f"no chart is drawn; ask trunnion chart for one over the angle of {uneven[0]}"
+            if uneven
+            else "so no joint excites it parametrically; no chart is drawn"
         )
+        yield Finding(Gravity.NOTE, f"The line has no Hooke's joint, {why}.")
 
 
 def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iterator[Finding]:

@@ -49,7 +49,8 @@ def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | Non
         yield Check("joint angles", Status.NOT_APPLICABLE, MOST, "the line has no Hooke's joint")
         return
     topo = assembly.topology
-    ratios = [abs(float(topo.speed_ratio[topo.stations[j].before])) for j in topo.joints]
+    places = [j for j in topo.joints if subject.line.elements[topo.stations[j].element].kind == "HookeJoint"]
+    ratios = [abs(float(topo.speed_ratio[j])) for j in places]
     for (name, angle), ratio in zip(joints, ratios, strict=True):
         yield from _one(subject, name, abs(angle), ratio * subject.high)
     if len(joints) == 2:

@@ -66,9 +66,8 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
 
 def _is_joint_angle(assembly: Assembly, columns: Columns) -> bool:
     """Whether the values are themselves the bend angles of one or more joints."""
-    joints = {
-        f"{n}.angle" for n, e in zip(assembly.line.names, assembly.line.elements, strict=True) if e.kind == "HookeJoint"
-    }
+    topo, names = assembly.topology, assembly.line.names
+    joints = {f"{names[topo.stations[j].element]}.angle" for j in topo.joints}
     plain = bool(np.all(columns.slope == 1) and np.all(columns.offset == 0))
     return plain and all(assembly.packed.labels[c] in joints for c in columns.index)
 

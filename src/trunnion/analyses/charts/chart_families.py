@@ -130,7 +130,8 @@ class LineFamily:
     @cached_property
     def program(self) -> ChainProgram:
         """The line's topology as the kernel reads it."""
-        return chain_program(self.assembly.topology, self._by_speed)
+        ends = self._coefficients(self.x.values[:1], self.y.values[:1])
+        return chain_program(self.assembly.topology, ends, self._by_speed)
 
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
         table = self.assembly.table(len(x), self.speed)
@@ -297,7 +298,7 @@ def spread(box: Box, count: int = 24) -> tuple[Array, Array]:
 
 def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
     """An order that puts equal joint angles and phases side by side, or None where they are already."""
-    rows = [*lanes.cosine, *lanes.phase]
+    rows = [*lanes.cosine, *lanes.phase, *lanes.ripple, *lanes.ripple_phase]
     moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
     if not moving:
         return None

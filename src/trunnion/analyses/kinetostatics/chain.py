@@ -23,9 +23,8 @@ from trunnion.driveline.elements import (
     Disk,
     DoubleCardanJoint,
     HookeJoint,
-    IdealJoint,
+    Joint,
     Ratio,
-    TripodJoint,
 )
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parameters import pack
@@ -34,7 +33,8 @@ from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.errors import InputError
-from trunnion.laws import double_cardan, tripod
+from trunnion.laws import double_cardan, hooke
+from trunnion.laws.joint import JointLaw
 
 Array = NDArray[np.float64]
 
@@ -47,11 +47,11 @@ class Link(Enum):
     SHAFT = "shaft"
     HOOKE = "Hooke's joint"
     IDEAL = "ideal joint"
-    TRIPOD = "tripod joint"
+    RIPPLE = "joint with ripple"
     RATIO = "ratio"
 
 
-JOINTS = (Link.HOOKE, Link.IDEAL, Link.TRIPOD)
+JOINTS = (Link.HOOKE, Link.IDEAL, Link.RIPPLE)
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ class Step:
     """From station ``parent`` to the station behind this step; SI units.
 
     ``reach`` [m] is how far along its member the station behind lies. ``fork_offset`` is what a shaft adds to the
-    angle of the fork at its far end; ``amplitude`` is the tripod's third harmonic [rad], negative where the spider
-    drives; ``near_inertia`` and ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output
+    angle of the fork at its far end; ``law`` and ``orders`` are those of a joint that does not pass rotation unchanged;
+    ``near_inertia`` and ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output
     speed; ``load``, ``viscous_load`` and ``quadratic_load`` are a Disk's. A Shaft has a ``stiffness`` [N m/rad], one
-    with stages a ``law``.
+    with stages its law of ``stages``.
     """
 
     link: Link
@@ -71,11 +71,12 @@ class Step:
     member: int
     angle: float = 0.0
     plane: float = 0.0
-    amplitude: float = 0.0
+    law: JointLaw | None = None
+    orders: tuple[int, ...] = ()
     reach: float = 0.0
     fork_offset: float = 0.0
     stiffness: float = np.inf
-    law: StageLaw | None = None
+    stages: StageLaw | None = None
     ratio: float = 1.0
     near_inertia: float = 0.0
     far_inertia: float = 0.0
@@ -183,9 +184,8 @@ def period_turns(chain: Chain) -> int:
     ratio, period = [Fraction(1)], 1
     for step in chain.steps[1:]:
         ratio.append(ratio[step.parent] / fractions.get(step.name, Fraction(1)))
-        if step.link in (Link.HOOKE, Link.TRIPOD):
-            orders = abs(ratio[-1]) * (2 if step.link is Link.HOOKE else 3)
-            period = lcm(period, orders.denominator)
+        for order in step.orders:
+            period = lcm(period, (order * abs(ratio[-1])).denominator)
     return period
 
 
@@ -241,8 +241,8 @@ class _Draft:
             self._extend(here, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         elif isinstance(element, PiecewiseShaft):
             packed = pack(self.line)
-            law = stage_law(self.line, i, packed.column, packed.table(1))
-            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, law=law)
+            stages = stage_law(self.line, i, packed.column, packed.table(1))
+            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, stages=stages)
             self.members[member].shafts.append(name)
             self._extend(here, self.lengths.get(name, 0.0))
         elif isinstance(element, Disk):
@@ -250,22 +250,24 @@ class _Draft:
                 Link.RIGID, here, name, member, far_inertia=element.moment_of_inertia, load=element.load_torque,
                 viscous_load=element.viscous_load, quadratic_load=element.quadratic_load,
             )  # fmt: skip
-        elif isinstance(element, HookeJoint):
-            here = self._joint(Link.HOOKE, here, name, angle=element.angle, plane=element.plane)
-        elif isinstance(element, IdealJoint):
-            here = self._joint(Link.IDEAL, here, name, angle=element.angle, plane=element.plane)
-        elif isinstance(element, TripodJoint):
-            size = float(tripod.amplitude(element.angle, element.radius / element.length))
-            sign = -1.0 if element.spider == "input" else 1.0
-            here = self._joint(Link.TRIPOD, here, name, angle=element.angle, plane=element.plane, amplitude=sign * size)
         elif isinstance(element, DoubleCardanJoint):
             first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
-            here = self._joint(Link.HOOKE, here, f"{name}, first cross", angle=float(first), plane=element.plane)
+            here = self._cross(here, f"{name}, first cross", angle=float(first), plane=element.plane)
             self.members[-1].shafts.append(f"{name}, yoke")
             # the second cross hangs on the station behind the first, at the far end of the yoke
             self._extend(here, element.yoke_length or 0.0)
             # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
-            here = self._joint(Link.HOOKE, here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
+            here = self._cross(here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
+        elif isinstance(element, HookeJoint):
+            here = self._cross(here, name, angle=element.angle, plane=element.plane)
+        elif isinstance(element, Joint):
+            bend = {key: float(getattr(element, key, 0.0)) for key in ("angle", "plane")}
+            if element.orders:
+                packed = pack(self.line)
+                law = element.law(lambda key: np.asarray(packed.values[packed.column(i, key)]))
+                here = self._joint(Link.RIPPLE, here, name, law=law, orders=element.orders, **bend)
+            else:
+                here = self._joint(Link.IDEAL, here, name, **bend)
         elif isinstance(element, Ratio | GearPair):
             self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
             here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)
@@ -281,7 +283,12 @@ class _Draft:
             raise InputError("is not an element the kinetostatics know", element=name)
         self.behind.append(here)
 
-    def _joint(self, link: Link, parent: int, name: str, **numbers: float) -> int:
+    def _cross(self, parent: int, name: str, *, angle: float, plane: float = 0.0, fork_offset: float = 0.0) -> int:
+        law = hooke.law(angle)
+        numbers = {"angle": angle, "plane": plane, "fork_offset": fork_offset}
+        return self._joint(Link.HOOKE, parent, name, law=law, orders=(2,), **numbers)
+
+    def _joint(self, link: Link, parent: int, name: str, **numbers: Any) -> int:
         train = self.members[self.steps[parent].member].train
         self.members.append(_OpenMember(len(self.steps), train, [], 0.0))
         return self._step(link, parent, name, len(self.members) - 1, **numbers)

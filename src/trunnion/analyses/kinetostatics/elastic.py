@@ -84,12 +84,12 @@ def _yielding(step: Step, passed: Array) -> Array:
     ------
     InputError : the outermost stage has no stiffness and the torque goes beyond it.
     """
-    if step.law is None:
+    if step.stages is None:
         return -passed / step.stiffness
     torque = -passed[0]
-    twist, slope, _ = step.law.under(torque, free=True)
+    twist, slope, _ = step.stages.under(torque, free=True)
     if np.any((slope == 0) & (torque != 0)):
-        step.law.under(torque[torque != 0])
+        step.stages.under(torque[torque != 0])
     rates = np.divide(-passed, slope, out=np.zeros_like(passed), where=slope > 0)
     return np.concatenate([twist[None], rates[1:]])
 

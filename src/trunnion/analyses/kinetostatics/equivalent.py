@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
-from trunnion.analyses.kinetostatics.motion import QUARTER_TURN
+from trunnion.laws.hooke import QUARTER_TURN
 
 Array = NDArray[np.float64]
 Changes = Mapping[int, Array]
@@ -33,7 +33,7 @@ def is_one_joint(chain: Chain) -> bool:
     geared = False
     for i in chain.path(chain.output):
         link = chain.steps[i].link
-        if link is Link.TRIPOD or (link is Link.HOOKE and geared):
+        if link is Link.RIPPLE or (link is Link.HOOKE and geared):
             return False
         geared = geared or link is Link.RATIO
     return True
@@ -89,7 +89,7 @@ def phasors(chain: Chain) -> tuple[Array, Array]:
             a += step.fork_offset
         elif step.link is Link.RATIO:
             a /= step.ratio
-        elif step.link in (Link.HOOKE, Link.IDEAL, Link.TRIPOD):
+        elif step.link in (Link.HOOKE, Link.IDEAL, Link.RIPPLE):
             a -= step.plane
         if step.link is Link.HOOKE:
             angles.append(step.angle)

@@ -45,7 +45,7 @@ class Phasing:
     offsets : fork offset [rad] of each shaft between two joints, in (−90°, 90°] (with splines, (−180°,
         180°]).
     irregularity, before : of the output with these offsets, and with the line's own [1].
-    bound : what no phasing of these joints can go below [1]; None where tripods or ratios leave it unknown.
+    bound : what no phasing of these joints can go below [1]; None where other joints or ratios leave it unknown.
     phasor_angle : equivalent angle [rad] that the small-angle rule gives for these offsets.
     pitch : of the splines [rad] the offsets are multiples of, if one was given for all shafts.
     line : the driveline with these offsets.
@@ -139,7 +139,7 @@ def phased_shafts(train: Chain) -> tuple[int, ...]:
         link = train.steps[i].link
         if link is Link.SHAFT and seen and shaft is None:
             shaft = i
-        elif link in (Link.HOOKE, Link.TRIPOD):
+        elif link in (Link.HOOKE, Link.RIPPLE):
             found += [shaft] if shaft is not None else []
             shaft, seen = None, True
     return tuple(found)

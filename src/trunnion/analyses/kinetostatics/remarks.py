@@ -48,8 +48,8 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 
-    orders = {Link.HOOKE: 2, Link.TRIPOD: 3}
-    rates = [orders[chain.steps[i].link] * abs(chain.mean_ratio(i)) for i in chain.of(*orders)]
+    joints = chain.of(Link.HOOKE, Link.RIPPLE)
+    rates = [max(chain.steps[i].orders) * abs(chain.mean_ratio(i)) for i in joints]
     if not rates:
         return []
     try:
@@ -102,9 +102,9 @@ def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
     found = []
     for i, jet in twist.items():
         step = chain.steps[i]
-        if step.law is None:
+        if step.stages is None:
             continue
-        knots, slopes = step.law.knots[0], step.law.slopes[0]
+        knots, slopes = step.stages.knots[0], step.stages.slopes[0]
         low, high = float(jet[0].min()), float(jet[0].max())
         crossed = [knot for knot in knots if low < knot < high]
         play = any(

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link, Step
-from trunnion.analyses.kinetostatics.motion import Motion, hooke_denominator, tripod_ratio
+from trunnion.analyses.kinetostatics.motion import Motion
 from trunnion.errors import InputError
+from trunnion.laws import hooke
 from trunnion.numerics import jets
 
 Array = NDArray[np.float64]
@@ -82,8 +83,8 @@ def torques(
             power = np.sign(torque[0]) * np.sign(chain.mean_ratio(i))
             factor = _hooke_factor(step, motion.chi[i][: order + 1], power * pin_moment)
             torque = jets.multiply(torque, factor)
-        elif step.link is Link.TRIPOD:
-            torque = jets.multiply(torque, tripod_ratio(step, motion.chi[i][: order + 1]))
+        elif step.link is Link.RIPPLE and step.law is not None:
+            torque = jets.multiply(torque, step.law.ratio_jet(motion.chi[i][: order + 1]))
         elif step.link is Link.RATIO:
             torque = torque / step.ratio
         into[i] = torque
@@ -112,7 +113,7 @@ def refuse_locking(chain: Chain, pin_moment: float) -> None:
 
 def _hooke_factor(step: Step, chi: Array, pin_moment: Array) -> Array:
     """M₁/M₂ as a jet; ``pin_moment`` is σκ′ at each angle."""
-    d, sine, cosine = hooke_denominator(chi, step.angle)
+    d, sine, cosine = hooke.law(step.angle).denominator_jet(chi)
     straight = jets.constant(np.cos(step.angle), d)
     if not np.any(pin_moment):
         return jets.divide(straight, d)

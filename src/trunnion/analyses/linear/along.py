@@ -175,7 +175,7 @@ def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
     topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
     period = _period(assembly)
     lanes = chain_lanes(topo, co, by_speed)
-    program = chain_program(topo, by_speed)
+    program = chain_program(topo, co, by_speed)
     matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
     if topo.free:
         values, bounds = quantities(matrix, error, trace)

@@ -19,7 +19,7 @@ from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import aligned_matrices, elongation
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exciters import exciters
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-JOINT_ORDERS = (2, 4)
-"""Cycles per turn of a joint's input; the second is weaker by the square of the angle."""
+MULTIPLES = (1, 2)
+"""Of a joint's own orders; the second is weaker by the square of the angle."""
 MARGIN = 0.10
 
 
@@ -228,12 +228,10 @@ def excitation_lines(assembly: Assembly) -> tuple[ExcitationLine, ...]:
         if not e.held and row[e.amplitude]:
             fixed = float(row[e.frequency]) if e.in_time else 0.0
             found.setdefault((0.0 if e.in_time else float(e.order), fixed), {})[e.element] = None
-    for j in topo.joints:
-        place = topo.stations[j].element
-        if row[assembly.packed.column(place, "angle")]:
-            before = abs(float(topo.speed_ratio[topo.stations[j].before]))
-            for k in JOINT_ORDERS:
-                found.setdefault((k * before, 0.0), {})[names[place]] = None
+    for j, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
+        if law.uneven:
+            for cycles in (m * float(rate) for rate in topo.joint_rates(j) for m in MULTIPLES):
+                found.setdefault((cycles, 0.0), {})[names[topo.stations[j].element]] = None
     for mesh in topo.meshes:
         for rate in mesh.stiffness_rates:
             found.setdefault((float(rate), 0.0), {})["mesh stiffness"] = None

@@ -9,7 +9,7 @@ phase. Excitations of disks are left out, as in ``own_motion``, which finds one 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +86,7 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
     """
     described = quiet(line)
     assembly = assemble(described)
-    prepared = [line_system(assemble(described, tripods=True), float(speed)) for speed in speeds[:1]]
+    prepared = [line_system(assemble(described), float(speed)) for speed in speeds[:1]]
     if prepared[0].system.regimes is not None:
         return None
     period = 2 * np.pi * float(require_period(assembly.line, assembly.topology))
@@ -152,10 +152,7 @@ class _Balance:
         topo, assembly = self.line.assembly.topology, self.line.assembly
         theta = self.period * np.arange(self.times) / self.times
         co = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
-        base, plain = (
-            base_motion(topo, case, theta, ratio_values(topo)).angle[0]
-            for case in (co, replace(co, angle=np.zeros_like(co.angle)))
-        )
+        base, plain = (base_motion(topo, case, theta, ratio_values(topo)).angle[0] for case in (co, co.straight))
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         states = (base - plain)[:, places]
         held = self.line.twisted()[: self.n] - self.line.rigid(0.0)[: self.n]

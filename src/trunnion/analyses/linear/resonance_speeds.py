@@ -8,7 +8,8 @@ respond where m · 2|R|Ω = ω_i ± ω_j:
     sum          Ω = (ω_i + ω_j) / (2k|R|)  complex pair
     difference   Ω = (ω_i − ω_j) / (2k|R|)  complex pair
 
-(S1 equations 23–24, S3 equations 15–16.) A mesh of varying stiffness excites with its teeth per turn of the input, z,
+(S1 equations 23–24, S3 equations 15–16.) Another joint excites with its own orders: a tripod, three times a turn,
+counts as a Hooke's joint of 3R/2. A mesh of varying stiffness excites with its teeth per turn of the input, z,
 and counts as a joint of R = z/2. While the stiffness stays positive definite only the first three
 can open: their modes have opposite Krein signatures. Difference tongues of the papers come from
 mis-linearised equations.
@@ -41,7 +42,8 @@ _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 class Resonance:
     """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|.
 
-    A mesh excites as a joint at half its teeth per turn of the input would; ``mesh`` is its name, empty for joints.
+    A mesh excites as a Hooke's joint at half its teeth per turn of the input would, a tripod as one at 3/2 R;
+    ``mesh`` is the name of the mesh, empty for joints.
     What ``stability`` calls a divergence, one mode pushed aside without oscillating, has neither speed (nan) nor order.
     """
 
@@ -168,7 +170,7 @@ class Source:
 def sources(assembly: Assembly) -> tuple[Source, ...]:
     """Everything that makes the linear coefficients of a line vary: joints by their speed ratio, then meshes."""
     topo = assembly.topology
-    joints = [Source(rate) for rate in sorted({abs(topo.speed_ratio[j]) for j in topo.joints})]
+    joints = [Source(rate) for rate in sorted({common_rate(topo.joint_rates(j)) / 2 for j in topo.joints})]
     names = assembly.line.names
     meshes = [Source(common_rate(m.stiffness_rates) / 2, names[m.element]) for m in topo.meshes if m.stiffness]
     return (*joints, *meshes)

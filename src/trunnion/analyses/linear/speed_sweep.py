@@ -26,7 +26,7 @@ from trunnion.analyses.orders.response import order_response, without_excitation
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import relative_ratio
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble, joint_laws
 from trunnion.equations.exciters import exciters
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.loads import drive_places, drive_torques
@@ -162,8 +162,8 @@ def speed_sweep(
     require_steady_base(assembly, every)
     topo = assembly.topology
     half_turns = 2 * require_period(assembly.line, topo)
-    # Two cycles a turn of the fastest joint: behind a reduction, fewer in the period than of one at input speed.
-    turning = max((abs(float(topo.speed_ratio[j])) for j in topo.joints), default=1.0)
+    # In half turns of the fastest joint: behind a reduction, fewer in the period than of one at input speed.
+    turning = float(max((rate for j in topo.joints for rate in topo.joint_rates(j)), default=2.0)) / 2
     joints, mesh = _harmonics(assembly) * turning * float(half_turns), topo.fastest * float(half_turns) / 2
     tried = (int(np.ceil(joints) + np.ceil(kept * mesh)) for kept in (MESH_HARMONICS if mesh else (0,)))
     harmonics = next((count for count in tried if (2 * count + 1) * topo.size <= MOST_UNKNOWNS), None)
@@ -197,7 +197,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")
     modes = natural_frequencies(assembly)
     topo = assembly.topology
-    orders = {2.0 * m * abs(float(topo.speed_ratio[j])) for j in topo.joints for m in (1, 2, 3)}
+    orders = {m * float(rate) for j in topo.joints for rate in topo.joint_rates(j) for m in (1, 2, 3)}
     orders |= {float(e.order) for e in exciters(assembly) if not e.in_time and not e.held}
     found = [np.linspace(low, high, points)]
     for frequency, damping in zip(modes.frequency, modes.damping_ratio, strict=True):
@@ -210,8 +210,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
 
 def _harmonics(assembly: Assembly) -> int:
     """As many as the largest bend asks for."""
-    largest = float(np.abs(assembly.coefficients(assembly.table(1)).angle).max(initial=0.0))
-    share = np.tan(largest / 2) ** 2
+    share = max((law.spread for law in joint_laws(assembly, assembly.table(1))), default=0.0)
     return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))), FEWEST, MOST))
 
 

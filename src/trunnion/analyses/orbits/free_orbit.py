@@ -22,7 +22,7 @@ from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, closing_of, judged
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
@@ -125,7 +125,7 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     faster = np.append(np.zeros(n), turn)
     column, elements = line.assembly.packed.column, line.assembly.line.elements
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
-    unsteady = [column(topo.stations[s].element, "angle") for s in (*topo.joints, *topo.tripods)]
+    unsteady = []
     for _, i in topo.disks:
         count = len(getattr(elements[i], "excitation", None) or ())
         keys = ("amplitude", "quadratic_amplitude")
@@ -133,7 +133,7 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
 
     def at(system: System, x: Array) -> Neutral:
         by_speed = _any(line, system, loads)
-        steady = not (by_speed or _any(line, system, unsteady))
+        steady = not (by_speed or _uneven(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
         shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + np.append(turn * speed, np.zeros(n))
         if steady:
@@ -146,6 +146,12 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
 def _any(line: LineSystem, system: System, places: Iterable[int]) -> bool:
     """Whether any of some numbers of the line is other than 0 in ``system``."""
     return any(system.parameters[line.assembly.packed.labels[i]] for i in places)
+
+
+def _uneven(line: LineSystem, system: System) -> bool:
+    """Whether any joint of the line is bent in ``system``."""
+    table = np.array([[system.parameters[label] for label in line.assembly.packed.labels]])
+    return any(law.uneven for law in joint_laws(line.assembly, table))
 
 
 def loaded_by_speed(assembly: Assembly) -> bool:

@@ -57,7 +57,8 @@ class Nodes:
 
 def nodes_of(speed: Array, co: LineCoefficients) -> Nodes:
     """Three nodes where the coefficients ``co`` of ``speed`` (case,) are the same at all speeds, else all."""
-    parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, co.angle, co.shift, co.loss)
+    laws = [np.broadcast_to(n, (len(speed), 1)) for law in co.joints for n in law.numbers]
+    parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, *laws, co.shift, co.loss)
     constant = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in parts)
     low, high = speed.min(), speed.max()
     if not constant or len(speed) <= 3 or high - low < NARROW * high or np.any(co.viscous) or np.any(co.quadratic):

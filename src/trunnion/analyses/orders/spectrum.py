@@ -30,6 +30,7 @@ from trunnion.equations.exciters import (
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import Topology, require_period
+from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 
 Array = NDArray[np.float64]
@@ -168,7 +169,7 @@ class _Case:
         self.varies = bent(assembly) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
-        self.reach = _reach(one.angle)
+        self.reach = _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         if self.varies:
             self.batch = self._batch()
@@ -379,7 +380,7 @@ def _loss_matrix(assembly: Assembly, co: LineCoefficients) -> Array:
     return line_matrices(assembly.topology, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
 
 
-def _reach(angle: Array) -> int:
-    """As many harmonics as the largest bend asks for: they fall off as tan^2h(β/2)."""
-    share = np.tan(np.abs(angle).max(initial=0.0) / 2) ** 2
+def _reach(joints: tuple[JointLaw, ...]) -> int:
+    """As many harmonics as the most uneven joint asks for: behind a Hooke's joint they fall off as tan^2h(β/2)."""
+    share = max((law.spread for law in joints), default=0.0)
     return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))

@@ -108,9 +108,11 @@ def propagate_block(program, block, table, begin, length, tolerance, extra, most
     trace[:] = 0.0
     done, count = 0.0, 0
     fastest = block.unknown[FREQUENCY * LANES : (FREQUENCY + 1) * LANES].max()
-    # A step that leaps over cycles of a stiffness could find its two orders agree by accident.
+    # A step that leaps over cycles of a stiffness or a joint could find its two orders agree by accident.
     longest = length
     for cycles in program.wave_cycles:
+        longest = min(longest, 1.0 / cycles)
+    for cycles in program.ripple_cycles:
         longest = min(longest, 1.0 / cycles)
     h = min(length / 4, 0.8 / fastest, longest)
     while done < length and count < most_steps:

@@ -112,9 +112,10 @@ def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> Non
 
 
 def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:
-    """Whether static torque on a bent joint, angle-dependent inertia or stiffness add terms to the plain chain."""
+    """Whether static torque on a bent joint, angle-dependent inertia or stiffness add terms to the plain chain, or a
+    joint has a law of harmonics, which plain chains do not take."""
     behind_joint = program.near_source >= 0
-    varying = len(program.member_unknown) or len(program.wave_unknown)
+    varying = len(program.member_unknown) or len(program.wave_unknown) or len(program.ripple_order)
     return bool(varying) or bool(np.any(lanes.torque[behind_joint]))
 
 

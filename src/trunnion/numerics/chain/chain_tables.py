@@ -1,7 +1,8 @@
 """Time-dependent coefficients of jointed chains, for sixteen lanes at a time.
 
-One sine and cosine per time serve all lanes and joints: with C = cos 2χ, S = sin 2χ at a joint's input and
-D = 1 − sin²β (1 + C)/2, its output has
+Joints have one of two forms: a cross, or a row of harmonics (see ``laws``). Of crosses, one sine and cosine per
+time serve all lanes and joints: with C = cos 2χ, S = sin 2χ at a joint's input and D = 1 − sin²β (1 + C)/2, its
+output has
 
     η = cos β / D,   cos 2ψ = (cos²β (1 + C) − (1 − C)) / 2D,   sin 2ψ = cos β S / D,
 
@@ -36,6 +37,9 @@ class ChainProgram(NamedTuple):
     member_unknown, member_source, member_ratio (members,): inertias of groups that contain joints.
     member_speed_source, member_speed (members,): speed of that group's reference.
     wave_unknown, wave_cycles (waves,): harmonics of the stiffness in front of an unknown, in cycles per turn.
+    ripple_first (joints + 1,): joint j has the harmonics ripple_first[j] … ripple_first[j + 1] − 1, and the law
+        ψ = χ + Σ A sin(mχ + φ) where that is any; ripple_order m and ripple_cycles (ripples,): cycles per turn of the
+        joint and of the input.
     """
 
     parent: Integers
@@ -54,6 +58,9 @@ class ChainProgram(NamedTuple):
     member_speed: Array
     wave_unknown: Integers
     wave_cycles: Array
+    ripple_first: Integers
+    ripple_order: Array
+    ripple_cycles: Array
 
 
 class ChainLanes(NamedTuple):
@@ -64,6 +71,7 @@ class ChainLanes(NamedTuple):
     member_inertia J/J_i, member_load M₀/(J_i Ω²), member_viscous c₁/(J_i Ω) and member_quadratic c₂/J_i of the outer
         torque M₀ + c₁v + c₂v|v|: (members, lanes).
     wave_share, wave_phase (waves, lanes): amplitude over the mean stiffness, and its phase [rad].
+    ripple, ripple_phase (ripples, lanes): A and φ of harmonics of joints [rad]; cos β of such a joint is 1.
     frequency ν (lanes,): unit of the rates.
     """
 
@@ -79,6 +87,8 @@ class ChainLanes(NamedTuple):
     member_quadratic: Array
     wave_share: Array
     wave_phase: Array
+    ripple: Array
+    ripple_phase: Array
     frequency: Array
 
 
@@ -103,6 +113,7 @@ class Block(NamedTuple):
     """One block of lanes: flat rows (see above); κ, slopes and extra stiffness in units of ν.
 
     wave_cosine, wave_sine (waves, LANES): harmonics of the stiffness over its mean, c cos − s sin.
+    ripple, ripple_phase (ripples, LANES): A and φ of harmonics of joints.
     ``alike``: all lanes have the same joint angles and phases, so one of them speaks for all.
     """
 
@@ -114,6 +125,8 @@ class Block(NamedTuple):
     member_quadratic: Array
     wave_cosine: Array
     wave_sine: Array
+    ripple: Array
+    ripple_phase: Array
     alike: bool
 
 
@@ -128,7 +141,9 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     viscous, quadratic = np.zeros((members, LANES)), np.zeros((members, LANES))
     waves = len(program.wave_unknown)
     wave_cosine, wave_sine = np.zeros((waves, LANES)), np.zeros((waves, LANES))
-    alike = True
+    ripples = len(program.ripple_order)
+    ripple, ripple_phase = np.zeros((ripples, LANES)), np.zeros((ripples, LANES))
+    alike = ripples == 0
     for lane in range(LANES):
         at, first = picked[lane], picked[0]
         nu = lanes.frequency[at]
@@ -161,7 +176,9 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
         for k in range(waves):
             wave_cosine[k, lane] = lanes.wave_share[k, at] * math.cos(lanes.wave_phase[k, at])
             wave_sine[k, lane] = lanes.wave_share[k, at] * math.sin(lanes.wave_phase[k, at])
-    return Block(joint, unknown, inertia, load, viscous, quadratic, wave_cosine, wave_sine, alike)
+        for k in range(ripples):
+            ripple[k, lane], ripple_phase[k, lane] = lanes.ripple[k, at], lanes.ripple_phase[k, at]
+    return Block(joint, unknown, inertia, load, viscous, quadratic, wave_cosine, wave_sine, ripple, ripple_phase, alike)
 
 
 @njit(cache=True, nogil=True)
@@ -192,7 +209,7 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
     near_source, near_speed_source = program.near_source, program.near_speed_source
     curved = len(program.member_unknown) > 0
     used = 1 if block.alike and not curved else LANES
-    unwrapped = False
+    unwrapped = len(program.ripple_order) > 0
     for j in range(len(rates)):
         unwrapped = unwrapped or (speed_source[j] >= 0 and abs(rates[j]) != 1.0)
     for j in range(len(rates)):
@@ -216,6 +233,11 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
             _first_in_group(own, len(nodes), ratios[j])
         else:
             _behind_in_group(own, w[within : within + PER_JOINT], len(nodes), ratios[j])
+        first, last = program.ripple_first[j], program.ripple_first[j + 1]
+        if last > first:
+            angles = before if not driven else own
+            _pass_ripple(own, angles, begin, step, nodes, driven, rates[j], program, block, first, last)
+            continue
         if curved:
             _curve(own, len(nodes))
         _pass_joint(own, len(nodes))
@@ -394,6 +416,34 @@ def _pass_joint(own, count):  # type: ignore[no-untyped-def]
             own[o + RATIO * LANES + lane] = eta * r
             own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
             own[o + SIN2 * LANES + lane] = eta * s
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _pass_ripple(own, before, begin, step, nodes, driven, rate, program, block, first, last):  # type: ignore[no-untyped-def]
+    """A joint with harmonics: from speed, acceleration and r in front of it to those behind, and its ψ."""
+    for m in range(len(nodes)):
+        o = MOVING * LANES + m * PER_STAGE
+        for lane in range(LANES):
+            angle = begin + nodes[m] * step if driven else before[o + ANGLE * LANES + lane]
+            chi = rate * angle + own[PHASE * LANES + lane]
+            psi, eta, slope, curvature = chi, 1.0, 0.0, 0.0
+            for k in range(first, last):
+                order, phase = program.ripple_order[k], block.ripple_phase[k, lane]
+                c = block.ripple[k, lane] * math.cos(order * chi + phase)
+                s = block.ripple[k, lane] * math.sin(order * chi + phase)
+                psi, eta = psi + s, eta + order * c
+                slope, curvature = slope - order * order * s, curvature - order * order * order * c
+            speed, r = own[o + SPEED * LANES + lane], own[o + RATIO * LANES + lane]
+            acceleration, r1 = own[o + ACCELERATION * LANES + lane], own[o + RATIO1 * LANES + lane]
+            r2 = own[o + RATIO2 * LANES + lane]
+            own[o + ACCELERATION * LANES + lane] = slope * speed * speed + eta * acceleration
+            own[o + SPEED * LANES + lane] = eta * speed
+            own[o + RATIO2 * LANES + lane] = eta * r2 + 3 * slope * r * r1 + curvature * r * r * r
+            own[o + RATIO1 * LANES + lane] = eta * r1 + slope * r * r
+            own[o + RATIO * LANES + lane] = eta * r
+            own[o + COS2 * LANES + lane] = math.cos(2 * psi)
+            own[o + SIN2 * LANES + lane] = math.sin(2 * psi)
+            own[o + ANGLE * LANES + lane] = psi
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")

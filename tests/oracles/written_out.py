@@ -1,4 +1,4 @@
-"""The nonlinear equations of a line, for any twist.
+"""The nonlinear equations of a line written out slowly, for any twist.
 
 The unknowns are the angles a_g of the first station of each group that carries inertia (fork phases
 included, so that a_g is what a joint in the group sees). From Lagrange, with the elongation
@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import QUARTER_TURN, ratio_values
+from trunnion.equations.kinematics import ratio_values
 from trunnion.equations.topology import Link, Topology
-from trunnion.laws import hooke
 
 Array = NDArray[np.float64]
 
@@ -34,15 +33,13 @@ class NonlinearLine:
     def base_angles(self, tau: float) -> Array:
         """Angles a_g of the unknowns at zero twist when the input stands at ``tau`` [rad]."""
         topo, angles = self.topology, np.zeros(len(self.topology.stations))
-        joint = 0
         for s, station in enumerate(topo.stations):
             if station.link is Link.ROOT:
                 angles[s] = tau
             elif station.link is Link.SHAFT:
                 angles[s] = angles[station.before] + self.coefficients.shift[0, s]
             else:
-                angles[s] = self._behind(s, angles[station.before], joint)[0]
-                joint += station.link is Link.HOOKE
+                angles[s] = self._behind(s, angles[station.before])[0]
         return np.array([angles[topo.reference[g]] for g, c in enumerate(topo.coordinate) if c >= 0])
 
     def acceleration(self, time: float, angle: Array, rate: Array) -> Array:
@@ -50,7 +47,6 @@ class NonlinearLine:
         topo, co = self.topology, self.coefficients
         a, v = np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
         r, r1 = np.zeros_like(a), np.zeros_like(a)
-        joint = 0
         for s, station in enumerate(topo.stations):
             i, b = topo.coordinate[station.group], station.before
             if station.link in (Link.ROOT, Link.SHAFT):
@@ -58,8 +54,7 @@ class NonlinearLine:
                 a[s], v[s] = (angle[i], rate[i]) if i >= 0 else (speed * time, speed)
                 r[s] = 1.0
             else:
-                a[s], eta, slope = self._behind(s, a[b], joint)
-                joint += station.link is Link.HOOKE
+                a[s], eta, slope = self._behind(s, a[b])
                 v[s] = eta * v[b]
                 r[s], r1[s] = eta * r[b], eta * r1[b] + slope * r[b] ** 2
         inertia, inertia_slope, torque = (np.zeros(topo.size) for _ in range(3))
@@ -79,14 +74,13 @@ class NonlinearLine:
                 torque[near_i] += r[near] * f
         return np.asarray((torque - inertia_slope * rate**2 / 2) / inertia)
 
-    def _behind(self, s: int, before: float, joint: int) -> tuple[float, float, float]:
+    def _behind(self, s: int, before: float) -> tuple[float, float, float]:
         """Angle behind a joint or ratio, its speed ratio and the slope of that ratio."""
         if self.topology.stations[s].link is Link.RATIO:
             return before / self.ratios[s], 1 / self.ratios[s], 0.0
-        chi = before + self.coefficients.shift[0, s]
-        beta = self.coefficients.angle[0, joint]
-        turned = float(hooke.output_angle(chi, beta)) + QUARTER_TURN
-        return turned, float(hooke.ratio(chi, beta)), float(hooke.ratio_slope(chi, beta))
+        law = self.coefficients.joints[self.topology.joints.index(s)]
+        passed = law.at(np.array([[before + self.coefficients.shift[0, s]]]))
+        return passed.output.item() + law.turned, passed.ratio.item(), passed.slope.item()
 
 
 def nonlinear_line(assembly: Assembly, table: Array) -> NonlinearLine:

@@ -1,0 +1,72 @@
+"""Joints whose output runs ahead and behind by a few harmonics of a turn: tripods, ripple of ball joints.
+
+    ψ = χ + Σ A_m sin(mχ + φ_m),   η = 1 + Σ m A_m cos(mχ + φ_m)
+
+with whole orders m, in cycles per turn of the joint's own shaft. Angles in rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.laws.joint import Passed
+from trunnion.numerics import jets
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FourierLaw:
+    """``orders`` m; ``amplitude`` A_m and ``phase`` φ_m [rad], one array each, which broadcast against χ."""
+
+    orders: tuple[int, ...]
+    amplitude: tuple[Array, ...]
+    phase: tuple[Array, ...]
+    turned: float = 0.0
+
+    @property
+    def numbers(self) -> tuple[Array, ...]:
+        """All amplitudes and phases."""
+        return (*self.amplitude, *self.phase)
+
+    @property
+    def uneven(self) -> bool:
+        """See ``JointLaw``."""
+        return any(bool(np.any(a)) for a in self.amplitude)
+
+    @property
+    def spread(self) -> float:
+        """See ``JointLaw``: the ripple m A_m of the ratio, half of which each side order gets."""
+        ripple = [float(np.max(np.abs(m * a))) / 2 for m, a in zip(self.orders, self.amplitude, strict=True)]
+        return min(0.5, sum(ripple))
+
+    def at(self, chi: Array) -> Passed:
+        """See ``JointLaw``."""
+        chi = np.asarray(chi, dtype=float)
+        output, ratio, slope, curvature = chi, np.ones_like(chi), np.zeros_like(chi), np.zeros_like(chi)
+        for m, a, phase in zip(self.orders, self.amplitude, self.phase, strict=True):
+            sine, cosine = a * np.sin(m * chi + phase), a * np.cos(m * chi + phase)
+            output, ratio = output + sine, ratio + m * cosine
+            slope, curvature = slope - m**2 * sine, curvature - m**3 * cosine
+        return Passed(output, ratio, slope, curvature)
+
+    def output_jet(self, chi: Array) -> Array:
+        """See ``JointLaw``."""
+        output = chi
+        for m, a, phase in zip(self.orders, self.amplitude, self.phase, strict=True):
+            output = output + a * jets.sine_cosine(m * chi + jets.constant(phase, chi))[0]
+        return output
+
+    def ratio_jet(self, chi: Array) -> Array:
+        """See ``JointLaw``."""
+        ratio = jets.constant(1.0, chi)
+        for m, a, phase in zip(self.orders, self.amplitude, self.phase, strict=True):
+            ratio = ratio + m * a * jets.sine_cosine(m * chi + jets.constant(phase, chi))[1]
+        return ratio
+
+    def straight(self) -> FourierLaw:
+        """See ``JointLaw``."""
+        return FourierLaw(self.orders, tuple(np.zeros_like(a) for a in self.amplitude), self.phase, self.turned)
