@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import warnings
 from math import gcd
-from typing import Any
 
 import numpy as np
 import pytest
@@ -133,6 +132,11 @@ def test_kinetostatics_turn_by_the_law(joint: Joint) -> None:
     np.testing.assert_allclose(turn.speed[turn.shafts.index("rear")], ratio, atol=1e-12)
 
 
+STEPS = np.array([-3, -2, -1, 1, 2, 3])
+OFFSETS = STEPS[:, None] + STEPS
+WEIGHTS = np.array([-1, 9, -45, 45, -9, 1]) / 60
+
+
 class Written:
     """The line of ``line_with`` in its own equations, with the law's output and nothing else of it."""
 
@@ -140,22 +144,18 @@ class Written:
         law = joint.law(numbers_of(joint))
         self.plane, self.speed, self.load, self.c = getattr(joint, "plane", 0.0), speed, load, damping
 
-        def psi(x: float) -> float:
-            return float(law.at(np.array([[x]])).output[0, 0])
+        self.law = law
 
-        def slope(f: Any, x: float, h: float = 2e-3) -> float:
-            at = [f(x + m * h) for m in (-3, -2, -1, 1, 2, 3)]
-            return (-at[0] + 9 * at[1] - 45 * at[2] + 45 * at[3] - 9 * at[4] + at[5]) / (60 * h)
-
-        self.psi = psi
-        self.eta = lambda x: slope(psi, x)
-        self.eta1 = lambda x: slope(self.eta, x)
+    def eta(self, x: float, h: float = 2e-3) -> tuple[float, float]:
+        """dψ/dχ and d²ψ/dχ² by differences of sixth order of ψ alone."""
+        at = self.law.at(x + h * OFFSETS.reshape(1, -1)).output.reshape(6, 6)
+        return float(WEIGHTS @ self.law.at((x + h * STEPS)[None]).output[0]) / h, float(WEIGHTS @ at @ WEIGHTS) / h**2
 
     def linear(self, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """C, K and the forcing about rigid rotation, each shaft twisted by the mean torque it carries."""
         k1, k2, m1, m2, c = 9e3, 5e3, 0.3, 0.6, self.c
         chi = self.speed * t + 0.3 - self.load / k1 - self.plane
-        eta, eta1 = self.eta(chi), self.eta1(chi)
+        eta, eta1 = self.eta(chi)
         # dη/dt and d²ψ/dt² of an input that turns evenly
         rate, second = eta1 * self.speed, eta1 * self.speed**2
         damping = np.array([[(c + c * eta**2) / m1, -c * eta / m1], [-c * eta / m2, c / m2]])
