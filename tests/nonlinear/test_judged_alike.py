@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs
+from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.verdict import Verdict
+from trunnion.systems.second_order import SecondOrder, cubic_spring
 
 
 def double_well(t, x, p):  # type: ignore[no-untyped-def]
@@ -106,3 +109,36 @@ def test_a_response_is_computed_where_it_is_asked_for() -> None:
     np.testing.assert_allclose(coarse.at(0.8), fine.at(0.8), rtol=1e-9)
     orbit = tn.piecewise_orbit(o.but(frequency=0.8), coarse.detail.at(0.8)[0][0])
     assert coarse.at(0.8)[0] == (pytest.approx(orbit.peak_to_peak / 2, rel=1e-9), True)
+
+
+@pytest.mark.parametrize("harmonics", [3, 5, 12])
+@pytest.mark.parametrize("method", ["states", "springs"])
+def test_a_series_knows_what_its_radius_is_off_by(method: str, harmonics: int) -> None:
+    """Radii of a Duffing oscillator's series near 1 against those of the motions that shooting finds there."""
+    system = tn.reference_system("duffing")
+    if method == "states":
+        start = (0.3, 0.0)
+        found = tn.harmonic_balance(system, "frequency", 1.1, 1.28, start=start, begin=1.15, harmonics=harmonics)
+        branch = found.branch
+    else:
+        spring = SecondOrder(
+            [[1.0]], [[0.05]], [[1.0]], (cubic_spring([1.0], 0.1),), [0.0], ((1, [0.18], [0.0]),)
+        )  # fmt: skip
+        branch = balance_springs(spring, 1.1, 1.28, harmonics=harmonics).branch
+    compared = 0
+    for z, value, multipliers, verdict in zip(
+        branch.unknowns, branch.parameter, branch.multipliers, branch.verdict, strict=True
+    ):
+        radius, point = float(np.abs(multipliers).max()), CurvePoint(z, np.zeros_like(z), 0)
+        begun = branch.problem.start(point)
+        orbit = tn.periodic_response(system.but(frequency=float(value)), start=begun, settle=False)
+        # Beside a fold shooting may arrive at the motion on its other side.
+        if abs(radius - 1) > 0.1 or not orbit.outcome.ok or np.abs(orbit.start - begun).max() > 0.02:
+            continue
+        error, far = branch.problem.radius_error(point, radius), abs(radius - 1)
+        assert error < far if verdict != Verdict.UNDECIDED else error >= far
+        if far > 1e-4:  # nearer, the fold is between the two motions that are compared
+            off = abs(orbit.spectral_radius - radius) - orbit.error_estimate
+            assert off < error or max(off, error) < far
+        compared += 1
+    assert compared >= 4

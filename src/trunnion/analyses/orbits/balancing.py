@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from trunnion.analyses.orbits.branch import PeriodicBranch, Problem, collect, follow_both_ways
-from trunnion.analyses.orbits.judging import SERIES_ERROR
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.declared import Held, Result, over, remark
@@ -93,10 +92,6 @@ class Series:
 
     def rows(self, point: CurvePoint) -> Array:
         return point.z[:-1].reshape(-1, 2 * self.h + 1)
-
-    def radius_error(self, point: CurvePoint, radius: float) -> float:
-        """A series closes to its tail, not to rounding."""
-        return SERIES_ERROR
 
 
 @dataclass(frozen=True)

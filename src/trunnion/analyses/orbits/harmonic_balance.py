@@ -12,7 +12,7 @@ motion misses its start after a period is the ``defect``, the error of the serie
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP
-from trunnion.analyses.orbits.judging import IntegratedClosing
+from trunnion.analyses.orbits.judging import CLEAR, IntegratedClosing
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
 from trunnion.driveline.driveline import Driveline
@@ -42,6 +42,8 @@ TAIL, KINKED_TAIL = 1e-6, 1e-4
 """Of a smooth motion, whose coefficients fall exponentially; of one with kinks, whose rates fall like k⁻³."""
 SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
 """Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
+FAR = 100.0
+"""Distance of a spectral radius from 1, over that of the series from the motion, at which its error does not matter."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -221,6 +223,27 @@ class _Balance(Series):
     def multipliers(self, point: CurvePoint) -> Complex:
         """By falling modulus; NaN where the motion cannot be computed."""
         return self.true.multipliers(self.on_motion(point))
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """Against the multipliers of the motion that one step of Newton's method takes the series' start to.
+
+        Where the radius is far from 1, the distance from there on which only the side of 1 matters.
+        """
+        here = self.on_motion(point)
+        passage, scale = self.true.passage(here), self.over.scale[:-1]
+        if not passage.done:
+            return FAR
+        over_period = passage.run.final[1:].T * scale / scale[:, None]
+        missed = (passage.state - self.start(point)) / scale
+        step = np.linalg.lstsq(np.eye(self.size) - over_period, missed, rcond=1e-12)[0]
+        far = max(CLEAR, FAR * float(np.abs(step).max()))
+        if abs(radius - 1) > far:
+            return far
+        closer = replace(here, z=here.z + np.append(step * scale, 0.0))
+        if not self.true.passage(closer).done:
+            return far
+        better = float(np.abs(self.true.multipliers(closer)).max())
+        return 2 * abs(better - radius) + self.true.radius_error(closer, better)
 
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""

@@ -12,7 +12,7 @@ crossings of kinks, which are found on the series, fourth-order Magnus steps, ex
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -41,6 +41,11 @@ ADDED = 10.0
 """Damping added on the way to a first motion, over ω times the mass."""
 NEWTON, SETTLED = 3, 1e-8
 """Corrections of a crossing found between two samples, at most; and the last one [rad], whose square is rounding."""
+NEAR, FAR = 1e-3, 100.0
+"""Distance of a spectral radius from 1 at which its error does not matter: at least, and over the series' tail in units
+of the motion's width."""
+ROUNDING = 1e-12
+"""Of a spectral radius."""
 GAUSS = np.sqrt(3.0) / 6
 
 
@@ -333,6 +338,28 @@ class _Balance(Series):
 
     def multipliers(self, point: CurvePoint) -> Complex:
         return self.judged(point)[0]
+
+    @cached_property
+    def finer(self) -> _Balance:
+        """Of twice the harmonics."""
+        return replace(self, h=2 * self.h, told={})
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """Against the radius of the series of twice the harmonics, by twice the steps.
+
+        Where the radius is far from 1, the distance from there on which only the side of 1 matters.
+        """
+        rows, h, omega = self.rows(point), self.h, point.parameter
+        tail = np.hypot(rows[:, h - 1 : h + 1], rows[:, 2 * h - 1 :]).max()
+        far = max(NEAR, FAR * float(tail) / self.width)
+        if abs(radius - 1) > far:
+            return far
+        root = self.finer.root(omega, fourier.resized(rows, self.finer.h))
+        if not root.converged:  # a fold
+            return far
+        found = self.finer.judged(replace(point, z=np.append(root.x, omega)))[0]
+        # The finer one is off by less than the difference, even of a kinked force, whose coefficients fall as k⁻³.
+        return float(2 * abs(np.abs(found).max() - radius) + ROUNDING)
 
     def changes(self, point: CurvePoint) -> int:
         return self.judged(point)[1]

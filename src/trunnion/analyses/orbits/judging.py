@@ -25,8 +25,8 @@ from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-EXACT_ERROR, SERIES_ERROR = 1e-9, 1e-6
-"""What the spectral radius may be off by: of a motion known to rounding, and of a series, which closes to its tail."""
+EXACT_ERROR = 1e-9
+"""What the spectral radius of a motion known to rounding may be off by."""
 COARSER = 30.0
 """How much larger than its own the tolerance is against which a motion's error is measured."""
 CLEAR = 1e-6
