@@ -32,6 +32,20 @@ def line(*elements, **rest):
     return Driveline(elements or [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1)], **rest)
 
 
+def free(**engine):
+    """A bent line that nothing holds at a speed, with a load of 9 N m."""
+    return Driveline(
+        [
+            Disk(inertia=1.0, name="engine", **engine),
+            Shaft(stiffness=900.0, damping=0.5),
+            Disk(inertia=0.5),
+            HookeJoint(angle=0.3),
+            Shaft(stiffness=900.0, damping=0.5),
+            Disk(inertia=0.5, load_torque=9.0, name="pump"),
+        ]
+    )
+
+
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
     # excitations
@@ -176,6 +190,61 @@ PYTHON = [
     ),
     (lambda: line(limits={"of": "Shaft 1"}), "driveline.limits = ", "tn.Limit("),
     (lambda: line(limits=[3]), "driveline.limit 1 = 3: is not a limit", "tn.Limit("),
+    # questions about a line or a system
+    (
+        lambda: tn.System.from_function(
+            lambda t, x, p: (x[1], -x[0]),
+            ("x", "v"),
+            jacobian=lambda t, x, p: [[0, 1], [1, 0]],
+            start=(0.5, 0),
+            compiled=False,
+        ),
+        "<lambda>.jacobian: says ∂(v')/∂x = 1 where differences give -1",
+        "row 2, column 1",
+    ),
+    (lambda: tn.run_up(line(), 10, 20, acceleration=5, ramp=9.0), "run_up.ramp = 9: does not fit", "0 to 4 s"),
+    (lambda: tn.run_up(line(), 10, 20, acceleration=5, ramp=-1.0), "run_up.ramp = -1: does not fit", "0 to 4 s"),
+    # lines that start free
+    (
+        lambda: tn.stability(free(load_torque=-5.0), 40.0),
+        "driveline.load_torque: starts free and its torques do not balance: the loads add up to 9 N m",
+        'load_torque = "-9 N*m"',
+    ),
+    (
+        lambda: tn.run_up(free(load_torque=-9.0), 30, 40, acceleration=5),
+        "driveline.drive_share: starts free, and no disk has a share",
+        "drive_share = 1",
+    ),
+    (
+        lambda: tn.stability_chart(free(drive_share=1), ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3)),
+        "driveline: starts free and is bent: it is judged about its own periodic motion",
+        "stability at single speeds",
+    ),
+    (
+        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
+        "driveline: starts free and is bent: it is judged about its own periodic motion",
+        "stability at single speeds",
+    ),
+    (
+        lambda: tn.order_response(free(drive_share=1), [30, 40]),
+        "driveline: starts free and is bent",
+        "tn.periodic_response",
+    ),
+    (
+        lambda: tn.harmonic_balance(free(drive_share=1), "speed", 30, 40),
+        "driveline: starts free",
+        "periodic_branch",
+    ),
+    (
+        lambda: tn.lyapunov_spectrum(free(drive_share=1), 20, speed=30.0),
+        "driveline: starts free: its speed follows from its torques",
+        "simulate it",
+    ),
+    (
+        lambda: tn.periodic_response(free(drive_share=1, excitation=[{"frequency": 10.0, "amplitude": 1.0}]), 30.0),
+        "driveline: starts free and is excited in time",
+        "orders instead of frequencies",
+    ),
     # quantities
     (
         lambda: HookeJoint(angle="12 kg"),

@@ -144,6 +144,7 @@ def test_a_bent_free_line_about_its_own_motion(beta: float, load: dict[str, floa
     assert found.verdict.name == "STABLE" and bool(found.speed_sentence) == ("load_torque" in load)
     motion = tn.periodic_response(line, speed)
     assert set_distance(motion.multipliers, found.multipliers) < 1e-9
+    assert found.response.torque_amplitude == pytest.approx(motion.torque_amplitude, rel=1e-7)
 
 
 def test_a_drive_beside_its_excitation_keeps_the_speed() -> None:

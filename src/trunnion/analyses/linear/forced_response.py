@@ -59,22 +59,6 @@ class LinearResponse(Result):
     joints: tuple[str, ...]
     names: tuple[str, ...]
 
-    @classmethod
-    def sampled(
-        cls,
-        tau: Array,
-        twist: Array,
-        torque: Array,
-        rotation: Array,
-        joint_rotation: Array,
-        shafts: tuple[str, ...],
-        joints: tuple[str, ...],
-        names: tuple[str, ...],
-    ) -> LinearResponse:
-        """From samples over one period, its end included; amplitudes are those of the samples."""
-        sizes = np.ptp(twist, axis=0) / 2, np.ptp(torque, axis=0) / 2, torque[:-1].mean(axis=0)
-        return cls(tau, twist, torque, rotation, joint_rotation, *sizes, shafts, joints, names)
-
     @property
     def largest_joint_rotation(self) -> float:
         """The largest deviation at any joint's input [rad]; 0 without joints."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LinearResponse
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
@@ -24,8 +25,10 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
+from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import integrate
 
+Array = NDArray[np.float64]
 SAMPLES = 256
 PER_CYCLE = 8
 """Samples at least per cycle of the highest mode."""
@@ -100,16 +103,26 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     states = orbit.trajectory.at(times)
     motion = prepared.observe(orbit.system, times, states)
     topo = prepared.assembly.topology
-    # Nothing is cut off here, so no rotation of a joint's input counts as a deviation from what is known.
-    response = LinearResponse.sampled(
-        times * speed,
-        motion.twist,
-        motion.torque,
-        states[:, : topo.size],
-        np.zeros(len(topo.joints)),
-        prepared.shafts,
-        tuple(prepared.assembly.line.names[topo.stations[j].element] for j in topo.joints),
-        topo.names,
+
+    def curves(at: Array) -> Array:
+        seen = prepared.observe(orbit.system, at, orbit.trajectory.at(at))
+        return np.hstack([seen.twist, seen.torque])
+
+    cuts = orbit.trajectory.time_of_state
+    twist, torque = np.split(extremes(curves, cuts).span / 2, 2)
+    response = LinearResponse(
+        tau=times * speed,
+        twist=motion.twist,
+        torque=motion.torque,
+        rotation=states[:, : topo.size],
+        # Nothing is cut off here, so no rotation of a joint's input counts as a deviation from what is known.
+        joint_rotation=np.zeros(len(topo.joints)),
+        twist_amplitude=twist,
+        torque_amplitude=torque,
+        torque_mean=np.split(fourier(curves, cuts, 0)[0].real, 2)[1],
+        shafts=prepared.shafts,
+        joints=tuple(prepared.assembly.line.names[topo.stations[j].element] for j in topo.joints),
+        names=topo.names,
     )
     return OwnMotion(orbit, response, found.extra_torque, prepared.assembly, speed)
 
