@@ -19,3 +19,24 @@ def test_unit_of_the_description(analysis, unit, text):
     other = "rpm" if unit != "rpm" else "Hz"
     assert f" {other}" not in "\n".join([str(result), *map(str, result.findings)])
     assert f" {other}" in result.describe(other)
+
+
+QUESTIONS = {
+    "resonance_speeds": lambda line: tn.resonance_speeds(line, 1),
+    "speed_sweep": lambda line: tn.speed_sweep(line, [100.0, tn.rpm(1500)]),
+    "stable_limit": lambda line: tn.stable_limit(line, "HookeJoint 1.angle", [150.0, tn.rpm(1500)], scan=8, high=0.5),
+    "periodic_response": lambda line: tn.periodic_response(line, tn.rpm(1500), compare=False),
+    "run_up": lambda line: tn.run_up(line, tn.rpm(1400), tn.rpm(1500), acceleration=200, steady=0),
+}
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_speeds_of_every_result_are_in_that_unit(question):
+    """And in no other, whatever the result prints; a unit that is asked for goes before it."""
+    for unit in ("rpm", "Hz", "rad/s"):
+        line = tn.Driveline(LINE, operation=tn.Operation(speed="1500 rpm", speed_unit=unit))
+        result = QUESTIONS[question](line)
+        others = {"rpm", "Hz", "rad/s"} - {unit}
+        assert f" {unit}" in str(result) and not any(f" {other}" in str(result) for other in others)
+        asked = others.pop()
+        assert f" {asked}" in result.describe(asked) and f" {unit}" not in result.describe(asked)

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.charts.stability_chart import stability_chart
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
@@ -25,6 +26,7 @@ from trunnion.results.chart import StabilityChart, require_pixels
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
+from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ class StableLimit(Result):
 
     speed (speed,) [rad/s]; limit (speed,) in SI units: the value below which no instability was found; kind
     (speed,): codes of ``LimitKind``; intervals (speed,): how many separate unstable intervals the scan met;
-    low, high, step: the scan; ``findings`` say what of the line is left out.
+    low, high, step: the scan; ``findings`` say what of the line is left out; speed_unit: that speeds are printed in.
     """
 
     parameter: str
@@ -75,6 +77,7 @@ class StableLimit(Result):
     step: float
     accuracy: float
     findings: tuple[Finding, ...] = ()
+    speed_unit: str = "rad/s"
 
     @property
     def smallest(self) -> float:
@@ -105,18 +108,23 @@ class StableLimit(Result):
         """The limit over speed; see ``plots.stable_limit.draw``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def __str__(self) -> str:
-        at = self.critical_speed
-        found = f"{self.smallest:.6g} {self.unit}" + (f", set at {at:.6g} rad/s" if at else ", the end of the scan")
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit, at = unit or self.speed_unit, self.critical_speed
+        where = f"set at {show_speed(at, unit)}" if at else "the end of the scan"
+        low, high = float(self.speed.min()) * speed_factor(unit), show_speed(float(self.speed.max()), unit)
         several = int(np.count_nonzero(self.intervals > 1))
         lines = [
-            f"largest stable {self.parameter} at {len(self.speed)} speeds from {self.speed.min():.6g} to "
-            f"{self.speed.max():.6g} rad/s: {found}",
+            f"largest stable {self.parameter} at {len(self.speed)} speeds from {low:.6g} to {high}: "
+            f"{self.smallest:.6g} {self.unit}, {where}",
             f"  first crossing of a scan in steps of {self.step:.3g} {self.unit}, bisected to {self.accuracy:.1e}",
         ]
         if several:
             lines.append(f"  at {several} speeds the line is stable again above the limit, and unstable once more")
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+
+    def __str__(self) -> str:
+        return self.describe()
 
 
 def stable_limit(
@@ -191,7 +199,8 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     said = left_out("stable_limit", chart.line) if chart.line is not None else ()
     accuracy = step / 2**BISECTIONS
     several = starts.sum(axis=0)
-    return StableLimit(chart.y_label, chart.y_unit, speed, limit, kind, several, low, high, step, accuracy, said)
+    shown = speed_unit(chart.line) if chart.line is not None else "rad/s"
+    return StableLimit(chart.y_label, chart.y_unit, speed, limit, kind, several, low, high, step, accuracy, said, shown)
 
 
 def _bisect(chart: StabilityChart, speed: float, stable: float, unstable: float) -> float:

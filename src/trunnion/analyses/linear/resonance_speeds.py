@@ -27,6 +27,7 @@ import numpy as np
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
@@ -93,11 +94,12 @@ class Resonance:
 
 @dataclass(frozen=True, repr=False)
 class ResonanceSpeeds(Result):
-    """Resonances by ascending speed; ``findings`` say what of the line is left out."""
+    """Resonances by ascending speed; ``findings`` say what of the line is left out; unit: that of printed speeds."""
 
     resonances: tuple[Resonance, ...]
     orders: int
     findings: tuple[Finding, ...] = ()
+    unit: str = "rad/s"
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         return iter(self.resonances)
@@ -132,15 +134,19 @@ class ResonanceSpeeds(Result):
 
     def within(self, low: float, high: float) -> ResonanceSpeeds:
         """Those between two input speeds [rad/s]."""
-        return ResonanceSpeeds(tuple(r for r in self.resonances if low <= r.speed <= high), self.orders, self.findings)
+        return replace(self, resonances=tuple(r for r in self.resonances if low <= r.speed <= high))
 
-    def __str__(self) -> str:
-        said = [f"  {finding}" for finding in self.findings]
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit, said = unit or self.unit, [f"  {finding}" for finding in self.findings]
         if not self.resonances:
             none = "no parametric resonance speeds: the line has no bent joint or varying mesh, or no elastic mode"
             return "\n".join([none, *said])
-        rows = [f"  {show_speed(r.speed)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
+        rows = [f"  {show_speed(r.speed, unit)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
         return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows, *said])
+
+    def __str__(self) -> str:
+        return self.describe()
 
 
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:
@@ -156,7 +162,7 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     modes = natural_frequencies(assembly).frequency
     found = [r for source in sources(assembly) for r in _excited(modes, orders, source)]
     said = left_out("resonance_speeds", assembly.line)
-    return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said)
+    return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said, speed_unit(assembly.line))
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ from trunnion.analyses.orbits.free_orbit import closes, kept_speed_orbit
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import drive_torques, given_shares, static_torque
@@ -92,6 +93,11 @@ class RunUp(Result):
     vibration: Array
     lag: Array
     steady: SteadyResponse | None
+
+    @property
+    def unit(self) -> str:
+        """Unit that speeds are printed in: that of the line's description."""
+        return speed_unit(self.simulation.line.assembly.line)
 
     @property
     def outcome(self) -> Outcome:
@@ -174,8 +180,9 @@ class RunUp(Result):
         """Envelope against the steady response; see ``trunnion.plots.run_up``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """The result in a few lines, speeds in ``unit``."""
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
         low, high = self.simulation.profile.speed[0], self.simulation.profile.speed[-1]
         rows = []
         for i, name in enumerate(self.shafts):

@@ -27,7 +27,7 @@ from trunnion.analyses.orbits.orbit_result import PeriodicOrbit, speed_in_words
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
@@ -97,6 +97,11 @@ class PeriodicResponse(Result):
     orbit: PeriodicOrbit
     comparison: LinearComparison | None
     no_comparison: str
+
+    @property
+    def unit(self) -> str:
+        """Unit that speeds are printed in: that of the line's description."""
+        return speed_unit(self.line.assembly.line)
 
     @property
     def outcome(self) -> Outcome:
@@ -205,7 +210,7 @@ class PeriodicResponse(Result):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What to read first, gravest first."""
-        return self.findings_in("rad/s")
+        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, speeds in ``unit``."""
@@ -241,9 +246,9 @@ class PeriodicResponse(Result):
         """Torque amplitude of every order; see ``trunnion.plots.motion``."""
         return drawing(self, "plot_orders")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """The result in a few lines, speeds in ``unit``."""
-        at = show_speed(self.speed, unit)
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        at = show_speed(self.speed, unit or self.unit)
         if not self.outcome.ok:
             return f"no periodic motion found at {at}: {self.outcome}"
         rows = [
