@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SETTLED = 1e-8
 """Tolerance of motions that only have to come near an orbit."""
+SAME = 1e-9
+"""Time between two crossings, over that between looks, below which they are one."""
 LOOSER = (1.0, 10.0, 100.0)
 """A motion that touches a switching surface may chatter there at one tolerance and pass at another."""
 
@@ -226,6 +228,14 @@ class Image(NamedTuple):
     trajectory: Trajectory
 
 
+class Crossings(NamedTuple):
+    """Points (m, n) and times (m,) [s] at which a motion meets a section, and the last stretch of it."""
+
+    points: Array
+    time: Array
+    run: Trajectory
+
+
 class _Applied:
     """What follows from ``apply`` alone."""
 
@@ -341,6 +351,32 @@ class SectionMap(_Applied):
         speed = gradient @ rate + by_time
         final[1:] -= np.outer(final[1:] @ gradient / speed, rate)
         return Image(final[0], final[1:], run.time - time, End.REACHED, run)
+
+    def crossings(self, state: Array, wanted: int) -> Crossings:
+        """The next ``wanted`` crossings of the motion from ``state`` at time 0; looked for in pieces of a hundredth of
+        the limit, so that no digits are lost to time."""
+        system, period, piece = self.system, self.system.forcing_period, self.limit / 100
+        watched, own = watch(system, (self.section,)), system.equations.transitions.shape[1]
+        points, times, have, passed, since, last = [], [], 0, 0.0, 0.0, -np.inf
+        time, x, regime, step = 0.0, state, system.regime_at(0.0, state), 0.0
+        while True:
+            run = integrate(
+                system.equations, time, time + piece, x, regime=regime, tolerance=self.tolerance, watch=watched,
+                dense=False, first_step=step, most_steps=self.most_steps,
+            )  # fmt: skip
+            mine = run.event_which == own
+            met = run.event_time[mine] - time + passed
+            # A crossing that rounding leaves on its near side is met again at once; it counts as one.
+            once = np.diff(met, prepend=last) > SAME * piece
+            points.append(run.event_before[mine][once])
+            times.append(met[once])
+            last, have = met[-1] if len(met) else last, have + int(once.sum())
+            since = 0.0 if mine.any() else since + piece
+            if run.end is not End.REACHED or have >= wanted or since >= self.limit:
+                return Crossings(np.concatenate(points)[:wanted], np.concatenate(times)[:wanted], run)
+            passed += piece
+            time = 0.0 if period is None else (time + piece) % period
+            x, regime, step = run.final[0], run.final_regime, run.next_step
 
     def _gradient(self, run: Trajectory) -> tuple[Array, float]:
         n, g = self.system.size, np.zeros(1)

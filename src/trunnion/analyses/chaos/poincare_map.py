@@ -19,22 +19,22 @@ from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.analyses.motion.long_motion import LONGEST_REPEAT, failure, motion_size, repeat_of, usual_time, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
-from trunnion.numerics.integration.integration import End, integrate
+from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.units import with_unit
-from trunnion.systems.events import Event, watch
-from trunnion.systems.maps import TimedMap
+from trunnion.systems.events import Event
+from trunnion.systems.maps import SectionMap, TimedMap
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-SAME = 1e-9
-"""Time between two crossings, over that between looks, below which they are one."""
+MOST_STEPS = 10_000_000
+"""Of the integrator between two looks at a section."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -166,48 +166,22 @@ def poincare_map(
 def _sectioned(
     system: System, section: Event, state: Array, points: int, transient: int, longest: float | None, tolerance: float
 ) -> PoincareMap:
-    if section.direction not in (-1, 1):
-        raise InputError("must be +1 or −1 on a section", element="Event", key="direction", value=section.direction)
-    watched, own = watch(system, (section,)), system.equations.transitions.shape[1]
-    period = system.forcing_period
-    span = longest if longest is not None else 1000 * (period or usual_time(system, state, tolerance))
-    parts, times, time, passed, x = [], [], 0.0, 0.0, state
-    wanted, have, step = points + transient, 0, 0.0
+    if longest is None and system.forcing_period is None:
+        longest = 1000 * usual_time(system, state, tolerance)
+    cut = SectionMap(system, section, longest, tolerance, MOST_STEPS)
+    met = cut.crossings(state, points + transient)
+    found, at, have = met.points[transient:], met.time[transient:], len(met.points)
     outcome = Outcome(True, "reached", f"{points} points after {transient} left out")
-    regime, piece = system.regime_at(0.0, x), span / 100
-    since, last = 0.0, -np.inf
-    while have < wanted:
-        run = integrate(
-            system.equations, time, time + piece, x, regime=regime, tolerance=tolerance, watch=watched,
-            dense=False, first_step=step, most_steps=10_000_000,
+    if met.run.end is not End.REACHED:
+        guards = (*(system.regimes.guards if system.regimes else ()), section.label)
+        outcome = outcome_of(system, met.run, tolerance, guards)
+    elif have < points + transient:
+        outcome = Outcome(
+            False, "never crossed",
+            f"{section.label} was crossed {have} times and then not within {cut.limit:.6g} s; choose a level the "
+            "motion passes, the other direction, or raise longest",
         )  # fmt: skip
-        mine = run.event_which == own
-        met = run.event_time[mine] - time + passed
-        # A crossing that rounding leaves on its near side is met again at once; it counts as one.
-        once = np.diff(met, prepend=last) > SAME * piece
-        parts.append(run.event_before[mine][once])
-        times.append(met[once])
-        last = met[-1] if len(met) else last
-        have += int(once.sum())
-        since = 0.0 if mine.any() else since + piece
-        if run.end is not End.REACHED:
-            outcome = outcome_of(
-                system, run, tolerance, (*(system.regimes.guards if system.regimes else ()), section.label)
-            )
-            break
-        if since >= span and have < wanted:
-            outcome = Outcome(
-                False, "never crossed",
-                f"{section.label} was crossed {have} times and then not within {since:.6g} s; choose a level the "
-                "motion passes, the other direction, or raise longest",
-            )  # fmt: skip
-            break
-        passed += piece
-        time = 0.0 if period is None else (time + piece) % period
-        x, regime, step = run.final[0], run.final_regime, run.next_step
-    found = np.concatenate(parts)[transient:wanted]
-    at = np.concatenate(times)[transient:wanted]
-    length = float(np.mean(np.diff(at))) if len(at) > 1 else piece
+    length = float(np.mean(np.diff(at))) if len(at) > 1 else cut.limit / 100
     at = at - (at[0] if len(at) else 0.0)
     arrow = "rising" if section.direction > 0 else "falling"
     return _result(system, found, at, f"{section.label} {arrow}", transient, tolerance, outcome, length)

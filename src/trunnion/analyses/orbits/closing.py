@@ -96,14 +96,13 @@ class Closing(Generic[M]):
     def solve(self, guess: Array) -> Root:
         """The orbit near ``guess`` (n + unknown values,)."""
         n, low, high = self.size, *self.within
-        size = np.append(self.scale[:n], self.scale[n:])
 
         def residual(z: Array) -> tuple[Array, Array]:
             inside = len(z) == n or low < z[n] < high
             left, slope = self.equations(z if inside else np.full_like(z, np.nan))
-            return left * size, slope * size[:, None]
+            return left * self.scale, slope * self.scale[:, None]
 
-        return solve(residual, guess, size, tolerance=self.tolerance)
+        return solve(residual, guess, self.scale, tolerance=self.tolerance)
 
     def passage(self, point: CurvePoint) -> Passage:
         """The closed motion at a point of the curve, computed once."""
