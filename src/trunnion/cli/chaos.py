@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from trunnion.cli import output
 from trunnion.cli.motion import START, Set, Tolerance, _state
 from trunnion.cli.options import Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import check_places, print_result, write_result
-from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.cli.places import PICTURES_AND_DATA, check_places, print_result, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from trunnion.systems.events import Event
     from trunnion.systems.system import System
 
@@ -35,7 +32,6 @@ Section = Annotated[
     str | None,
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
 ]
-ENDINGS = (".png", ".pdf", ".svg", ".nc")
 Output = Annotated[
     list[Path] | None,
     typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
@@ -65,13 +61,13 @@ def lyapunov_spectrum(
     from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check_endings(to)
+    check_places(to, PICTURES_AND_DATA)
     with output.progress("exponents") as advance:
         result = compute(
             system, periods, duration=duration, start=_state(start), starts=starts, transient=transient,
             tolerance=tolerance, progress=advance,
         )  # fmt: skip
-    written = _files(to, _stem(file), "exponents", result.data, lambda: result.plot())
+    written = write_results(to, _stem(file), "exponents", result.data, lambda: result.plot())
     if not as_json:
         print_result(str(result), written)
         output.finish(result.outcome, written)
@@ -116,13 +112,13 @@ def poincare_map(
     from trunnion.analyses.chaos.poincare_map import poincare_map as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check_endings(to)
+    check_places(to, PICTURES_AND_DATA)
     with output.compile_notice():
         result = compute(
             system, points, section=_section(section), every=every, start=_state(start),
             transient=500 if transient is None else transient, tolerance=tolerance,
         )  # fmt: skip
-    written = _files(to, _stem(file), "map", result.data, lambda: result.plot())
+    written = write_results(to, _stem(file), "map", result.data, lambda: result.plot())
     if not as_json:
         output.finish(result.outcome, written)
         print_result(str(result), written)
@@ -167,13 +163,13 @@ def certify_chaos(
     from trunnion.analyses.chaos.certify_chaos import certify_chaos as compute
 
     system = _subject(file, parameters, speed, unit, load_case)
-    _check_endings(to)
+    check_places(to, PICTURES_AND_DATA)
     with output.progress("exponents, map and sweep") as advance:
         result = compute(
             system, periods, duration=duration, section=_section(section), start=_state(start), starts=starts,
             transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,
         )  # fmt: skip
-    written = _files(to, _stem(file), "certificate", result.data, lambda: result.plot())
+    written = write_results(to, _stem(file), "certificate", result.data, lambda: result.plot())
     if not as_json:
         print_result(str(result), written)
         return
@@ -260,29 +256,3 @@ def _sweep(text: str | None) -> tuple[str, float, float, int] | bool:
 
 def _stem(file: str) -> str:
     return file_stem(file.replace(":", "-"))
-
-
-def _check_endings(to: list[Path] | None) -> None:
-    """As ``check_places``, for commands that write no tables."""
-    for path in to or []:
-        if path.suffix.lower() not in ENDINGS and not path.is_dir():
-            raise InputError(
-                "is not written by this command",
-                key="--output",
-                value=str(path),
-                remedy=f"end it in one of {', '.join(ENDINGS)}",
-            )
-    check_places(to)
-
-
-def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
-    """The files asked for, or a picture and the data in the default folder."""
-    from trunnion.writing import folder_written_whole
-
-    if to:
-        return [write_result(path, data, draw) for path in to]
-    with folder_written_whole(DEFAULT_FOLDER) as temporary:
-        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
-        for name in names:
-            write_result(name, data, draw)
-    return [DEFAULT_FOLDER / name.name for name in names]

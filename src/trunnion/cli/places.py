@@ -8,15 +8,22 @@ from typing import Any
 
 from trunnion.cli import output
 from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.errors import InputError
 
+PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
+"""Endings of commands whose results are no tables."""
 RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s"}
 """Axes that may be the rows of a table, with their units."""
 
 
-def check_places(to: list[Path] | None) -> None:
-    """Refuse what cannot be written, before anything is computed."""
+def check_places(to: list[Path] | None, endings: tuple[str, ...] = ()) -> None:
+    """Refuse what cannot be written, before anything is computed; ``endings`` of a command that writes no tables."""
     from trunnion.cli.files import check_folder, check_outputs
 
+    for path in to or []:
+        if endings and path.suffix.lower() not in endings and not path.is_dir():
+            remedy = f"end it in one of {', '.join(endings)}"
+            raise InputError("is nothing this command writes", key="--output", value=str(path), remedy=remedy)
     if to:
         check_outputs(to)
     else:

@@ -10,7 +10,7 @@ import typer
 
 from trunnion.cli import output
 from trunnion.cli.options import Json, file_stem, read_line, read_speed
-from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.cli.places import PICTURES_AND_DATA, check_places, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def frequency_response(
     subject, length = _subject(name, parameters)
     unit = _unit(subject)
     first, last = _range(subject, low, high)
-    _check(to)
+    check_places(to, PICTURES_AND_DATA)
     known = methods_of(subject)
     # The exact motion of longer lines is for those without joints: asked for by name.
     every = known if isinstance(subject, PiecewiseOscillator) else known[:2]
@@ -88,7 +88,9 @@ def frequency_response(
         if not len(response.frequency):
             response.outcome.require()
     one = found.responses[chosen[0]]
-    written = _files(to, file_stem(name), "frequency-response", one.data, lambda: found.plot(length=length, unit=unit))
+    written = write_results(
+        to, file_stem(name), "frequency-response", one.data, lambda: found.plot(length=length, unit=unit)
+    )
     if as_json:
         output.write_json("frequency-response", {"methods": _json(found), "written": [str(path) for path in written]})
         return
@@ -136,7 +138,7 @@ def sweep(
     elif curve and curve not in (springs := staged_line(subject, first).springs):
         remedy = nearest(curve, list(springs))
         raise InputError("is no shaft or mesh of the line", key="--curve", value=curve, remedy=remedy)
-    _check(to)
+    check_places(to, PICTURES_AND_DATA)
     grid = np.linspace(first, last, points)
     grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
     if not isinstance(subject, PiecewiseOscillator):
@@ -150,7 +152,7 @@ def sweep(
 
         return draw_sweeps(found, length=length)
 
-    written = _files(to, file_stem(name), "sweep", _sweeps_data(found), draw)
+    written = write_results(to, file_stem(name), "sweep", _sweeps_data(found), draw)
     if as_json:
         content = [
             {
@@ -185,7 +187,7 @@ def _sweep_line(line: Driveline, grids: list[Any], name: str, curve: str, to: li
 
         return draw_line_sweeps(found, spring=curve, unit=unit)
 
-    written = _files(to, file_stem(name), "sweep", _sweeps_data(found), draw)
+    written = write_results(to, file_stem(name), "sweep", _sweeps_data(found), draw)
     if as_json:
         staged = [row[0].spring for row in zip(*found[0].contacts, strict=True)]
         content = [
@@ -317,38 +319,6 @@ def _sweeps_data(found: list[Any]) -> Any:
     over = next(str(n) for n in found[0].data.dims if n in ("frequency", "speed"))
     parts = [one.data.sortby(over) for one in found]
     return xr.concat(parts, dim="direction", combine_attrs="drop_conflicts").assign_coords(direction=["up", "down"])
-
-
-def _check(to: list[Path] | None) -> None:
-    from trunnion.plots.style import FORMATS
-
-    for path in to or []:
-        if path.suffix.removeprefix(".").lower() not in (*FORMATS, "nc"):
-            remedy = "end it in .png, .pdf, .svg or .nc"
-            raise InputError("is nothing this command writes", key="output", value=str(path), remedy=remedy)
-
-
-def _files(to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any]) -> list[Path]:
-    from trunnion.writing import folder_written_whole
-
-    if to:
-        return [_write(path, data, draw) for path in to]
-    with folder_written_whole(DEFAULT_FOLDER) as temporary:
-        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
-        for path in names:
-            _write(path, data, draw)
-    return [DEFAULT_FOLDER / path.name for path in names]
-
-
-def _write(path: Path, data: Any, draw: Callable[[], Any]) -> Path:
-    from trunnion.plots.style import save
-    from trunnion.results.files import save_dataset
-
-    if path.suffix.lower() == ".nc":
-        save_dataset(data, path)
-    else:
-        save(draw().figure.figure, path)
-    return path
 
 
 def _print(text: str, written: list[Path]) -> None:

@@ -122,7 +122,7 @@ class IntegratedMap:
     def size(self) -> int:
         return self.system.size
 
-    @property
+    @cached_property
     def length(self) -> float:
         period = self.system.forcing_period
         if period is None:
@@ -200,7 +200,7 @@ class IntegratedMap:
 class TimedMap(IntegratedMap):
     """x → φ(T; x) of an autonomous system, the time T [s] its only value."""
 
-    @property
+    @cached_property
     def length(self) -> float:
         return float(self.values[0])
 

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.motion.simulation import positive_time
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
@@ -184,13 +185,12 @@ def exact_motion(
     shown = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
     if duration is None and shown is not None and shown.size:
         duration = float(shown[-1]) - start_time
-    if duration is None or not (np.isfinite(duration) and duration > 0):
-        raise InputError("must be a positive time", key="duration", value=duration, remedy="give seconds, or times")
+    duration = positive_time(duration, "give seconds, or times")
     if isinstance(most_events, bool) or most_events != int(most_events) or most_events < 1:
         raise InputError("must be a whole number from 1", key="most_events", value=most_events)
-    end = start_time + float(duration)
+    end = start_time + duration
     if shown is None:
-        shown = start_time + float(duration) * np.arange(SAMPLES + 1) / SAMPLES
+        shown = start_time + duration * np.arange(SAMPLES + 1) / SAMPLES
     elif not (np.all(np.diff(shown) >= 0) and shown[0] >= start_time and shown[-1] <= end):
         raise InputError(
             "must rise and lie within the run", key="times", value=[float(shown[0]), float(shown[-1])],

@@ -88,7 +88,9 @@ class Closing(Generic[M]):
             return left, slope
         size = self.scale[:n]
         left[:n] = (passage.state - z[:n]) / size
-        slope[:n] = np.hstack([passage.tangents - np.eye(n), passage.by_values]) / size[:, None]
+        slope[:n, :n], slope[:n, n:] = passage.tangents, passage.by_values
+        slope[range(n), range(n)] -= 1
+        slope[:n] /= size[:, None]
         if self.phase is not None:
             left[n], slope[n] = self.phase.row @ (z[:n] - self.phase.anchor), np.append(self.phase.row, np.zeros(count))
         return left, slope

@@ -91,7 +91,8 @@ class OscillatorMap(ExactMap):
             run = piecewise.period(o.regimes, o.coefficients, self.value, x, self.periods)
         except piecewise.TooManyEventsError:
             return _broken(2, len(by))
-        return Passage(run.state, run.tangents[:, :2], run.tangents[:, 2:][:, : len(by)], len(run.crossings), True, run)
+        changes = int((run.events[:, 3] >= 0).sum())
+        return Passage(run.state, run.tangents[:, :2], run.tangents[:, 2 : 2 + len(by)], changes, True, run)
 
     def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
         o, k = self.oscillator, piecewise.kernel()

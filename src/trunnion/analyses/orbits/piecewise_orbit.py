@@ -21,6 +21,7 @@ from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear.piecewise import Passage, move, states
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
@@ -88,23 +89,15 @@ class PiecewiseOrbit(Result):
         return times, states(o.regimes, o.coefficients, o.frequency, self.start, times)
 
     def harmonics(self, highest: int) -> Complex:
-        """Fourier coefficients (highest + 1,) of x: x = Re Σ c_k e^{2πikt/T}, exact up to rounding and the samples.
-
-        Taken from the corners of the motion, stretch by stretch (Gauss–Legendre with 16 points each).
-        """
+        """Fourier coefficients (highest + 1,) of x: x = Re Σ c_k e^{2πikt/T}, integrated between its crossings."""
         o = self.oscillator
-        length = self.periods * o.period
-        cuts = np.unique(np.concatenate([self.crossings[:, 0], np.linspace(0, length, 4 * highest + 9)]))
-        nodes, weights = np.polynomial.legendre.leggauss(16)
-        half = np.diff(cuts)[:, None] / 2
-        times = (cuts[:-1, None] + half * (1 + nodes)).ravel()
-        weight = (half * weights).ravel()
-        all_times = np.concatenate([[0.0], times])
-        x = states(o.regimes, o.coefficients, o.frequency, self.start, all_times)[1:, 0]
-        turning = np.exp(-2j * np.pi * np.arange(highest + 1)[:, None] * times / length)
-        found = (turning @ (weight * x)) / length
-        found[1:] *= 2
-        return np.asarray(found)
+
+        def x(times: Array) -> Array:
+            found = states(o.regimes, o.coefficients, o.frequency, self.start, np.concatenate([[0.0], times]))
+            return found[1:, :1]
+
+        cuts = np.unique(np.concatenate([[0.0], self.crossings[:, 0], [self.periods * o.period]]))
+        return fourier(x, cuts, highest)[:, 0]
 
     def declared(self) -> Iterator[Held]:
         """The motion over its period, its crossings and multipliers, and the numbers read off it."""
