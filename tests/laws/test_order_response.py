@@ -152,7 +152,7 @@ def test_excitation_on_a_held_disk_is_said() -> None:
     r = tn.order_response(line, [30.0])
     assert r.peak_torque[0, 0] == 0
     said = [f.sentence for f in r.findings]
-    assert any("The excitation of engine does nothing" in s for s in said)
+    assert any("engine.excitation: does nothing, a ConstantSpeed holds its rotation" in s for s in said)
     assert any("Nothing excites this line" in s for s in said)
 
 

@@ -201,7 +201,7 @@ TABLE: dict[str, Row] = {
     ),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
-        refused=_BASE,
+        refused=_FAR_END,
         said=_BY_PLACE,
         inert=_PASSIVE,
     ),

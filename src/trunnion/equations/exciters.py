@@ -17,6 +17,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
@@ -91,6 +92,14 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
             name = line.names[place]
             found.append(Exciter(name, order, own_order, amplitude, phase, compliance=mesh.compliance, over=over))
     return tuple(found)
+
+
+def quiet(line: Driveline) -> Driveline:
+    """``line`` without the excitations of its disks."""
+    for name, element in zip(line.names, line.elements, strict=True):
+        if isinstance(element, Disk) and element.excitation:
+            line = line.replace(name, excitation=None, firing_angles=None, misfiring=None)
+    return line
 
 
 def _size_of(harmonic: Excitation) -> str:

@@ -18,9 +18,9 @@ from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.exciters import quiet
 from trunnion.equations.line_system import line_system
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import require_balance
@@ -125,11 +125,3 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
         names=topo.names,
     )
     return OwnMotion(orbit, response, found.extra_torque, prepared.assembly, speed)
-
-
-def quiet(line: Driveline) -> Driveline:
-    """``line`` without the excitations of its disks."""
-    for name, element in zip(line.names, line.elements, strict=True):
-        if isinstance(element, Disk) and element.excitation:
-            line = line.replace(name, excitation=None)
-    return line

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.own_motion import quiet
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
+from trunnion.equations.exciters import quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.topology import require_period
@@ -96,7 +96,7 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
     while True:
         motions, guess = [], before
         for speed in speeds:
-            problem = _Balance(LineSystem(prepared[0].assembly, float(speed)), period, harmonics)
+            problem = Balance(LineSystem(prepared[0].assembly, float(speed)), period, harmonics)
             motion = problem.solve(guess)
             guess = motion.deviation if motion.found else None
             motions.append(motion)
@@ -118,21 +118,24 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
 
 
 @dataclass(frozen=True)
-class _Motion:
-    """One motion: deviation (harmonic, n) [rad], slopes (harmonic, 2n, 2n), and the rest as ``OwnMotions``."""
+class FreeMotion:
+    """One motion: deviation (harmonic, n) [rad], harmonics −H … H; torque [N m at the input] that drives beyond the
+    balance; outermost [rad]: size of the last harmonics; slopes (harmonic, 2n, 2n), and the rest as ``OwnMotions``."""
 
     found: bool
     deviation: Complex
+    torque: float
     outermost: float
     slopes: Complex
     shift: Array
     drift: Array
 
 
-class _Balance:
-    """The equations of the harmonics at one speed."""
+class Balance:
+    """The equations of the harmonics at one speed; the mean deviation has no part along ``phase`` (n,), by default a
+    turn of the whole line."""
 
-    def __init__(self, line: LineSystem, period: float, harmonics: int) -> None:
+    def __init__(self, line: LineSystem, period: float, harmonics: int, phase: Array | None = None) -> None:
         self.line, self.count = line, harmonics
         topo = line.assembly.topology
         self.n, self.speed = topo.size, line.speed
@@ -141,6 +144,7 @@ class _Balance:
         self.period = period
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         self.turn = np.array([float(topo.speed_ratio[s]) for s in places])
+        self.phase = self.turn if phase is None else phase
         row = line.assembly.packed.values.copy()
         row[0] = line.speed
         self.row = row
@@ -158,12 +162,12 @@ class _Balance:
         held = self.line.twisted()[: self.n] - self.line.rigid(0.0)[: self.n]
         return self._kept(np.fft.fft(states + held, axis=0) / self.times)
 
-    def solve(self, guess: Complex | None) -> _Motion:
+    def solve(self, guess: Complex | None) -> FreeMotion:
         """Newton's method from ``guess`` (harmonic, n), or from rigid shafts."""
         x = self.start() if guess is None or len(guess) != 2 * self.count + 1 else guess.copy()
         torque, found, slopes = 0.0, False, np.zeros((self.times, self.n, 2 * self.n))
         for _ in range(ITERATIONS):
-            acceleration, slopes, drive = self._sampled(x, torque)
+            acceleration, slopes, drive = self.sampled(x, torque)
             step, more = self._step(x, acceleration, slopes, drive)
             if not np.all(np.isfinite(step)):
                 break
@@ -175,23 +179,23 @@ class _Balance:
         if not found and guess is not None:
             return self.solve(None)
         size = np.abs(x).max(axis=1)
-        return _Motion(found, x, float(max(size[0], size[-1])), *self._neutral(x, slopes))
+        return FreeMotion(found, x, torque, float(max(size[0], size[-1])), *self._neutral(x, slopes))
 
     def _kept(self, spectrum: Complex) -> Complex:
         """Harmonics −H … H of a spectrum in NumPy's order."""
         return np.asarray(spectrum[np.arange(-self.count, self.count + 1) % self.times])
 
-    def _states(self, x: Complex) -> Array:
+    def states(self, x: Complex) -> Array:
         """States (time, 2n) of harmonics."""
         h = np.arange(-self.count, self.count + 1)
         full = np.zeros((2, self.times, self.n), dtype=complex)
         full[0, h % self.times], full[1, h % self.times] = x, 1j * self.rate * h[:, None] * x
         return np.concatenate(list((np.fft.ifft(full, axis=1) * self.times).real), axis=1)
 
-    def _sampled(self, x: Complex, torque: float) -> tuple[Array, Array, Array]:
+    def sampled(self, x: Complex, torque: float) -> tuple[Array, Array, Array]:
         """Accelerations (time, n), their slopes by the states (time, n, 2n) and by the torque (time, n)."""
         n, m = self.n, 2 * self.n
-        states, numbers = self._states(x), self.numbers + torque * self.drive
+        states, numbers = self.states(x), self.numbers + torque * self.drive
         with_more = numbers + self.drive
         out = np.empty((self.times, m + 1, m))
         drive = np.empty((self.times, m))
@@ -222,9 +226,9 @@ class _Balance:
         unit = float(np.abs(matrix[:size, :size]).max())
         scale = unit / max(float(np.abs(matrix[:size, size]).max()), 1e-300)
         matrix[:size, size] *= scale
-        matrix[size, self.count * n : self.count * n + n] = unit * self.turn / np.linalg.norm(self.turn)
+        matrix[size, self.count * n : self.count * n + n] = unit * self.phase / np.linalg.norm(self.phase)
         left = self._kept(np.fft.fft(acceleration, axis=0) / self.times) - (s**2)[:, None] * x
-        right = np.append(left.reshape(-1), -unit * (self.turn @ x[self.count]) / np.linalg.norm(self.turn))
+        right = np.append(left.reshape(-1), -unit * (self.phase @ x[self.count]) / np.linalg.norm(self.phase))
         try:
             found = np.linalg.solve(matrix, right)
         except np.linalg.LinAlgError:

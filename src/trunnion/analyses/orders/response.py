@@ -27,7 +27,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
-from trunnion.equations.steady_base import bent, refuse_own_motion, require_steady_base
+from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
@@ -75,7 +75,6 @@ def order_response(
     table = assembly.table(len(speed))
     table[:, 0] = speed
     require_steady_base(assembly, table)
-    refuse_own_motion(assembly, "use tn.periodic_response, or put a ConstantSpeed in front")
     wanted = None if orders is None else _checked_orders(orders)
     spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=statically_twisted)

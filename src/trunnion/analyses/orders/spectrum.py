@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.orders.channels import Channels, channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
+from trunnion.analyses.orders.own_orders import OwnBase, OwnOrders, about, add_own, seen_about
 from trunnion.analyses.orders.straight import straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
@@ -169,9 +170,12 @@ class _Case:
         self.varies = bent(assembly) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
+        self.own = OwnOrders(assembly, self.turns) if self.topo.free and bent(assembly) else None
         self.reach = _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
-        if self.varies:
+        if self.own is not None:
+            self.batch = 1
+        elif self.varies:
             self.batch = self._batch()
         else:
             self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
@@ -201,6 +205,8 @@ class _Case:
 
     def solved(self, speed: Array) -> tuple[_Sum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
+        if self.own is not None:
+            return self._about_own_motion(self.own.at(float(speed[0])), float(speed[0]))
         if not self.varies:
             return self._straight(speed), np.zeros(len(speed))
         while True:
@@ -268,6 +274,37 @@ class _Case:
         largest = np.max([np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()], axis=0)
         largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
+
+    def _about_own_motion(self, own: OwnBase, speed: float) -> tuple[_Sum, Array]:
+        """One speed of a bent line that starts free."""
+        topo, cycles, table = self.topo, 1 / self.turns, self._table(np.array([speed]))
+        places, co = channels_of(topo), own.coefficients
+        total, last = _Sum(1, places.count, topo.size), 0.0
+        add_own(own, cycles, total.add)
+        for group in groups_of(self.shaken, self.row, cycles, own.count):
+            carrier = group.frequency or float(group.carrier) * speed
+            centres = [m for _, m in group.members]
+            h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
+            right, error = (
+                np.zeros((len(h), topo.size), dtype=complex),
+                np.zeros((len(h), places.springs), dtype=complex),
+            )
+            for exciter, m in group.members:
+                nu = np.array([[carrier + m * own.rate]])
+                force, twist = self._sources(group, table, co, own.base, nu, own.wave, exciter)
+                near = np.abs(h - m) <= own.count
+                change = np.fft.fft(force[0] / own.mass, axis=0) / len(own.tau)
+                right[near] += change[(h[near] - m) % len(own.tau)]
+                error[h == m] += twist[0]
+            seen = seen_about(own, topo, h, about(own, carrier, h, right))
+            seen[..., places.twist] += error
+            self._add_torque(seen, co, np.asarray(carrier + own.rate * h[None], dtype=float))
+            self._add_waves(seen, co, h, own.wave, own=False)
+            last = max(last, float(np.abs(seen[0, [0, -1]][:, places.torque]).max()))
+            for j, harmonic in enumerate(h):
+                total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
+        largest = max((float(np.abs(a[:, places.torque]).max()) for a in total.amplitude.values()), default=0.0)
+        return total, np.array([last / largest if largest else 0.0])
 
     def _base(self, speed: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
         plain = self.assembly.coefficients(self._table(speed), statically_twisted=False, any_frequency=True)

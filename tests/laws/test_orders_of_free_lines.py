@@ -1,0 +1,108 @@
+"""Orders of bent lines that start free, about their own motion: against the nonlinear periodic motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+
+ENGINE = ((3.0, 20.0, 0.3), (2.0, 30.0, 0.0), (0.5, 5.0, 1.0))
+
+
+def chain(scale, bend=1.0, viscous=0.2):
+    excitation = [{"order": k, "amplitude": a * scale, "phase": p} for k, a, p in ENGINE]
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.35, name="engine", drive_share=1, excitation=excitation),
+            tn.Shaft(stiffness=6e3, damping=6, name="clutch"),
+            tn.Disk(inertia=0.05, name="flange"),
+            tn.HookeJoint(angle=0.2 * bend, name="joint 1"),
+            tn.Shaft(stiffness=2e4, damping=4, name="tube", fork_offset=0.4),
+            tn.HookeJoint(angle=0.15 * bend, name="joint 2"),
+            tn.Disk(inertia=0.04, name="pinion"),
+            tn.Shaft(stiffness=8e3, damping=9, name="half shaft"),
+            tn.Disk(inertia=1.3, name="wheel", load_torque=40.0, viscous_load=viscous),
+        ]
+    )
+
+
+def branched(scale, bend=1.0):
+    excitation = [{"order": 1.5, "amplitude": 12.0 * scale}, {"order": 4, "amplitude": 9.0 * scale, "phase": 0.5}]
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.3, name="engine", drive_share=1, excitation=excitation),
+            tn.Shaft(stiffness=9e3, damping=6, name="front"),
+            tn.Disk(inertia=0.06, name="case"),
+            tn.HookeJoint(angle=0.18 * bend),
+            tn.Shaft(stiffness=1.5e4, damping=4, name="rear shaft"),
+            tn.Disk(inertia=0.05, name="pinion"),
+            tn.Ratio(ratio=-2),
+            tn.Shaft(stiffness=9e3, damping=9, name="axle"),
+            tn.Disk(inertia=1.1, name="wheel", load_torque=40.0, quadratic_load=0.02),
+            tn.Shaft(stiffness=5e3, damping=3, name="side", after="case"),
+            tn.Disk(inertia=0.2, name="pump", viscous_load=0.1),
+        ]
+    )
+
+
+def difference(line, speed):
+    """Largest difference of any order of any spring's torque from that of the nonlinear motion [N m]."""
+    linear = tn.order_response(line, [speed])
+    order, amplitude = tn.periodic_response(line, speed, tolerance=1e-11).order_spectrum(8.0)
+    worst = 0.0
+    for k, row in zip(order[1:], amplitude[1:], strict=True):
+        at = np.flatnonzero(np.isclose(linear.spectrum.order_numbers, k, atol=1e-9))
+        torque = linear.spectrum.amplitude[0][:, linear.spectrum.channels.torque]
+        ours = np.abs(torque[at[0]]) if len(at) else np.zeros(len(row))
+        worst = max(worst, float(np.abs(ours - row).max()))
+    return worst
+
+
+@pytest.mark.parametrize("make", [chain, branched])
+def test_the_difference_falls_with_the_square_of_the_excitation_at_full_angles(make):
+    """Linear about the own motion: at angles of 11°, what is left out is of second order in the excitation alone."""
+    large, small = (difference(make(scale), 100.0) for scale in (0.1, 0.01))
+    assert small < 1e-4
+    assert 1.95 < np.log10(large / small) < 2.2
+
+
+def test_without_excitation_it_is_the_own_motion_itself():
+    line = chain(0.0)
+    found = tn.order_response(line, [100.0])
+    motion = tn.periodic_response(line, 100.0, tolerance=1e-11)
+    assert found.vibratory_torque[0] == pytest.approx(np.asarray(motion.torque_peak_to_peak) / 2, rel=1e-7)
+    assert any("Nothing excites this line but its joints" in str(f) for f in found.findings)
+
+
+@pytest.mark.parametrize("viscous", [0.0, 0.2])
+def test_straight_joints_give_the_straight_line(viscous):
+    """The singular mean orders, bordered, go over into the rigid turning of a straight free line."""
+    bent = tn.order_response(chain(1.0, 1e-5, viscous), [80.0, 130.0], orders=[0.5, 2.0, 3.0])
+    straight = tn.order_response(chain(1.0, 0.0, viscous), [80.0, 130.0], orders=[0.5, 2.0, 3.0])
+    assert bent.torque == pytest.approx(straight.torque, rel=1e-7)
+    assert bent.rotation == pytest.approx(straight.rotation, rel=1e-6, abs=1e-9)
+
+
+def test_a_torque_fixed_in_time_is_that_of_a_straight_line_where_joints_are():
+    shaken = [{"frequency": 333.0, "amplitude": 20.0}]
+    bent, straight = (
+        tn.order_response(chain(0.0, bend).replace("engine", excitation=shaken), [100.0]) for bend in (1e-5, 0.0)
+    )
+    at = [int(np.flatnonzero((r.order == 0) & (r.frequency > 0))[0]) for r in (bent, straight)]
+    assert bent.torque[:, at[0]] == pytest.approx(straight.torque[:, at[1]], rel=1e-7)
+
+
+def test_a_line_with_stages_is_refused_with_a_way_out():
+    line = chain(1.0)
+    parts = list(line.elements)
+    parts[1] = tn.PiecewiseShaft.symmetric([(4e3, 0.02), (9e3, None)], damping=5, name="clutch")
+    with pytest.raises(tn.InputError, match="starts free and is bent.*tn.periodic_response"):
+        tn.order_response(tn.Driveline(parts), [100.0])
+
+
+def test_a_bent_free_line_is_judged():
+    line = tn.Driveline(chain(1.0).elements, limits=[tn.Limit(of="tube", max_torque=100.0)])
+    check = tn.assess(line, (100.0, 100.0)).check("max torque of tube")
+    assert check.value == pytest.approx(tn.order_response(line, [100.0]).peak_torque[0, 1], rel=1e-9)
+    assert np.isfinite(check.margin)
