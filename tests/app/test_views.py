@@ -57,7 +57,7 @@ def test_a_click_in_the_chart_shows_the_multipliers_there(look: Look) -> None:
     agrees(look, float(at["at_x"]), float(at["at_y"]))
 
 
-@pytest.mark.parametrize("view", ["Driveline", "Verdict", "Orders", "Stability", "Joints"])
+@pytest.mark.parametrize("view", ["Driveline", "Verdict", "Orders", "Stability", "Joints", "Limits", "Motion"])
 def test_every_view_computes_and_asks_nobody_outside(look: Look, view: str) -> None:
     look.at(f"?view={view.lower()}&stability.across=20&stability.up=16")
     assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0

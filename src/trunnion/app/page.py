@@ -89,6 +89,7 @@ class Page:
         self.aside = pn.Column(sizing_mode="stretch_width", margin=0)
         self._shown: tuple[Any, ...] = ()
         self._told = 0.0
+        self._done = 0
         self.template = pn.Template(_TEMPLATE, location=True)
         for name in ("navigation", "status", "main", "aside"):
             self.template.add_panel(name, getattr(self, name))
@@ -153,7 +154,8 @@ class Page:
         self.cancel_button.disabled = True
         said = html.escape(text or "ready")
         extra = "".join(f"<div>remark: {html.escape(r)}</div>" for r in remarks)
-        self.state.object = f"<span role='status' data-state='idle'>{said}</span>{extra}"
+        self._done += 1
+        self.state.object = f"<span role='status' data-state='idle' data-done='{self._done}'>{said}</span>{extra}"
 
     def failed(self, text: str) -> None:
         """A computation was refused or failed."""

@@ -22,6 +22,7 @@ from trunnion.app.variants import Sliders, buttons, difference
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import Step, View, links
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.files import loads
 from trunnion.errors import InputError, TrunnionError
 
 QUIET = 0.05
@@ -185,10 +186,8 @@ class Session:
         await asyncio.sleep(QUIET)
         view = self.view
         lines = {side: self._toml(side) for side in sides}
-        from trunnion.driveline.files import loads
-
-        steps = {s: view.steps(self.document.line if s == NOW else loads(toml)) for s, toml in lines.items()}
-        self.locked(partial(self.page.busy, 0.0))
+        steps = {side: view.steps(self.line(side)) for side in sides}
+        self.locked(partial(self._busy, 0.0))
         done, total = 0, sum(map(len, steps.values()))
         remarks: list[str] = []
         for place in range(max(map(len, steps.values()), default=0)):
@@ -212,11 +211,20 @@ class Session:
         """What one further computation for a side gives."""
         return (await self.pool.run(Job(self._toml(side), call, show, options), self)).value
 
+    def line(self, side: str) -> Driveline:
+        """The present line, or the kept one."""
+        return self.document.line if side == NOW or self.kept is None else loads(self.kept)
+
     def _toml(self, side: str) -> str:
         return self.document.toml if side == NOW else self.kept or self.document.toml
 
     def _progress(self, done: int, total: int, share: float) -> None:
-        self.locked(partial(self.page.busy, (done + share) / total))
+        self.locked(partial(self._busy, (done + share) / total))
+
+    def _busy(self, share: float) -> None:
+        """Progress of what is wanted still."""
+        if self.task and not self.task.done() and not self.task.cancelling():
+            self.page.busy(share)
 
     def locked(self, action: Callable[[], Any]) -> None:
         """Change the page from a task: in turn, with the document locked."""

@@ -230,3 +230,56 @@ def phasing(result: Any) -> Plain:
 def drawn(result: Any) -> str:
     """A figure as SVG."""
     return _picture(result, "svg").decode("utf-8")
+
+
+def limit(result: Any) -> Plain:
+    """Largest stable value over speed."""
+    return {"speed": result.speed, "limit": result.limit, "text": str(result)}
+
+
+def ranked(result: Any) -> Plain:
+    """What the first of the checks follows most, and the smallest changes."""
+    if not result.checks:
+        return {"name": [], "value": [], "label": "", "text": "no check is exceeded or has little to spare"}
+    check = result.checks[0]
+    rows = result.strongest(check, 16)
+    return {
+        "name": [variable.path for variable, _ in rows],
+        "value": [100 * change for _, change in rows],
+        "label": f"change of {check} [%] for +1 % (an angle: +1 deg, a phase: +10 deg)",
+        "text": str(result),
+    }
+
+
+def assembly(result: Any) -> Plain:
+    """Irregularity by each error of assembly alone."""
+    return {"name": list(result.names), "value": result.effect, "label": "change of irregularity", "text": str(result)}
+
+
+def periodic(result: Any) -> Plain:
+    """Torque of every shaft over a period of the true motion."""
+    return {"time": result.time, "names": list(result.shafts), "torque": list(result.torque.T), "text": str(result)}
+
+
+def waves(result: Any) -> Plain:
+    """Torque of every spring over a period by linear theory."""
+    form = result.wave()
+    return {"time": form.time, "names": list(result.springs), "torque": list(form.torque.T)}
+
+
+def run_up(result: Any) -> Plain:
+    """Largest torque turn by turn, and in the steady motion."""
+    steady = result.steady
+    return {
+        "speed": result.speed,
+        "names": list(result.shafts),
+        "largest": list(result.largest.T),
+        "steady_speed": steady.speed if steady else np.zeros(0),
+        "steady": list(steady.largest.T) if steady else [np.zeros(0)] * len(result.shafts),
+        "text": str(result),
+    }
+
+
+def plotted(result: Any) -> Plain:
+    """The picture that a result draws of itself, and how it prints."""
+    return {"svg": drawn(result.plot()), "text": str(result)}

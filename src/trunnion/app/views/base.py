@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import panel as pn
 
@@ -57,13 +57,15 @@ class Step:
         return toml if self.line is None else dumps(self.line)
 
 
-class Side(Protocol):
-    """The picture of one variant."""
+class Side:
+    """The picture of one variant; ``variant`` is "now" or "kept", set by the view."""
 
     panel: Any
+    variant = "now"
 
     def show(self, name: str, data: Any) -> None:
         """Show what the step ``name`` gave."""
+        raise NotImplementedError
 
     def refused(self, name: str, sentence: str) -> None:
         """Say why the step ``name`` gave nothing; asked for of soft steps only."""
@@ -109,7 +111,12 @@ class View:
         """The picture of a variant, made when it is first needed."""
         if variant not in self.sides:
             self.sides[variant] = self.side()
+            self.sides[variant].variant = variant
         return self.sides[variant]
+
+    def line_of(self, side: Side) -> Driveline:
+        """The line that a picture is of."""
+        return self.session.line(side.variant)
 
     def read(self, query: Mapping[str, str]) -> None:
         """Take settings from an address; what does not fit is left at its default."""
@@ -199,6 +206,11 @@ def _as(text: str, default: Setting) -> Setting:
     if isinstance(default, float):
         return float(text)
     return text[:200]
+
+
+def bounded(value: Setting, least: int, most: int = MOST_POINTS) -> int:
+    """A number of points within bounds, whatever an address says."""
+    return min(max(int(value), least), most)
 
 
 def select(label: str, **more: Any) -> Any:

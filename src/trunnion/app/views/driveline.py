@@ -12,7 +12,7 @@ from trunnion.app.calls import LINE, THE_LINE, Call
 from trunnion.app.document import LARGEST_FILE, Document
 from trunnion.app.editor import Editor
 from trunnion.app.upload import Upload
-from trunnion.app.views.base import Step, View
+from trunnion.app.views.base import Side, Step, View
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
@@ -95,7 +95,7 @@ class DrivelineView(View):
         return _Side(self.editor if not self.sides else None)
 
 
-class _Side:
+class _Side(Side):
     def __init__(self, editor: Editor | None) -> None:
         self.sketch = pn.pane.HTML("", sizing_mode="stretch_width")
         self.modes = pn.pane.HTML("", sizing_mode="stretch_width")

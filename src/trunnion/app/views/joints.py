@@ -14,7 +14,7 @@ from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
 from trunnion.app.document import Document
-from trunnion.app.views.base import Step, View, at_speed, number, select, unit_of
+from trunnion.app.views.base import Side, Step, View, at_speed, number, select, unit_of
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.shafts import Shaft
 
@@ -124,7 +124,7 @@ class JointsView(View):
 _COLUMNS = ("speed", "acceleration", "torque")
 
 
-class _Side:
+class _Side(Side):
     def __init__(self, view: JointsView) -> None:
         self.view = view
         self.speed = Curves("input angle [deg]", "speed less its mean [%]", height=270)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import panel as pn
@@ -11,12 +11,9 @@ from bokeh.models import ColumnDataSource, Span
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
-from trunnion.app.views.base import Step, View, at_speed, number, select, speed_range, unit_of
+from trunnion.app.views.base import Side, Step, View, at_speed, number, select, speed_range, unit_of
 from trunnion.app.views.verdict import load_cases
 from trunnion.driveline.driveline import Driveline
-
-if TYPE_CHECKING:
-    from trunnion.app.session import Session
 
 AS_STATED = "as stated"
 CAMPBELL_POINTS = 81
@@ -96,10 +93,9 @@ class OrdersView(View):
             self.put("speed", float(f"{speed:.6g}"))
 
 
-class _Side:
+class _Side(Side):
     def __init__(self, view: OrdersView) -> None:
         self.view = view
-        self.session: Session = view.session
         self.orders = Curves("input speed", "torque [N·m]", tap=view.clicked)
         self.wave = Curves("time [ms]", "torque [N·m]", height=240)
         self.campbell = Curves("input speed", "frequency [Hz]", height=380, tap=view.clicked)
@@ -120,7 +116,7 @@ class _Side:
 
     def show(self, name: str, data: Any) -> None:
         """What a step gave."""
-        line = self.session.document.line
+        line = self.view.line_of(self)
         unit, factor = unit_of(line)
         cursor = at_speed(line, float(self.view.settings["speed"])) * factor
         if name == "orders":
@@ -141,7 +137,7 @@ class _Side:
         looks = [figures.look(k) for k in range(len(data["names"]))]
         colours += [look["line_color"] for look in looks]
         dashes += [look["line_dash"] for look in looks]
-        for limit in self.session.document.line.limits_by_element:
+        for limit in self.view.line_of(self).limits_by_element:
             if limit.element == data["spring"] and limit.key in _LIMITS:
                 curves.append((f"limit of the {_LIMITS[limit.key]}", x, np.full(len(x), float(limit.value))))
                 colours.append(figures.ORANGE)

@@ -15,7 +15,7 @@ from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
 from trunnion.app.point import Point
 from trunnion.app.variants import kind_of, parameters, shown_unit, with_number
-from trunnion.app.views.base import MOST_POINTS, Step, View, count, number, select, speed_range, unit_of
+from trunnion.app.views.base import MOST_POINTS, Side, Step, View, bounded, count, number, select, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, pack
 from trunnion.driveline.quantities import DEGREE
@@ -141,7 +141,7 @@ class StabilityView(View):
         """A coarse chart, the point, the full chart, the names of what opens, the motion."""
         x, y = self.axes(line)
         fixed = {} if SPEED in (x.path, y.path) else {"speed": _speed(line)}
-        across, up = int(self.settings["across"]), int(self.settings["up"])
+        across, up = (bounded(self.settings[key], 2) for key in ("across", "up"))
         steps = []
         if across > COARSE[0] and up > COARSE[1]:
             coarse = Call("tn.stability_chart", (LINE, x.request(COARSE[0]), y.request(COARSE[1])), fixed)
@@ -202,7 +202,7 @@ def _now(line: Driveline, axis: Axis) -> float:
     return min(max(value, axis.low), axis.high)
 
 
-class _Side:
+class _Side(Side):
     def __init__(self, view: StabilityView) -> None:
         self.view = view
         self.figure = figures.plot("", "", height=430, title="stability chart", x_range=(0, 1), y_range=(0, 1))
@@ -242,7 +242,7 @@ class _Side:
         if name in ("coarse", "chart"):
             self._chart(name, data)
         elif name == "point":
-            self.point.set(data, unit_of(self.view.session.document.line))
+            self.point.set(data, unit_of(self.view.line_of(self)))
         elif name == "motion":
             curves = [(n, data["turns"], np.rad2deg(v)) for n, v in zip(data["names"], data["twist"], strict=True)]
             title = "twist of the shafts after a start from untwisted shafts"
@@ -251,7 +251,7 @@ class _Side:
             self._named(data)
 
     def _chart(self, name: str, data: Any) -> None:
-        line = self.view.session.document.line
+        line = self.view.line_of(self)
         x, y = self.view.axes(line)
         self._image(data, x, y)
         if self.extent != (x, y):
@@ -289,7 +289,7 @@ class _Side:
         self.box.update(**ends, visible=any(v is not None for v in ends.values()))
 
     def _named(self, data: Any) -> None:
-        x, y = self.view.axes(self.view.session.document.line)
+        x, y = self.view.axes(self.view.line_of(self))
         inside = [(s, n) for s, n in zip(data["speed"], data["name"], strict=True) if x.low <= s <= x.high]
         self.names.data = {
             "x0": [s / x.size for s, _ in inside],
@@ -312,9 +312,9 @@ class _Side:
         self.view.session.beside(self._refine(ends))
 
     async def _refine(self, ends: list[tuple[float, float]]) -> None:
-        across, up = int(self.view.settings["across"]), int(self.view.settings["up"])
+        across, up = (bounded(self.view.settings[key], 2) for key in ("across", "up"))
         zoom = ((*ends[0], across), (*ends[1], up))
-        data = await self.view.session.ask(self.chart_call.call, "chart", "now", zoom=zoom)
+        data = await self.view.session.ask(self.chart_call.call, "chart", self.variant, zoom=zoom)
         if self.extent is not None:
             x, y = self.extent
             self.view.session.locked(lambda: self._image(data, x, y))

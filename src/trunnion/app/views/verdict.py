@@ -12,7 +12,7 @@ from bokeh.models import Span
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.helping import Help
-from trunnion.app.views.base import Step, View, select, speed_range, unit_of
+from trunnion.app.views.base import Side, Step, View, select, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
 
 if TYPE_CHECKING:
@@ -76,10 +76,9 @@ def load_cases(line: Driveline) -> list[str]:
     return [case.name for case in line.operation.load_cases] if line.operation else []
 
 
-class _Side:
+class _Side(Side):
     def __init__(self, view: VerdictView) -> None:
         self.view, session = view, view.session
-        self.session = session
         self.sentence = pn.pane.HTML("", sizing_mode="stretch_width")
         self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], tools="")
         self.bars = figures.source(check=[], margin=[], colour=[], said=[])
@@ -135,10 +134,10 @@ class _Side:
             "said": [r["because"] for r, _ in rows],
         }
         self.table.object = _table(data)
-        self.help.clear(data["verdict"] != "satisfied", self.view.keywords())
+        self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.keywords())
 
     def _torque(self, data: Any) -> None:
-        unit, factor = unit_of(self.session.document.line)
+        unit, factor = unit_of(self.view.line_of(self))
         self.torque.xaxis.axis_label = f"input speed [{unit}]"
         springs = data["springs"]
         shown = [springs.index(self.binding)] if self.binding in springs else list(range(len(springs)))
