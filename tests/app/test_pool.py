@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -28,7 +29,8 @@ def on_pool(work: Callable[[Pool], Awaitable[None]], most: int = 2) -> None:
         finally:
             pool.close()
 
-    asyncio.run(whole())
+    with ThreadPoolExecutor(1) as thread:  # the browser's driver has a loop of its own in this one
+        thread.submit(asyncio.run, whole()).result()
 
 
 def test_answers_come_back_and_refusals_are_raised() -> None:
