@@ -5,8 +5,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-# Files of tests side by side, one per processor; kernels are compiled into one cache that they share.
-PYTEST := $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile
+# Files of tests side by side, one per processor, in the order of tests/conftest.py; kernels are compiled into one cache
+# that they share.
+PYTEST := $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile --no-loadscope-reorder
 
 .PHONY: demo test slow studies check format clean
 

@@ -31,8 +31,8 @@ STUDIES = {
 """Files whose slow tests are studies, and what they go through."""
 
 
-LONGEST = ["test_features.py", "test_random_chains.py"]
-"""Files that take longest, the longest first. Their first two need different kernels, so none is compiled twice."""
+LONGEST = ["test_features.py", "test_integration.py", "test_periodic.py", "test_nonlinear_document.py"]
+"""Files that take longest, the longest first. The first two need different kernels, so that none is compiled twice."""
 
 LINE = """\
 format = 1

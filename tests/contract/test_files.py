@@ -120,8 +120,16 @@ def drivelines(draw):
 
 @pytest.mark.filterwarnings("ignore::trunnion.errors.InputRemark")
 @given(drivelines())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_writing_and_reading_is_the_identity(line):
+    assert loads(dumps(line)) == line
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::trunnion.errors.InputRemark")
+@given(drivelines())
+@settings(max_examples=1000, deadline=None)
+def test_writing_and_reading_is_the_identity_for_a_thousand_lines(line):
     assert loads(dumps(line)) == line
 
 

@@ -52,6 +52,15 @@ def test_shafts_in_series_with_unlike_damping() -> None:
     assert not said(drive, tn.Shaft(**lossy), tn.Coupling(stiffness=1e4, loss_factor=0.1), load)
 
 
+def test_a_line_that_begins_with_shafts_is_made() -> None:
+    tube = tn.Shaft(outer_diameter=0.05, length=0.5, shear_modulus=8e10, damping=4.0, density=7850.0)
+    for first in (shaft(1.0), tube, tn.Coupling(stiffness=1e4, loss_factor=0.1)):
+        assert not said(first)
+        assert not said(first, tn.Disk(inertia=1.0))
+        assert not said(first, tn.HookeJoint(angle=0.2), shaft(1.0), tn.Disk(inertia=1.0))
+    assert said(shaft(16.0), shaft(4.0), tn.Disk(inertia=1.0))
+
+
 @pytest.mark.parametrize(("frequency", "most"), [(12.5, 1e-4), (125.0, 1e-2), (1250.0, 1.0)])
 def test_one_shaft_holds_well_below_the_frequency_said(frequency: float, most: float) -> None:
     """Complex stiffness of the two in series against k + iωc of the one: off by about (ωc/k)² of it."""

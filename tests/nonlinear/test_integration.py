@@ -13,12 +13,12 @@ import trunnion as tn
 from trunnion.numerics.integration.integration import End, integrate
 
 RUNS = {
-    "duffing": (40.0, [0.5, 0.0]),
-    "driven-pendulum": (15.0, [0.3, 0.1]),
-    "ueda": (8.0, [2.5, 0.0]),
-    "lorenz": (5.0, [1.0, 1.0, 20.0]),
-    "rossler": (20.0, [1.0, 1.0, 1.0]),
-    "mathieu": (30.0, [1.0, 0.0]),
+    "duffing": (12.0, [0.5, 0.0]),
+    "driven-pendulum": (5.0, [0.3, 0.1]),
+    "ueda": (4.0, [2.5, 0.0]),
+    "lorenz": (2.0, [1.0, 1.0, 20.0]),
+    "rossler": (12.0, [1.0, 1.0, 1.0]),
+    "mathieu": (10.0, [1.0, 0.0]),
 }
 
 

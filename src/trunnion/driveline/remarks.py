@@ -92,9 +92,9 @@ def _groups(line: Driveline) -> list[int]:
 
 
 def _near(line: Driveline, group: list[int], spring: int) -> int:
+    """The group in front of a spring; -1, which holds nothing, where the line begins with the spring."""
     parent = line.parents[spring]
-    assert parent is not None
-    return group[parent]
+    return -1 if parent is None else group[parent]
 
 
 def _damping(line: Driveline, spring: int) -> tuple[float, float]:
