@@ -317,8 +317,14 @@ def test_the_command(tmp_path):
     assert text.startswith("exceeded: max torque of shaft") and "Hz" in text
 
 
-def test_the_verdict_stands_among_the_findings_of_an_overview():
-    with_limits = two_mass(tn.Limit(of="shaft", max_torque=100.0))
-    first = overview(with_limits, speed=125.0).findings[0]
-    assert str(first).startswith("danger: Limits exceeded: max torque of shaft")
-    assert not any("Limits" in str(f) for f in overview(two_mass(), speed=125.0).findings)
+def test_findings_of_an_overview_rank_by_margin_and_look_beyond_the_range():
+    limits = [tn.Limit(of="shaft", max_torque=500.0, vibratory_torque=100.0)]
+    operation = tn.Operation(speed=90.0, speed_range=[80.0, 115.0])
+    seen = overview(tn.Driveline(two_mass(*limits).elements, limits=limits, operation=operation))
+    first, second = (str(f) for f in seen.findings[:2])
+    assert first.startswith("danger: Vibratory torque of shaft is exceeded: ")
+    assert second.startswith("caution: Just above the range (up to 20 %) max torque of shaft would be exceeded: ")
+    assert seen.assessment.binding.name == "vibratory torque of shaft"
+    free = overview(two_mass(), speed=125.0).findings
+    assert not any("exceeded" in str(f) for f in free)
+    assert any("torque without limit" in str(f).lower() for f in free)

@@ -70,7 +70,7 @@ def test_the_findings_shown_are_those_of_the_starter(run, monkeypatch):
     printed = run("analyze", "my-line.toml").stdout
     (shown,) = blocks(FIRST, "text")
     assert [line.rstrip() for line in shown.splitlines()] == [
-        line.rstrip() for line in printed.partition("Findings\n")[2].partition("\nWritten")[0].splitlines()
+        line.rstrip() for line in printed.partition("Findings\n")[2].partition("\ntrunnion assess")[0].splitlines()
     ]
 
 

@@ -80,7 +80,7 @@ def test_a_narrow_encoding_does_not_break_the_output(start):
 @pytest.mark.parametrize("later", [False, True], ids=["while it starts", "while it computes"])
 def test_ctrl_c_leaves_nothing(start, here, later):
     before = sorted(os.listdir(here))
-    process = start("analyze", "line.toml", "--points", "3000x3000", program=("-c", HEARD))
+    process = start("stability-chart", "line.toml", "--points", "3000x3000", program=("-c", HEARD))
     assert process.stdout.readline() == "ready\n"
     if later:
         time.sleep(3)  # whatever it is doing by then
@@ -92,3 +92,19 @@ def test_ctrl_c_leaves_nothing(start, here, later):
     assert err.splitlines()[-1] == "error: interrupted; nothing was written"
     assert "Traceback" not in err
     assert sorted(os.listdir(here)) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
+def test_ctrl_c_keeps_the_answer_and_the_report_without_its_chart(start, here):
+    process = start("analyze", "line.toml", "--points", "4000x4000", "-o", "kept.html", program=("-c", HEARD))
+    deadline = time.monotonic() + 120
+    while not (here / "kept.html").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert "Checks from 600 rpm" in out and "Findings" in out
+    assert err.splitlines()[-1] == "error: interrupted; the report without its chart is in kept.html"
+    page = (here / "kept.html").read_text(encoding="utf-8")
+    assert page.endswith("</html>") and "was still computing it, or was interrupted" in page
+    assert sorted(os.listdir(here)) == ["kept.html", "line.toml"]

@@ -84,6 +84,8 @@ CASES = [
     ((*CHART, "-o", "no/such/c.png"), ("lies in no folder", "create the folder no/such")),
     ((*CHART, "-o", "line.toml/c.png"), ("lies in no folder",)),
     ((*CHART, "-o", "c.doc"), ("no ending that names a format", ".png, .pdf, .svg, .nc, .csv")),
+    (("analyze", "line.toml", "-o", "page.pdf"), ("is no format of a report", "write page.html, or name a folder")),
+    (("analyze", "line.toml", "-o", "no/such/page.html"), ("lies in no folder", "create the folder no/such")),
     (("analyze", "line.toml", "-o", "empty.toml"), ("is a file, not a folder",)),
     (("analyze", "line.toml", "-o", "empty.toml/deep"), ("cannot be made, empty.toml is a file",)),
     (("new", "two-shaft", "line.toml"), ("line.toml", "exists already", "--force")),

@@ -50,8 +50,8 @@ inertia = "0.4 kg*m^2"
 load_torque = "100 N*m"
 """
 SECTIONS = (
-    "findings", "driveline", "modes", "speed-frequency", "irregularity", "torque", "stability", "under-load", "limit",
-    "bending", "provenance",
+    "verdict", "findings", "campbell", "driveline", "modes", "irregularity", "torque", "stability", "under-load",
+    "limit", "bending", "provenance",
 )  # fmt: skip
 
 
@@ -101,7 +101,7 @@ def test_fetches_nothing(made: Report) -> None:
 
 def test_pictures(made: Report) -> None:
     images = [attrs for tag, attrs in Page(made.html).tags if tag == "img"]
-    assert len(images) == 9
+    assert len(images) == 10
     assert all(str(a["src"]).startswith("data:image/svg+xml;base64,") and a["alt"] for a in images)
 
 

@@ -15,6 +15,24 @@ if TYPE_CHECKING:
     from trunnion.results.chart import StabilityChart
 
 DATA_FORMATS = ("nc", "csv")
+REPORTS = (".html", ".htm")
+OTHER_FILES = (".pdf", ".png", ".svg", ".json", ".txt", ".md", ".docx", ".xlsx", *(f".{e}" for e in DATA_FORMATS))
+"""Endings by which somebody means a file, not a folder."""
+
+
+def check_report(path: Path) -> None:
+    """Refuse where a report cannot be written: to a file, NAME.html, or into a folder."""
+    if path.suffix.lower() in REPORTS:
+        if path.is_dir():
+            _refuse(path, "is a folder", "name a file in it, such as " + str(path / "report.html"))
+        if not path.parent.is_dir():
+            _refuse(path, "lies in no folder", f"create the folder {path.parent}")
+        if not os.access(path.parent, os.W_OK):
+            _refuse(path, "cannot be written")
+        return
+    if path.suffix.lower() in OTHER_FILES and not path.is_dir():
+        _refuse(path, "is no format of a report", f"write {path.with_suffix('.html')}, or name a folder")
+    check_folder(path)
 
 
 def check_folder(folder: Path) -> None:

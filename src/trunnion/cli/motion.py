@@ -246,7 +246,7 @@ def _course(line: Driveline, first: float | None, last: float | None, duration: 
 
 def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
     from trunnion.equations.coefficients import assemble
-    from trunnion.reporting.overview import speed_range
+    from trunnion.reporting.answer import speed_range
 
     if first is not None and last is not None:
         return first, last

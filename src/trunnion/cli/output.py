@@ -90,58 +90,94 @@ def note(text: str) -> None:
 
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float], None]]:
-    """A callback for the share done: a bar with the time left on a terminal, else a line now and then."""
-    with compile_notice():
+    """A callback for the share done: a bar with the time left on a terminal, else a line now and then.
+
+    Time spent on compiling, which happens once, is not taken for the pace of the work.
+    """
+    with compile_notice() as compiling:
+        clock = _Clock(compiling)
         if not sys.stderr.isatty():
-            yield _Lines(what)
+            yield _Lines(what, clock)
             return
         from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+        from rich.progress import BarColumn, Progress, TextColumn
 
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
-        with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
-            task = bar.add_task(what, total=None)
-            yield lambda share: bar.update(task, completed=share, total=1.0)
+        left = TextColumn("{task.fields[left]}")
+        with Progress(*columns, left, console=Console(stderr=True), transient=True) as bar:
+            task = bar.add_task(what, total=None, left="")
+            yield lambda share: bar.update(task, completed=share, total=1.0, left=clock.left(share))
 
 
 COMPILING = "compiling once, a few seconds (up to half a minute on a slow machine)"
 
 
+class _Compiling:
+    """Seconds spent on compiling so far, what is being compiled included."""
+
+    def __init__(self) -> None:
+        self.spent, self.depth, self.since, self.said = 0.0, 0, 0.0, False
+
+    def begin(self) -> None:
+        if not self.said:
+            self.said = True
+            print(COMPILING, file=sys.stderr, flush=True)
+        if not self.depth:
+            self.since = time.monotonic()
+        self.depth += 1
+
+    def end(self) -> None:
+        self.depth = max(0, self.depth - 1)
+        if not self.depth:
+            self.spent += time.monotonic() - self.since
+
+    def seconds(self) -> float:
+        return self.spent + (time.monotonic() - self.since if self.depth else 0.0)
+
+
 @contextmanager
-def compile_notice() -> Iterator[None]:
-    """Says so once if something has to be compiled, which otherwise looks like a hang."""
+def compile_notice() -> Iterator[_Compiling]:
+    """Says so once if something has to be compiled, which otherwise looks like a hang, and how long it took."""
+    compiling = _Compiling()
     try:
         from numba.core import event
     except ImportError:  # only the notice depends on this corner of numba
-        yield
+        yield compiling
         return
 
     class Notice(event.Listener):  # type: ignore[misc]
-        said = False
-
         def on_start(self, event: Any) -> None:
-            if not self.said:
-                self.said = True
-                print(COMPILING, file=sys.stderr, flush=True)
+            compiling.begin()
 
         def on_end(self, event: Any) -> None:
-            pass
+            compiling.end()
 
     with event.install_listener("numba:compile", Notice()):
-        yield
+        yield compiling
+
+
+class _Clock:
+    """Time at work since the start, and what is left of it by the share done."""
+
+    def __init__(self, compiling: _Compiling) -> None:
+        self.start, self.compiling = time.monotonic(), compiling
+
+    def left(self, share: float) -> str:
+        if share <= 0:
+            return ""
+        worked = time.monotonic() - self.start - self.compiling.seconds()
+        return f"about {max(worked, 0.0) * (1 - share) / share:.0f} s left"
 
 
 class _Lines:
     """Progress for logs: silent while it is quick."""
 
-    def __init__(self, what: str) -> None:
-        self.what, self.start = what, time.monotonic()
-        self.last = self.start
+    def __init__(self, what: str, clock: _Clock) -> None:
+        self.what, self.clock = what, clock
+        self.last = clock.start
 
     def __call__(self, share: float) -> None:
         now = time.monotonic()
         if now - self.last >= LONG and share > 0:
             self.last = now
-            left = (now - self.start) * (1 - share) / share
-            line = f"{self.what}: {100 * share:.0f} %, about {left:.0f} s left"
-            print(line, file=sys.stderr, flush=True)
+            print(f"{self.what}: {100 * share:.0f} %, {self.clock.left(share)}", file=sys.stderr, flush=True)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
     from trunnion.analyses.linear.stability import Stability
     from trunnion.driveline.driveline import Driveline
+    from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
     from trunnion.results.chart import StabilityChart
 
@@ -29,9 +30,27 @@ MOST_ROWS = 24
 """Resonances that an overview prints."""
 
 
+def print_answer(out: Console, given: Answer) -> None:
+    """The verdict, the checks and the findings: what is known before anything is drawn."""
+    from trunnion.analyses.assessment.check import Status
+
+    judged, unit = given.assessment, given.unit
+    out.print(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold", soft_wrap=True)
+    rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
+    output.heading(
+        out, f"Checks from {show_speed(given.speed_range[0], unit)} to {show_speed(given.speed_range[1], unit)}"
+    )
+    if rows:
+        output.table(out, [{k: v for k, v in row.items() if k != "because"} for row in rows])
+    output.heading(out, "Findings")
+    output.findings(out, given.findings)
+    out.print("\ntrunnion assess gives the reasons and rules of every check")
+
+
 def print_overview(out: Console, seen: Overview) -> None:
-    """Everything of an overview, the findings last, where they are read."""
+    """What follows the answer: modes, resonance speeds, the joints, stability at one speed, the chart."""
     unit, (low, high) = seen.unit, seen.speed_range
+    output.heading(out, "Driveline")
     out.print(str(seen.line), soft_wrap=True)
     output.heading(out, "Natural frequencies, all joints straight")
     output.table(out, seen.natural_frequencies.table(frequency_unit(seen.line)))
@@ -51,8 +70,10 @@ def print_overview(out: Console, seen: Overview) -> None:
     if seen.chart is not None:
         output.heading(out, "Stability chart, all joints at one angle")
         out.print(chart_text(seen.chart, unit))
-    output.heading(out, "Findings")
-    output.findings(out, seen.findings)
+    known = set(seen.answer.findings)
+    if more := [finding for finding in seen.findings if finding not in known]:
+        output.heading(out, "Further findings")
+        output.findings(out, more)
 
 
 def print_written(out: Console, written: Sequence[Path]) -> None:
@@ -93,6 +114,7 @@ def frequency_unit(line: Driveline) -> str:
 
 def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
     """An overview as plain values; angles in rad, speeds in ``speed_unit``, frequencies in Hz."""
+    from trunnion.cli.assess import assessment_json
     from trunnion.cli.kinetostatics import kinetostatics_json
 
     factor = speed_factor(seen.unit)
@@ -102,6 +124,7 @@ def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
         "speed_unit": seen.unit,
         "speed_range": [end * factor for end in seen.speed_range],
         "angle_range": list(seen.angle_range),
+        "assessment": assessment_json(seen.assessment),
         "natural_frequencies": modes_json(seen.natural_frequencies, "Hz"),
         "resonance_speeds": resonances_json(seen.resonance_speeds, seen.unit),
         "kinetostatics": None if seen.turn is None else kinetostatics_json(seen.turn),

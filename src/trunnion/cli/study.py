@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -23,46 +23,87 @@ from trunnion.cli.options import (
     read_unit,
 )
 
+if TYPE_CHECKING:
+    from trunnion.reporting import Report
+    from trunnion.reporting.answer import Answer
+    from trunnion.reporting.overview import Overview
+
 DEFAULT_FOLDER = Path("trunnion-out")
 
 
 def analyze(
     file: File,
-    folder: Annotated[
-        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder for report, chart and data.")
+    to: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="PATH",
+            help="Folder for report, chart and data; or the report alone as NAME.html.",
+        ),
     ] = DEFAULT_FOLDER,
     speed: Speed = None,
     unit: Unit = None,
     load_case: LoadCase = None,
-    points: Points = "200x150",
+    points: Annotated[
+        str | None, typer.Option("--points", metavar="NXxNY", help="Of the chart; default as its picture needs.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Frequencies, resonance speeds, stability, a chart, the findings, and a report as one HTML file."""
+    """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
-    size, at = read_points(points), read_speed(speed, unit)
-    from trunnion.cli.files import chart_files, check_folder
-    from trunnion.cli.report import overview_json, print_overview, print_written
-    from trunnion.reporting import report
-    from trunnion.reporting.overview import overview
-    from trunnion.writing import folder_written_whole
+    size, at = read_points(points) if points else None, read_speed(speed, unit)
+    from trunnion.cli.files import check_report
+    from trunnion.cli.report import overview_json, print_answer, print_overview, print_written
+    from trunnion.reporting.answer import answer
 
-    check_folder(folder)
-    with output.progress("stability chart") as advance:
-        seen = overview(line, speed=at, unit=unit, points=size, progress=advance)
-    page = report(seen, source=file)
-    stem = file_stem(file)
-    with folder_written_whole(folder) as temporary:
-        written = [page.save(temporary / f"{stem}-report.html")]
-        if seen.chart is not None:
-            written += chart_files(seen.chart, temporary, stem, unit, seen.operation)
-    written = [folder / path.name for path in written]
+    check_report(to)
+    out = output.console()
+    with output.compile_notice():
+        given = answer(line, speed=at, unit=unit)
+    if not as_json:
+        print_answer(out, given)
+    seen, written = _reported(given, file, to, size)
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
-    out = output.console()
     print_overview(out, seen)
     print_written(out, written)
+
+
+def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) -> tuple[Overview, list[Path]]:
+    """Write the report, then once more with the chart: what is interrupted leaves the first."""
+    from trunnion.reporting import report
+    from trunnion.reporting.overview import at_speed, charted
+
+    with output.progress("report") as advance:
+        seen = at_speed(given)
+        page = report(seen, source=file, progress=advance)
+    written = _written(page, to, file)
+    if not seen.chartable:
+        return seen, written
+    try:
+        with output.progress("stability chart") as advance:
+            seen = charted(seen, size, advance)
+        return seen, _written(page.charted(seen), to, file)
+    except KeyboardInterrupt:
+        kept = f"the report without its chart is in {', '.join(map(str, written))}"
+        raise KeyboardInterrupt(kept) from None
+
+
+def _written(page: Report, to: Path, file: str) -> list[Path]:
+    from trunnion.cli.files import REPORTS, chart_files
+    from trunnion.writing import folder_written_whole
+
+    if to.suffix.lower() in REPORTS:
+        return [page.save(to)]
+    seen, stem = page.contents.overview, file_stem(file)
+    with folder_written_whole(to) as temporary:
+        written = [page.save(temporary / f"{stem}-report.html")]
+        if seen.chart is not None:
+            written += chart_files(seen.chart, temporary, stem, seen.unit, seen.operation)
+    return [to / path.name for path in written]
 
 
 def stability(

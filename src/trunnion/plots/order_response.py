@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,7 @@ def draw(
     unit: str | None = None,
     operating: Operation | None = None,
     limit: float | None = None,
+    limits: Mapping[str, float] | None = None,
 ) -> Axes:
     """Torque amplitude of each order [N m] and vibratory torque, on a logarithmic axis.
 
@@ -43,6 +45,7 @@ def draw(
     unit : of the speed; by default the one of the driveline's description.
     operating : its speed is marked.
     limit : vibratory torque [N m] that the spring bears, as a line across.
+    limits : further limits of torque [N m] by name; with "max torque" the largest torque, mean and all, is drawn too.
 
     Raises
     ------
@@ -69,11 +72,16 @@ def draw(
             marker="o" if len(x) == 1 else None,
             **look,
         )
-    if limit is not None:
-        axes.axhline(limit, color=LIMIT, lw=1.8, label=f"limit {limit:.4g} N·m")
+    known = ({} if limit is None else {"limit": limit}) | dict(limits or {})
+    for i, (name, value) in enumerate(known.items()):
+        axes.axhline(value, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=f"{name} {value:.4g} N·m")
+    if "max torque" in known:
+        peak = result.peak_torque[:, column]
+        axes.plot(x, peak, color=INK, lw=1.2, ls=(0, (1, 1)), label="largest torque, mean and all")
+        largest = max(largest, float(np.nanmax(np.nan_to_num(peak), initial=0.0)))
     if largest > 0:
         low = min([float(np.nanmin(whole)), *(float(peaks[k]) for k in drawn)])
-        _logarithmic(axes, max(low / 2, largest / 10 ** (DECADES + 0.5)), 2 * max(largest, limit or 0.0))
+        _logarithmic(axes, max(low / 2, largest / 10 ** (DECADES + 0.5)), 2 * max([largest, *known.values()]))
     if len(x) > 1:
         axes.set_xlim(x[0], x[-1])
     _beyond_the_linear_range(axes, x, result)

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 SHADES = ("#bf4a33", "#8c2f39", "#4a1526", "#16060d")
 """Unstable, from slow to fast growth: falling lightness, all darker than what is not unstable."""
+DECAY = ("#f3e3c3", "#e9f0f4", "#9fc4d8")
+"""Stable everywhere, from slow to fast decay: all lighter than what is unstable."""
 OTHERS = {
     Verdict.MARGINAL: ("#e9e9e9", "....", "marginal (no damping)"),
     Verdict.UNDECIDED: ("#c4c4c4", "////", "undecided (boundary)"),
@@ -63,7 +65,6 @@ def draw(
     _frame(axes, chart, x, y, across, up)
     _unstable(axes, chart, x, y)
     handles = [*_key(chart), *_others(axes, chart, x, y), *_operating(axes, chart, operating, across, up)]
-    _say_if_empty(axes, chart)
     settle = axes.figure.figure.draw_without_rendering
     settle()  # the width decides what fits side by side
     width = 72 * axes.get_window_extent().width / axes.figure.dpi
@@ -118,6 +119,7 @@ def _unstable(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
 
     bad = chart.verdict == Verdict.UNSTABLE
     if not bad.any():
+        _decay(axes, chart, x, y)
         return
     growth = 100 * (np.where(bad, chart.spectral_radius, np.nan) ** (2 * np.pi / chart.period) - 1)
     mesh = axes.pcolormesh(
@@ -131,6 +133,23 @@ def _unstable(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
     )
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.045, aspect=28)
     bar.set_label("growth per turn of the input [%]", fontsize=TEXT, color=INK)
+    bar.ax.tick_params(labelsize=SMALL, colors=INK)
+
+
+def _decay(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
+    """Where nothing is unstable, how fast the slowest disturbance dies out: the margin that is left."""
+    if min(chart.verdict.shape) < 2 or chart.count(Verdict.STABLE) < chart.verdict.size:
+        return
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.ticker import MaxNLocator
+
+    decay = 100 * (1 - chart.spectral_radius ** (2 * np.pi / chart.period))
+    low, high = float(decay.min()), float(decay.max())
+    levels = MaxNLocator(7).tick_values(low, high) if high > 1.01 * low else np.array([0.99 * low, 1.01 * high])
+    drawn = axes.contourf(x, y, decay, levels=levels, cmap=LinearSegmentedColormap.from_list("decay", DECAY))
+    axes.contour(x, y, decay, levels=levels, colors=INK, linewidths=0.6)
+    bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02, fraction=0.045, aspect=28)
+    bar.set_label("decay of the slowest disturbance per turn [%]", fontsize=TEXT, color=INK)
     bar.ax.tick_params(labelsize=SMALL, colors=INK)
 
 
@@ -159,7 +178,9 @@ def _key(chart: StabilityChart) -> list[Any]:
 
     handles = []
     if chart.count(Verdict.STABLE):
-        handles.append(Patch(facecolor="white", edgecolor=INK, label="stable"))
+        everywhere = chart.count(Verdict.STABLE) == chart.verdict.size and min(chart.verdict.shape) > 1
+        words = "stable at every point (yellow: slowest decay)" if everywhere else "stable"
+        handles.append(Patch(facecolor=DECAY[1] if everywhere else "white", edgecolor=INK, label=words))
     if chart.count(Verdict.UNSTABLE):
         handles.append(Patch(facecolor=SHADES[1], edgecolor=INK, label="unstable (darker: faster)"))
     return handles
@@ -229,14 +250,6 @@ def _low(axes: Axes, along: str) -> float:
 
 def _high(axes: Axes, along: str) -> float:
     return max(axes.get_xlim() if along == "x" else axes.get_ylim())
-
-
-def _say_if_empty(axes: Axes, chart: StabilityChart) -> None:
-    if chart.count(Verdict.STABLE) == chart.verdict.size:
-        text = f"stable at every point\nlargest spectral radius {np.nanmax(chart.spectral_radius):.4g}"
-        clear = {"facecolor": "white", "edgecolor": "none", "pad": 6}
-        at: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center", "zorder": 8}
-        axes.text(0.5, 0.5, text, fontsize=TEXT, color=INK, bbox=clear, **at)
 
 
 def _legend(axes: Axes, handles: list[Any], width: float) -> None:

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion.analyses.assessment.check import Status
+from trunnion.analyses.assessment.remedies.remedies import remedies
+from trunnion.analyses.assessment.remedies.result import Remedies
+from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.charts.stable_limit import LimitKind, StableLimit, limit_of_chart
 from trunnion.analyses.kinetostatics import kinetostatics
 from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.analyses.linear.bending import BendingSpeed, bending_findings, bending_speeds
+from trunnion.analyses.linear.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.driveline.driveline import hooke_joints
-from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.errors import InputError
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import ComputationError, InputError
+from trunnion.reporting.answer import NEARLY
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -36,13 +42,15 @@ class Contents:
     limit: StableLimit | None
     bending: tuple[BendingSpeed, ...]
     loaded: tuple[LoadedMotion, ...]
+    campbell: CampbellDiagram | None
+    helped: Remedies | None
     findings: tuple[Finding, ...]
     left_out: tuple[str, ...]
 
 
 def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> Contents:
-    """What an overview does not hold yet: irregularity, torques over speed, the limit angle, bending speeds."""
-    assembly = assemble(seen.line)
+    """What an overview does not hold yet: what would help, modes and torques over speed, irregularity, bending."""
+    assembly = seen.answer.assembly
     low, high = _speeds(seen)
     left_out: list[str] = []
 
@@ -59,27 +67,52 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line, speed=1.0))
         speeds = sweep_speeds(assembly, low, high)
         sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
-    limit = _limit(seen, resonance_speeds(assembly)) if jointed else None
+    campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
+    assert campbell is None or isinstance(campbell, CampbellDiagram)
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
     assert turn is None or isinstance(turn, Kinetostatics)
     assert sweep is None or isinstance(sweep, SpeedSweep)
     more = [
         *bending_findings(bending, high, seen.unit),
-        *(_limit_findings(limit, seen) if limit else []),
         *(_torque_findings(sweep, seen) if sweep else []),
         *(_irregularity_findings(turn) if turn else []),
         *load_findings(loaded, seen.unit),
         *(Finding(Gravity.CAUTION, f"{sentence.rstrip('.')}.") for sentence in without),
     ]
-    findings = by_gravity([*seen.findings, *more])
-    return Contents(seen, assembly, turn, sweep, limit, bending, loaded, findings, tuple(left_out))
+    findings = [*seen.findings, *more]
+    helped = _helped(seen)
+    whole = Contents(
+        seen, assembly, turn, sweep, None, bending, loaded, campbell, helped, by_gravity(findings), tuple(left_out)
+    )
+    return with_chart(whole, seen)
+
+
+def with_chart(contents: Contents, seen: Overview) -> Contents:
+    """The same with the chart of ``seen`` and the limit angle that follows from it."""
+    before = {finding.sentence for finding in contents.findings}
+    limit = _limit(seen, resonance_speeds(contents.assembly))
+    more = [*seen.findings, *(_limit_findings(limit, seen) if limit else [])]
+    new = [finding for finding in more if finding.sentence not in before]
+    return replace(contents, overview=seen, limit=limit, findings=by_gravity([*contents.findings, *new]))
+
+
+def _helped(seen: Overview) -> Remedies | None:
+    """What would help, where a check is exceeded or nearly reached."""
+    checks = seen.assessment.checks
+    if not any(c.status is Status.EXCEEDED or (c.status is Status.SATISFIED and c.spare < NEARLY) for c in checks):
+        return None
+    try:
+        return remedies(seen.line, seen.speed_range, unit=seen.unit)
+    except (InputError, ComputationError):  # help beyond the answer, which stands without it
+        return None
 
 
 def _speeds(seen: Overview) -> tuple[float, float]:
     """The range, clipped as the chart's axis is."""
     low, high = seen.speed_range
-    return max(low, float(seen.chart.x[0]) if seen.chart else high / 200), high
+    slowest = lowest_speed(seen.answer.assembly)
+    return max(low, slowest if slowest < high else high / 200), high
 
 
 def _limit(seen: Overview, named: ResonanceSpeeds) -> StableLimit | None:

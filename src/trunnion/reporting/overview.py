@@ -1,144 +1,166 @@
 """Everything a first look at a driveline asks for, as one object: what ``trunnion analyze`` prints.
 
-The object holds results, not text or pictures, so that the command line and a report read the same numbers.
+The object holds results, not text or pictures, so that the command line and a report read the same numbers. It comes in
+three steps, each of which can be shown by itself: the answer, what else belongs to the operating speed, the chart.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.charts.stability_chart import stability_chart
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
-from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies, natural_frequencies
-from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
+from trunnion.analyses.linear.along import stability_along
+from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
+from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.driveline.driveline import Driveline, hooke_joints
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.operation import Operation
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
-from trunnion.reporting.overview_findings import (
-    assessment_findings,
-    chart_findings,
-    free_findings,
-    line_findings,
-    remark_findings,
-    resonance_findings,
-    response_findings,
-    slow_findings,
-    sweep_findings,
-)
+from trunnion.reporting.answer import Answer, answer
+from trunnion.reporting.overview_findings import chart_findings
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, by_gravity
+from trunnion.results.verdict import Verdict
 
 ALL_ANGLES = "HookeJoint *.angle"
-CHART_POINTS = (200, 150)
-SWEEP_POINTS = 601
-MODES_IN_RANGE = 4
-"""Modes that a speed range guessed from the line itself reaches up to."""
+FINE, COARSE = (200, 150), (56, 32)
+"""Speeds × angles of a chart with borders of stability in it, and of one that shows the decay alone."""
 
 
 @dataclass(frozen=True)
 class Overview:
     """A driveline at a glance.
 
-    unit: speed unit to print in; operation: the description's, at the speed asked for; speed_range [rad/s]
-    and angle_range [rad]: of the description, or guessed from the line where it states none;
-    resonance_speeds: those in the range; turn: the joints over a turn at the operating speed (1 rad/s without
-    one), None where the output is prescribed; stability: at the operating speed, None without one; sweep: a
-    chart of one row over the range at the joints' own angles; chart: over the range and one angle common to
-    all joints. Both are None for a line without Hooke's joints, and for one that starts free.
+    answer: the verdict and what belongs to it; angle_range [rad]: of the description, or guessed from the line; turn:
+    the joints over a turn at the operating speed (1 rad/s without one), None where the output is prescribed; stability:
+    at the operating speed, None without one; chart: over the range and one angle common to all joints, None for a line
+    without Hooke's joints, for one that starts free, and until it is computed.
     """
 
-    line: Driveline
-    unit: str
-    operation: Operation
-    speed_range: tuple[float, float]
+    answer: Answer
     angle_range: tuple[float, float]
-    natural_frequencies: NaturalFrequencies
-    resonance_speeds: ResonanceSpeeds
     turn: Kinetostatics | None
     stability: Stability | None
-    sweep: StabilityChart | None
     chart: StabilityChart | None
     findings: tuple[Finding, ...]
+
+    @property
+    def line(self) -> Driveline:
+        """The driveline."""
+        return self.answer.line
+
+    @property
+    def unit(self) -> str:
+        """Speed unit to print in."""
+        return self.answer.unit
+
+    @property
+    def operation(self) -> Operation:
+        """The description's, at the speed asked for."""
+        return self.answer.operation
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """Lowest and highest speed [rad/s]."""
+        return self.answer.speed_range
+
+    @property
+    def natural_frequencies(self) -> NaturalFrequencies:
+        """With all joints straight."""
+        return self.answer.natural_frequencies
+
+    @property
+    def resonance_speeds(self) -> ResonanceSpeeds:
+        """Those in the range."""
+        return self.answer.resonance_speeds
+
+    @property
+    def assessment(self) -> Assessment:
+        """The verdict and the checks behind it."""
+        return self.answer.assessment
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """What the chart's axes were clipped to, and why."""
         return self.chart.remarks if self.chart else ()
 
+    @property
+    def chartable(self) -> bool:
+        """Whether a chart belongs to this line."""
+        assembly = self.answer.assembly
+        slow = self.speed_range[1] <= lowest_speed(assembly)
+        return bool(hooke_joints(self.line)) and not slow and not assembly.topology.free
+
 
 def overview(
-    line: Driveline,
+    line: Driveline | Answer,
     *,
     speed: float | None = None,
     unit: str | None = None,
-    points: tuple[int, int] = CHART_POINTS,
+    points: tuple[int, int] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Overview:
-    """Frequencies, resonance speeds, stability and findings of ``line`` over the range it runs in.
+    """Verdict, frequencies, resonance speeds, stability, chart and findings of ``line`` over the range it runs in.
 
     Parameters
     ----------
-    line : the driveline.
+    line : the driveline, or the answer about it that is there already (``speed`` and ``unit`` are then its own).
     speed : operating speed [rad/s]; default the one of the description.
     unit : speed unit of the findings' sentences; default as ``speed_unit``.
-    points : speeds × angles of the chart.
+    points : speeds × angles of the chart; default as many as its picture needs.
     progress : called as progress(share done) while the chart is computed.
 
     Raises
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
     """
-    unit = unit or speed_unit(line)
-    assembly = assemble(line)
-    modes = natural_frequencies(assembly)
-    low, high = speed_range(assembly)
-    if speed is not None or (line.operation and line.operation.speed):
-        speed = operating_speed(line, speed)
-    every = resonance_speeds(assembly)
-    here = every.within(low, high)
-    at_speed = None if speed is None else stability(assembly, speed)
-    sweep = chart = None
-    joints = hooke_joints(line)
-    slowest = lowest_speed(assembly)
-    drawn = bool(joints) and high > slowest and not assembly.topology.free
-    if drawn:
-        name, angle = joints[0]
-        sweep = stability_chart(assembly, ("speed", low, high, SWEEP_POINTS), (f"{name}.angle", angle, angle, 1))
-        across, up = ("speed", low, high, points[0]), (ALL_ANGLES, *angle_range(line), points[1])
-        chart = stability_chart(assembly, across, up, progress=progress)
-    findings = [
-        *(at_speed.findings_in(unit) if at_speed else ()),
-        *assessment_findings(line, (low, high), unit),
-        *line_findings(line, speed),
-        *(sweep_findings(assembly, sweep, unit) if sweep else ()),
-        *resonance_findings(here, (low, high), speed, unit),
-        *response_findings(assembly, every, (low, high), unit),
-        *(chart_findings(chart, unit) if chart else ()),
-        *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
-        *(free_findings(assembly, (low, high), unit) if joints and assembly.topology.free else ()),
-        *remark_findings(line),
-    ]
-    return Overview(
-        line=line,
-        unit=unit,
-        operation=(line.operation or Operation()).model_copy(update={"speed": speed}),
-        speed_range=(low, high),
-        angle_range=angle_range(line),
-        natural_frequencies=modes,
-        resonance_speeds=here,
-        turn=_turn(line, speed),
-        stability=at_speed,
-        sweep=sweep,
-        chart=chart,
-        findings=by_gravity(dict.fromkeys(findings)),
-    )
+    given = line if isinstance(line, Answer) else answer(line, speed=speed, unit=unit)
+    return charted(at_speed(given), points, progress)
+
+
+def at_speed(given: Answer) -> Overview:
+    """An answer with what belongs to the operating speed, without the chart."""
+    here = None if given.speed is None else stability(given.assembly, given.speed)
+    said = here.findings_in(given.unit) if here else ()
+    findings = by_gravity([*_new(said, given.findings), *given.findings])
+    return Overview(given, angle_range(given.line), _turn(given.line, given.speed), here, None, findings)
+
+
+def charted(
+    seen: Overview, points: tuple[int, int] | None = None, progress: Callable[[float], None] | None = None
+) -> Overview:
+    """An overview with its chart, if it is to have one."""
+    if not seen.chartable:
+        return seen
+    low, high = seen.speed_range
+    across, up = points or (FINE if _has_borders(seen) else COARSE)
+    axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
+    chart = stability_chart(seen.answer.assembly, *axes, progress=progress)
+    return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
+
+
+def _has_borders(seen: Overview) -> bool:
+    """Whether anything but decay shows at the steepest angle, where instabilities are widest, or at the line's own."""
+    given = seen.answer
+    along = given.stability
+    if along is None or np.any(along.verdict != Verdict.STABLE):
+        return True
+    line = given.line
+    for name, _ in hooke_joints(line):
+        line = line.replace(name, angle=seen.angle_range[1])
+    return bool(np.any(stability_along(assemble(line), along.speed).verdict != Verdict.STABLE))
+
+
+def _new(findings: tuple[Finding, ...], known: tuple[Finding, ...]) -> list[Finding]:
+    sentences = {finding.sentence for finding in known}
+    return [finding for finding in findings if finding.sentence not in sentences]
 
 
 def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:
@@ -146,20 +168,6 @@ def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:
         return kinetostatics(line, speed or 1.0)
     except InputError:  # a line clamped at both ends
         return None
-
-
-def speed_range(assembly: Assembly) -> tuple[float, float]:
-    """The range of the description [rad/s]; else about the operating speed; else about the lowest modes."""
-    operation = assembly.line.operation or Operation()
-    if operation.speed_range:
-        return operation.speed_range
-    if operation.speed:
-        return 0.25 * operation.speed, 2.0 * operation.speed
-    elastic = natural_frequencies(assembly).elastic
-    if not len(elastic):
-        return 1.0, 100.0
-    low, high = 0.3 * float(elastic[0]), 1.25 * float(elastic[:MODES_IN_RANGE].max())
-    return float(f"{low:.2g}"), float(f"{high:.2g}")
 
 
 def angle_range(line: Driveline) -> tuple[float, float]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.assess import assess
-from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.charts.axes import lowest_speed
+from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.analyses.linear.stability import stability
@@ -17,7 +16,6 @@ from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent
-from trunnion.errors import ComputationError
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor
@@ -29,8 +27,6 @@ BEYOND = 0.2
 """Share of the range's ends up to which a resonance outside it still raises torques inside."""
 RAISED = 2.0
 """Times the usual torque of the range from which a resonance is grave enough to be named."""
-FREE_SPEEDS = 13
-"""Speeds at which a bent free line is judged: each takes its own motion."""
 
 
 def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
@@ -42,15 +38,6 @@ def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
         f"{slowest * factor:.4g} {unit} a turn spans hundreds of cycles of its highest mode, resonances of such "
         "high order stay closed, and no chart is drawn.",
     )
-
-
-def assessment_findings(line: Driveline, limits: tuple[float, float], unit: str) -> Iterator[Finding]:
-    """The verdict of ``assess`` over the range, for a line that states limits."""
-    if not line.limits:
-        return
-    judged = assess(line, limits, unit=unit)
-    gravity = {Status.EXCEEDED: Gravity.DANGER, Status.NOT_JUDGED: Gravity.CAUTION}.get(judged.verdict, Gravity.NOTE)
-    yield Finding(gravity, f"Limits {judged.sentence}; trunnion assess shows every check.")
 
 
 def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
@@ -77,18 +64,17 @@ def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
         yield Finding(Gravity.NOTE, f"The line has no Hooke's joint, {why}.")
 
 
-def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iterator[Finding]:
-    """Unstable bands of speed at the design angles, each with the resonance it belongs to."""
-    low, high = float(sweep.x[0]), float(sweep.x[-1])
-    whole = f"from {_plain(low, unit)} to {_plain(high, unit)} {unit}"
-    step = f"{speed_factor(unit) * (sweep.x[1] - sweep.x[0]):.3g} {unit}"
-    verdict, radius = sweep.verdict[0], sweep.spectral_radius[0]
-    bands = runs(verdict == Verdict.UNSTABLE)
+def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iterator[Finding]:
+    """Stability over the range at the design angles: each unstable band with the resonance it belongs to."""
+    low, high = float(found.speed[0]), float(found.speed[-1])
+    whole = f"from {_plain(low, unit)} to {_speed(high, unit)}"
+    checked = f"{len(found.speed)} speeds, the named resonance speeds among them"
+    bands = runs(found.verdict == Verdict.UNSTABLE)
     for first, last in bands:
-        worst = first + int(np.argmax(radius[first : last + 1]))
-        there = stability(assembly, float(sweep.x[worst]))
+        worst = first + int(np.argmax(found.growth_rate[first : last + 1]))
+        there = stability(assembly, float(found.speed[worst]))
         cause = f" ({there.resonance.in_words})" if there.resonance else ""
-        edges = f"from {_plain(float(sweep.x[first]), unit)} to {_speed(float(sweep.x[last]), unit)}"
+        edges = f"from {_plain(float(found.speed[first]), unit)} to {_speed(float(found.speed[last]), unit)}"
         at = f"worst at {_speed(there.speed, unit)}, where"
         if first == last:
             edges, at = f"at {_speed(there.speed, unit)}", "there"
@@ -97,16 +83,16 @@ def sweep_findings(assembly: Assembly, sweep: StabilityChart, unit: str) -> Iter
             f"At its own joint angles the line is unstable {edges}{cause}; {at} a disturbance doubles "
             f"every {np.log(2) / there.growth_rate:.3g} s.",
         )
-    if not bands and np.all(verdict == Verdict.STABLE):
-        worst = int(np.argmax(radius))
+    if not bands and np.all(found.verdict == Verdict.STABLE):
+        worst = int(np.argmax(found.growth_rate))
         yield Finding(
             Gravity.NOTE,
-            f"At its own joint angles the line is stable {whole} (checked every {step}; "
-            f"largest spectral radius {radius[worst]:.6g} at {_speed(float(sweep.x[worst]), unit)}).",
+            f"At its own joint angles the line is stable {whole} ({checked}; disturbances decay slowest at "
+            f"{_speed(float(found.speed[worst]), unit)}, by {-found.growth_rate[worst]:.3g} 1/s).",
         )
-    elif not bands and np.all(verdict == Verdict.MARGINAL):
-        yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} (checked every {step}).")
-    yield from _unsettled(sweep, "at its own joint angles")
+    elif not bands and np.all(found.verdict == Verdict.MARGINAL):
+        yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} ({checked}).")
+    yield from _unsettled(found.verdict, "at its own joint angles")
 
 
 def resonance_findings(
@@ -164,33 +150,14 @@ def response_findings(
     )
 
 
-def free_findings(assembly: Assembly, limits: tuple[float, float], unit: str) -> Iterator[Finding]:
-    """The verdict of a free line with joints at some speeds of the range, in place of a chart."""
-    low, high = max(limits[0], lowest_speed(assembly)), limits[1]
-    if not bent(assembly) or high <= low:
-        return
-    speeds = np.linspace(low, high, FREE_SPEEDS)
-    unstable, failed = [], []
-    for speed in speeds:
-        try:
-            found = stability(assembly, float(speed), tolerance=1e-8)
-        except ComputationError:
-            failed.append(_speed(float(speed), unit))
-            continue
-        if found.verdict is Verdict.UNSTABLE:
-            unstable.append(_speed(float(speed), unit))
-    checked = f"at {len(speeds)} speeds between {_plain(low, unit)} and {_speed(high, unit)}"
-    why = "It starts free, so that each speed is judged about its own periodic motion, and no chart is drawn"
-    if unstable:
+def free_findings(assembly: Assembly, along: StabilityAlong | None, unit: str) -> Iterator[Finding]:
+    """Why a bent line that starts free has no chart."""
+    if bent(assembly):
+        how = "" if along else ", found speed by speed"
         yield Finding(
-            Gravity.DANGER, f"Of {len(speeds)} speeds judged, the line is unstable at {', '.join(unstable)}. {why}."
+            Gravity.NOTE,
+            f"The line starts free: each speed is judged about its own periodic motion{how}, and no chart is drawn.",
         )
-    elif not failed:
-        yield Finding(
-            Gravity.NOTE, f"The line is not unstable {checked}; narrow bands between them are not seen. {why}."
-        )
-    if failed:
-        yield Finding(Gravity.CAUTION, f"No periodic motion was found to judge at {', '.join(failed)}. {why}.")
 
 
 def remark_findings(line: Driveline) -> Iterator[Finding]:
@@ -217,7 +184,7 @@ def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
         yield Finding(
             Gravity.NOTE, f"With all joints at one angle, no point of the chart is unstable up to {top:.3g}°."
         )
-    yield from _unsettled(chart, "in the chart")
+    yield from _unsettled(chart.verdict, "in the chart")
 
 
 def runs(flags: np.ndarray) -> list[tuple[int, int]]:
@@ -226,9 +193,9 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
     return [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
 
 
-def _unsettled(chart: StabilityChart, where: str) -> Iterator[Finding]:
-    failed, undecided = chart.count(Verdict.FAILED), chart.count(Verdict.UNDECIDED)
-    total = chart.verdict.size
+def _unsettled(verdict: NDArray[np.int8], where: str) -> Iterator[Finding]:
+    failed, undecided = (int(np.count_nonzero(verdict == v)) for v in (Verdict.FAILED, Verdict.UNDECIDED))
+    total = verdict.size
     if failed:
         yield Finding(
             Gravity.CAUTION,

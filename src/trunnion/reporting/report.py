@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from trunnion.analyses.charts.stable_limit import LimitKind
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.features import feature
 from trunnion.reporting import tables
-from trunnion.reporting.contents import Contents, gather
-from trunnion.reporting.overview import CHART_POINTS, Overview, overview
+from trunnion.reporting.binding import binding_picture, binding_words
+from trunnion.reporting.contents import Contents, gather, with_chart
+from trunnion.reporting.overview import Overview, overview
 from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
@@ -28,12 +32,20 @@ class Report:
 
     html: str
     contents: Contents
+    pictures: Mapping[str, Picture]
+    source: Path | None = None
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the page; an existing file is replaced only when all is written."""
         with written_whole(path) as temporary:
             temporary.write_text(self.html, encoding="utf-8", newline="\n")
         return Path(path)
+
+    def charted(self, seen: Overview) -> Report:
+        """The same report with the chart of ``seen``; nothing else is computed or drawn again."""
+        contents = with_chart(self.contents, seen)
+        shown = {**self.pictures, **chart_pictures(contents)}
+        return Report(_page(contents, shown, self.source), contents, shown, self.source)
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -51,7 +63,7 @@ def report(
     *,
     speed: float | None = None,
     unit: str | None = None,
-    points: tuple[int, int] = CHART_POINTS,
+    points: tuple[int, int] | None = None,
     source: str | os.PathLike[str] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Report:
@@ -63,7 +75,7 @@ def report(
         ``points`` are its own).
     speed : operating speed [rad/s]; default the one of the description.
     unit : of speeds: "rpm", "Hz" or "rad/s"; default the description's.
-    points : speeds × angles of the chart.
+    points : speeds × angles of the chart; default as many as its picture needs.
     source : the file the line was read from, for its name and hash.
     progress : called as progress(share done) while the chart is computed.
 
@@ -78,10 +90,11 @@ def report(
     )
     contents = gather(seen)
     path = None if source is None else Path(source)
-    return Report(_page(contents, path), contents)
+    shown = pictures(contents)
+    return Report(_page(contents, shown, path), contents, shown, path)
 
 
-def _page(contents: Contents, source: Path | None) -> str:
+def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None) -> str:
     from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
     environment = Environment(
@@ -92,12 +105,19 @@ def _page(contents: Contents, source: Path | None) -> str:
         lstrip_blocks=True,
     )
     seen = contents.overview
-    unit, frequency_unit = seen.unit, "rad/s" if seen.unit == "rad/s" else "Hz"
+    unit, frequency_unit = seen.unit, _frequency_unit(seen)
     made = datetime.now().astimezone()
     facts: dict[str, Any] = {
         "title": seen.line.name or "Driveline",
         "description": seen.line.description or "",
         "made": made.strftime("%Y-%m-%d"),
+        "verdict": seen.assessment.sentence,
+        "status": str(seen.assessment.verdict).replace(" ", "-"),
+        "checks": tables.checks(seen.assessment),
+        "not_applicable": tables.not_applicable(seen.assessment),
+        "binding": binding_words(seen),
+        "helped": contents.helped.sentences if contents.helped else (),
+        "chart_to_come": seen.chartable and seen.chart is None,
         "findings": contents.findings,
         "left_out": contents.left_out,
         "remarks": seen.remarks,
@@ -105,7 +125,7 @@ def _page(contents: Contents, source: Path | None) -> str:
         "operation": tables.operation(contents, unit),
         "elements": tables.elements(seen.line),
         "modes": tables.modes(contents, frequency_unit),
-        "crossings": tables.crossing_table(contents, unit, frequency_unit),
+        "crossings": tables.crossings(contents, unit, frequency_unit),
         "resonances": tables.resonances(contents, unit),
         "joints": tables.joints(seen.line),
         "irregularity": tables.irregularity(contents),
@@ -117,7 +137,7 @@ def _page(contents: Contents, source: Path | None) -> str:
         "at_speed": show_speed(seen.stability.speed, unit) if seen.stability else "",
         "limit": contents.limit,
         "provenance": provenance(contents, source, made),
-        "pictures": pictures(contents, frequency_unit),
+        "pictures": shown,
     }
     return environment.get_template("report.html.j2").render(**facts)
 
@@ -127,35 +147,26 @@ def _verdict(seen: Overview) -> str:
     return seen.stability.describe(seen.unit).split("\n  linear forced response")[0] if seen.stability else ""
 
 
-def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
+def _frequency_unit(seen: Overview) -> str:
+    return "rad/s" if seen.unit == "rad/s" else "Hz"
+
+
+def pictures(contents: Contents) -> dict[str, Picture]:
     """The figures of a report by name."""
-    from trunnion.plots import (
-        driveline_sketch,
-        irregularity,
-        mode_shapes,
-        speed_frequency,
-        stability_chart,
-        torque_over_speed,
-    )
-    from trunnion.plots import stable_limit as limit_plot
+    from trunnion.plots import campbell_diagram, driveline_sketch, irregularity, mode_shapes, torque_over_speed
     from trunnion.plots.motion import draw_orders, draw_period
 
     seen, unit = contents.overview, contents.overview.unit
-    line, operating = seen.line, seen.operation
+    line, operating, frequency_unit = seen.line, seen.operation, _frequency_unit(seen)
     first = line.elements[0]
     drive = line.names[0] if isinstance(first, ConstantSpeed) else None
-    diagram = speed_frequency.draw(
-        contents.assembly,
-        speeds=seen.speed_range,
-        unit=unit,
-        frequency_unit=frequency_unit,
-        operating=operating,
-    )
-    shown = {
+    shown = binding_picture(seen) | {
         "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
         "modes": picture(mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"),
-        "speed_frequency": picture(diagram.figure.figure, "Speed–frequency diagram"),
     }
+    if contents.campbell is not None:
+        drawn = campbell_diagram.draw(contents.campbell, unit=unit, frequency_unit=frequency_unit, operating=operating)
+        shown["campbell"] = picture(drawn.figure.figure, "Campbell diagram: modes and excitations over speed")
     if contents.turn is not None:
         shown["irregularity"] = picture(
             irregularity.draw(contents.turn).figure.figure, "Speed of the shafts over a turn"
@@ -169,11 +180,20 @@ def pictures(contents: Contents, frequency_unit: str) -> dict[str, Picture]:
         shown["loaded"] = picture(drawn.figure.figure, f"Torque over one period, {motion.case}")
         drawn = draw_orders(motion.response)
         shown["orders"] = picture(drawn.figure.figure, f"Orders of the torque, {motion.case}")
+    return shown | chart_pictures(contents)
+
+
+def chart_pictures(contents: Contents) -> dict[str, Picture]:
+    """The stability chart and what follows from it; nothing where it is not computed."""
+    from trunnion.plots import stability_chart
+    from trunnion.plots import stable_limit as limit_plot
+
+    seen, unit, shown = contents.overview, contents.overview.unit, {}
     if seen.chart is not None:
-        drawn = stability_chart.draw(seen.chart, unit=unit, operating=operating)
+        drawn = stability_chart.draw(seen.chart, unit=unit, operating=seen.operation)
         shown["chart"] = picture(drawn.figure.figure, "Stability chart over speed and joint angle")
-    if contents.limit is not None:
-        stands = {name: abs(angle) for name, angle in hooke_joints(line)}
-        drawn = limit_plot.draw(contents.limit, unit=unit, operating=operating, values=stands)
+    if contents.limit is not None and not np.all(contents.limit.kind == LimitKind.BEYOND):
+        stands = {name: abs(angle) for name, angle in hooke_joints(seen.line)}
+        drawn = limit_plot.draw(contents.limit, unit=unit, operating=seen.operation, values=stands)
         shown["limit"] = picture(drawn.figure.figure, "Largest stable joint angle over speed")
     return shown

@@ -7,16 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.analyses.assessment.check import Status, percent
+from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
 from trunnion.driveline.shafts import Shaft
-from trunnion.plots.speed_frequency import crossings
 from trunnion.reporting.contents import Contents
 from trunnion.results.speeds import speed_factor
 
-_SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 MOST_RESONANCES = 30
+MOST_CROSSINGS = 30
+REASONS = 5
+"""Satisfied checks printed with their reasons."""
+NARROW = "\u202f"
 
 
 @dataclass(frozen=True)
@@ -129,20 +133,45 @@ def irregularity(contents: Contents) -> Table | None:
     return Table(("shaft, as assembled", "irregularity [%]", "as one joint of [°]"), tuple(rows))
 
 
-def crossing_table(contents: Contents, speed_unit: str, frequency_unit: str) -> Table:
-    """Crossings of the 2Ω and 4Ω lines with the modes in the speed range."""
+def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table:
+    """Where excitations meet the modes of the loaded line in the speed range."""
+    found = contents.campbell.crossings if contents.campbell else ()
     rows = [
         (
             four(c.speed * speed_factor(speed_unit)),
-            f"{c.order}Ω" if c.ratio == 1 else f"{c.order}·{c.ratio:.4g}Ω",
-            f"ω{c.mode}".translate(_SUBSCRIPT),
+            c.line.name,
+            ", ".join(c.line.causes),
+            f"{c.mode}",
             four(c.frequency * speed_factor(frequency_unit)),
-            "yes" if c.excited else "no joint turns at this speed",
+            four(c.amplification),
         )
-        for c in crossings(contents.assembly, *contents.overview.speed_range)
+        for c in found
     ]
-    heads = (f"input speed [{speed_unit}]", "excitation", "mode", f"frequency [{frequency_unit}]", "excited")
-    return Table(heads, tuple(rows))
+    heads = (
+        f"input speed [{speed_unit}]", "excitation", "by", "mode", f"frequency [{frequency_unit}]", "amplification",
+    )  # fmt: skip
+    return Table(heads, tuple(rows[:MOST_CROSSINGS]))
+
+
+def checks(judged: Assessment) -> Table:
+    """Every check that applies, the binding one first; reasons with ample margin are left to ``assess``."""
+    rows: list[tuple[str, ...]] = []
+    for row, check in zip(judged.table(), judged.checks, strict=True):
+        if check.status is Status.NOT_APPLICABLE:
+            continue
+        margin = str(row["margin"]).replace(" ", NARROW)
+        because = check.because.replace(f", {percent(check.margin)}", "")
+        if check.status is Status.NOT_JUDGED:
+            because = because.split(";")[0]  # the findings say what to do
+        elif check.status is Status.SATISFIED and len(rows) >= REASONS:
+            because = ""
+        rows.append((str(row["status"]), check.name, margin, str(row[f"speed [{judged.unit}]"]), _signs(because)))
+    return Table(("", "check", "margin", f"at [{judged.unit}]", "because"), tuple(rows))
+
+
+def not_applicable(judged: Assessment) -> tuple[str, ...]:
+    """What was not judged because it does not apply, with the reason."""
+    return tuple(f"{c.name}: {c.because}" for c in judged.checks if c.status is Status.NOT_APPLICABLE)
 
 
 def resonances(contents: Contents, unit: str) -> Table:

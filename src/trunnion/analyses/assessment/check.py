@@ -86,7 +86,8 @@ def percent(margin: float) -> str:
     """ "12 % free", "exceeded by 50 %"."""
     if not isfinite(margin):
         return "exceeded without bound" if margin < 0 else ""
-    return f"{100 * margin:.3g} % free" if margin >= 0 else f"exceeded by {-100 * margin:.3g} %"
+    share = f"{float(f'{abs(100 * margin):.3g}'):.10g} %"
+    return f"{share} free" if margin >= 0 else f"exceeded by {share}"
 
 
 _RANK = {Status.EXCEEDED: 0, Status.SATISFIED: 1, Status.NOT_JUDGED: 2, Status.NOT_APPLICABLE: 3}

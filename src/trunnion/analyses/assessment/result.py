@@ -48,7 +48,8 @@ class Assessment(Result):
             return f"exceeded: {bind.name}{rule}, {bind.because}{more}"
         if self.verdict is Status.NOT_JUDGED:
             names = ", ".join(c.name for c in open_ones[:4]) + (", ..." if len(open_ones) > 4 else "")
-            return f"not judged: nothing judged is exceeded, but {names or 'no limit is stated'}"
+            open_end = f"{names} could not be judged" if names else "no limit is stated"
+            return f"not judged: nothing that is judged is exceeded, but {open_end}"
         if self.barred:
             ranges = " and ".join(f"{show_speed(a, self.unit)} to {show_speed(b, self.unit)}" for a, b in self.barred)
             return f"satisfied where {ranges} is barred and passed quickly: there only transient limits hold"

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
 from trunnion.equations.coefficients import Assembly
@@ -75,4 +74,9 @@ def matched(before: Complex, after: Complex) -> tuple[NDArray[np.intp], NDArray[
     """Which columns belong together, by the largest sum of MAC; vectors in coordinates scaled with √M."""
     share = np.abs(before.conj().T @ after) ** 2
     share /= np.maximum((np.abs(before) ** 2).sum(axis=0)[:, None] * (np.abs(after) ** 2).sum(axis=0), 1e-300)
+    best = share.argmax(axis=1)
+    if share.shape[0] <= share.shape[1] and len(set(best.tolist())) == len(best):
+        return np.arange(len(best)), best  # each its own: no sum is larger
+    from scipy.optimize import linear_sum_assignment
+
     return linear_sum_assignment(-share)  # type: ignore[no-any-return]

@@ -49,6 +49,7 @@ class Monodromies:
     steps: NDArray[np.intp]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # steps that are far too long overflow, and are halved
 def exponential_monodromies(
     rates: Rates,
     cases: int,
@@ -94,8 +95,7 @@ def _radius(fine: Array, coarse: Array) -> tuple[Array, Array, Complex]:
     """
     finite = np.asarray(np.isfinite(fine).all(axis=(1, 2)) & np.isfinite(coarse).all(axis=(1, 2)))
     fine, coarse = (np.where(finite[:, None, None], part, 0.0) for part in (fine, coarse))
-    with np.errstate(over="ignore"):  # steps that are far too long
-        change = np.linalg.norm(fine - coarse, axis=(1, 2))
+    change = np.linalg.norm(fine - coarse, axis=(1, 2))
     values, bound = multipliers(fine, change / 16)
     radius, by_norm = spectral_radius(values, bound)
     before = np.linalg.eigvals(coarse)

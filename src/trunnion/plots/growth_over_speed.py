@@ -1,0 +1,43 @@
+"""Growth rate of the slowest disturbance over speed: the margin of stability along the running range."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.analyses.linear.along import StabilityAlong
+from trunnion.driveline.operation import Operation
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+UNSTABLE = "#8c2f39"
+
+
+def draw(
+    found: StabilityAlong, axes: Axes | None = None, *, unit: str = "rpm", operating: Operation | None = None
+) -> Axes:
+    """Growth rate [1/s] over speed in ``unit``; above zero the line is unstable."""
+    axes = axes or new_axes(7.2, 3.6)
+    x, rate = found.speed * speed_factor(unit), found.growth_rate
+    axes.plot(x, rate, color=INK, lw=1.6, label="slowest disturbance", marker="o" if len(x) == 1 else None)
+    axes.axhline(0.0, color=UNSTABLE, lw=1.6, label="limit of stability")
+    if np.any(rate > 0):
+        axes.fill_between(x, 0.0, rate, where=rate > 0, color=UNSTABLE, alpha=0.6, lw=0, label="unstable")
+    if len(x) > 1:
+        axes.set_xlim(x[0], x[-1])
+    low, high = float(np.nanmin(rate, initial=0.0)), float(np.nanmax(rate, initial=0.0))
+    room = 0.08 * max(high - low, 1e-12)
+    axes.set_ylim(low - room, high + room)
+    if operating and operating.speed and x[0] <= operating.speed * speed_factor(unit) <= x[-1]:
+        at = operating.speed * speed_factor(unit)
+        axes.axvline(at, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
+    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
+    axes.set_ylabel("growth rate [1/s]", fontsize=TEXT, color=INK)
+    axes.grid(which="major", color="#dddddd", lw=0.6)
+    plain(axes)
+    axes.figure.figure.legend(loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False)
+    return axes
