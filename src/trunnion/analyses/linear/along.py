@@ -7,7 +7,7 @@ lines that start free are taken about their own periodic motions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.charts.chart_families import quantities
 from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
 from trunnion.analyses.linear.own_motions import own_motions
-from trunnion.equations.coefficients import Assembly, LineCoefficients, MeshWave
+from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
 from trunnion.equations.steady_base import bent, require_balance
@@ -73,7 +73,7 @@ def stability_along(assembly: Assembly, speeds: ArrayLike, *, statically_twisted
     table[:, 0] = speed
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     small = assembly.topology.size <= LARGEST
-    return _by_exponentials(assembly, co) if small else _by_kernel(assembly, co)
+    return _by_exponentials(assembly, table, co, statically_twisted) if small else _by_kernel(assembly, co)
 
 
 def straight_decay(assembly: Assembly, speed: float) -> float:
@@ -83,9 +83,7 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     it.
     """
     topo, table = assembly.topology, assembly.table(1, speed)
-    for j in topo.joints:
-        table[:, assembly.packed.column(topo.stations[j].element, "angle")] = 0.0
-    co = replace(assembly.coefficients(table, any_frequency=True), waves=())
+    co = replace(assembly.coefficients(table, any_frequency=True).straight, waves=())
     m = line_matrices(topo, co, np.zeros(1))
     root = np.sqrt(np.einsum("ctii->ci", m.mass))
     stiffness = np.einsum("ctii->ci", m.stiffness)
@@ -96,7 +94,7 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     return float(-np.linalg.eigvals(left).real.max(initial=-np.inf) * speed)
 
 
-def _by_exponentials(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
+def _by_exponentials(assembly: Assembly, table: Array, co: LineCoefficients, twisted: bool) -> StabilityAlong:
     topo, cases = assembly.topology, len(co.speed)
     period = _period(assembly)
     cycles = _cycles(assembly, period)
@@ -107,7 +105,8 @@ def _by_exponentials(assembly: Assembly, co: LineCoefficients) -> StabilityAlong
     unit = np.sqrt(np.maximum(np.abs(stiffness).mean(axis=1), 1e-300)) / co.speed
 
     def rates(which: NDArray[np.intp], tau: Array) -> Array:
-        return _first_order(line_matrices(topo, _cases(co, which), tau), co.speed[which], root[which], unit[which])
+        some = assembly.coefficients(table[which], statically_twisted=twisted)
+        return _first_order(line_matrices(topo, some, tau), some.speed, root[which], unit[which])
 
     aside = rigid_motions(topo, co)
     rest = None
@@ -134,12 +133,6 @@ def _first_order(m: LineMatrices, speed: Array, root: Array, unit: Array) -> Arr
     a[..., n:, :n] = m.stiffness * over * (ratio / (-(speed**2) * unit)[:, None, None, None])
     a[..., n:, n:] = m.damping * over * (ratio / -speed[:, None, None, None])
     return a
-
-
-def _cases(co: LineCoefficients, which: NDArray[np.intp]) -> LineCoefficients:
-    parts = {f.name: getattr(co, f.name)[which] for f in fields(co) if f.name != "waves"}
-    waves = tuple(MeshWave(w.compliance, w.cycles, w.share[which], w.phase[which]) for w in co.waves)
-    return LineCoefficients(**parts, waves=waves)
 
 
 def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
