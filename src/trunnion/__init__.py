@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
     from trunnion.driveline import (
+        Clutch,
         ConstantSpeed,
         Coupling,
         Disk,
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
         Ripple,
         RzeppaJoint,
         Shaft,
+        Slider,
         StiffnessVariation,
         TransmissionError,
         TripodJoint,
@@ -126,6 +128,8 @@ _HOME = {
     "StiffnessVariation": "trunnion.driveline",
     "Coupling": "trunnion.driveline",
     "PiecewiseShaft": "trunnion.driveline",
+    "Clutch": "trunnion.driveline",
+    "Slider": "trunnion.driveline",
     "Excitation": "trunnion.driveline",
     "Driveline": "trunnion.driveline",
     "Operation": "trunnion.driveline",

@@ -4,6 +4,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 """
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
+from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import (
     ConstantSpeed,
@@ -46,6 +47,8 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "TransmissionError",
+    "Clutch",
+    "Slider",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

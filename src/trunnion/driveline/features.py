@@ -89,7 +89,7 @@ FEATURES = (
     ),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
-    Feature("damping", ("Shaft.damping", "Coupling.damping", "PiecewiseShaft.damping")),
+    Feature("damping", ("Shaft.damping", "Coupling.damping", "PiecewiseShaft.damping", "Clutch.damping")),
     Feature(
         "loss factor",
         (
@@ -103,7 +103,10 @@ FEATURES = (
         lambda line: ["driveline.damping_ratio"] if line.damping_ratio else [],
     ),
     Feature("Hooke's joint", ("HookeJoint.angle",)),
-    Feature("fork offset", ("Shaft.fork_offset", "Coupling.fork_offset", "PiecewiseShaft.fork_offset")),
+    Feature(
+        "fork offset",
+        ("Shaft.fork_offset", "Coupling.fork_offset", "PiecewiseShaft.fork_offset", "Clutch.fork_offset"),
+    ),
     Feature(
         "joint plane",
         (
@@ -147,8 +150,14 @@ FEATURES = (
             "StiffnessVariation.phase",
         ),
     ),
-    Feature("stages", ("PiecewiseShaft.breakpoints", "PiecewiseShaft.stiffnesses")),
-    Feature("damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law")),
+    Feature(
+        "stages",
+        ("PiecewiseShaft.breakpoints", "PiecewiseShaft.stiffnesses", "Clutch.breakpoints", "Clutch.stiffnesses"),
+    ),
+    Feature(
+        "damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law", "Clutch.damping_law")
+    ),
+    Feature("dry friction", ("Clutch.friction", "Slider.torque", "Slider.stiffness")),
     Feature("load torque", ("Disk.load_torque",)),
     Feature("drive share", ("Disk.drive_share",)),
     Feature("viscous load", ("Disk.viscous_load",)),

@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.driveline.ball_joints import RIPPLE_KINDS
+from trunnion.driveline.clutches import SLIDER_KINDS
 from trunnion.driveline.driveline import Driveline, refuse_too_many
 from trunnion.driveline.elements import Disk, Element, is_name
 from trunnion.driveline.excitation import EXCITATION_KINDS
@@ -50,7 +51,7 @@ _QUOTED = re.compile(
 )
 _DEEP_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{DEEPEST_KEY}}}")
 _DAMPING = ("damping_ratio", "damping_ratio_frequency")
-HARMONICS = {"excitation": EXCITATION_KINDS, **MESH_KINDS, **RIPPLE_KINDS}
+HARMONICS = {"excitation": EXCITATION_KINDS, **MESH_KINDS, **RIPPLE_KINDS, **SLIDER_KINDS}
 """Keys that hold tables of harmonics, and the physical kinds of their quantities."""
 TOP_KEYS = (
     "format",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
+from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import (
     ConstantSpeed,
     Disk,
@@ -24,6 +25,7 @@ KINDS: dict[str, type[Element]] = {
         Shaft,
         Coupling,
         PiecewiseShaft,
+        Clutch,
         Disk,
         HookeJoint,
         IdealJoint,

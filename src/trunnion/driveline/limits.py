@@ -19,6 +19,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
+from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.kinds import KINDS
@@ -68,7 +69,7 @@ LIMIT_KINDS: dict[str, Kind] = {
 }
 """Physical kinds of its quantities."""
 
-_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft)
+_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),
     "vibratory_torque": (*_SPRING, GearPair),

@@ -240,6 +240,7 @@ _HARMONICS = {
     "transmission_error": {"amplitude": "m", "phase": "rad"},
     "stiffness_variation": {"share": "1", "phase": "rad"},
     "ripple": {"amplitude": "rad", "phase": "rad"},
+    "friction": {"torque": "N*m", "stiffness": "N*m/rad"},
 }
 """Numbers of each harmonic of a list, and their units."""
 _LISTS = {"breakpoints": ("breakpoint", "rad"), "stiffnesses": ("stiffness", "N*m/rad")}

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from trunnion.driveline.ball_joints import Ripple
+from trunnion.driveline.clutches import Slider
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -110,6 +111,7 @@ def json_schema() -> dict[str, Any]:
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),
+            "Slider": _model(Slider),
         },
     }
 

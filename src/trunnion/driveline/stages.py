@@ -15,7 +15,13 @@ from trunnion.errors import InputError
 LAWS = ("always", "in contact")
 
 
-def _list(value: object) -> object:
+def quantities(value: object) -> object:
+    """A list as a tuple.
+
+    Raises
+    ------
+    InputError : no list.
+    """
     if isinstance(value, str | dict) or not isinstance(value, Iterable):
         remedy = 'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say'
         raise InputError("is not a list of quantities", value=value, remedy=remedy)
@@ -42,10 +48,14 @@ class PiecewiseShaft(Element):
 
     example: ClassVar[str] = 'breakpoints = ["-4 deg", "4 deg"] and stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"]'
 
-    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(_list)] = Field(
+    fewest_breakpoints: ClassVar[int] = 1
+    slack: ClassVar[bool] = False
+    """Whether all its stiffnesses may be 0."""
+
+    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(quantities)] = Field(
         description="twists at which the stiffness changes, rising"
     )
-    stiffnesses: Annotated[tuple[Stiffness, ...], BeforeValidator(_list)] = Field(
+    stiffnesses: Annotated[tuple[Stiffness, ...], BeforeValidator(quantities)] = Field(
         description="below, between and above the breakpoints"
     )
     damping: Damping = Field(default=0.0, description="viscous damping")
@@ -77,14 +87,14 @@ class PiecewiseShaft(Element):
         return data
 
     def doubts(self) -> Iterator[Doubt]:
-        widest = max(self.breakpoints, key=abs)
+        widest = max(self.breakpoints, key=abs, default=0.0)
         if abs(widest) > pi:
             remedy = 'write "4 deg", say: a number alone is in radians'
             yield ("breakpoints", f"reach {widest:g} rad, more than half a turn", remedy)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        if not self.breakpoints:
+        if len(self.breakpoints) < self.fewest_breakpoints:
             raise InputError("is empty", key="breakpoints", value=[], remedy="write a Shaft instead")
         if len(self.stiffnesses) != len(self.breakpoints) + 1:
             problem = f"must be {len(self.breakpoints) + 1} quantities, one more than breakpoints"
@@ -93,7 +103,7 @@ class PiecewiseShaft(Element):
             raise InputError("must rise", key="breakpoints", value=list(self.breakpoints))
         if min(self.stiffnesses) < 0:
             raise InputError("must not be negative", key="stiffnesses", value=min(self.stiffnesses))
-        if not max(self.stiffnesses) > 0:
+        if not (max(self.stiffnesses) > 0 or self.slack):
             raise InputError("are all zero", key="stiffnesses", remedy="leave the shaft out, or give a stage stiffness")
         if self.damping < 0:
             raise InputError("must not be negative", key="damping", value=self.damping, remedy="write 0 for none")

@@ -271,7 +271,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         stiffness[:, e], damping[:, e] = _series(k, c)
         losses = [_shaft_loss(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
         loss[:, e] = _series(k, losses)[1]
-        twist[:, e] = torque[:, e] / stiffness[:, e]
+        twist[:, e] = np.divide(torque[:, e], stiffness[:, e], out=np.zeros(cases), where=stiffness[:, e] > 0)
         first = compliance.shafts[0]
         if has_stages(assembly.line.elements[first]):
             law = stage_law(assembly.line, first, column, table)

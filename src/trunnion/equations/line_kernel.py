@@ -26,11 +26,12 @@ from numba import carray, cfunc, njit, types
 
 _POINTER = types.CPointer(types.float64)
 _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER)
+_JUMP = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, types.int64, _POINTER)
 _GUARD = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER, _POINTER)
 
 # The head of the numbers.
-UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE, LAWS = range(10)
-HEAD = 10
+UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE, LAWS, SLIDERS = range(11)
+HEAD = 11
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 # LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
@@ -49,6 +50,14 @@ PER_STAGE = 3 + GUARDS * PER_GUARD
 # Per harmonic torque; order 0 means in time.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
+# Per slider of a clutch: its compliance, the stiffness of its spring, the deflection at which it slips, and the stride
+# of its stages among the regimes. Its deflection is a state behind the rates; it follows the twist where it sticks.
+OF, SPRING, REACH, STEP = range(4)
+PER_SLIDER = 4
+SLIPS_BACK, STICKS, SLIPS_ON = range(3)
+SETBACK = 1e-12
+"""Share of its deflection that a slider falls back by where it comes to stick: less than what counts, more than
+rounding, which could let it slip again at rest."""
 # Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
 # the number of its harmonics and SIZE their place among the numbers: order, amplitude and phase of each.
 ROOT, SHAFT, CROSS, RATIO, FOURIER = range(5)
@@ -141,9 +150,10 @@ def line(t, y_, p_, k, regime, out_):
     n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
     compliance = HEAD + count * PER_STATION
     harmonic = compliance + joined * PER_COMPLIANCE
-    scratch = harmonic + shaken * PER_HARMONIC + int(head[LAWS])
+    slider, sliding = harmonic + shaken * PER_HARMONIC, int(head[SLIDERS])
+    scratch = slider + sliding * PER_SLIDER + int(head[LAWS])
     p = carray(p_, (scratch + 5 * count + 7 * n + 3 * joined,))
-    wide = 2 * n
+    wide = 2 * n + sliding
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
     since = t - p[SINCE]
     omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
@@ -203,6 +213,12 @@ def line(t, y_, p_, k, regime, out_):
             damp[e], stiff[e] = p[stage], wave * p[stage + 1]
             shaft[e] = stiff[e] * (d[far] - d[near] + error) + wave * p[stage + 2]
             shaft[e] += damp[e] * (v[far] - v[near] + rate)
+        for s in range(sliding):
+            at = slider + s * PER_SLIDER
+            if int(p[at + OF]) == e:
+                shaft[e] += p[at + SPRING] * y[2 * n + s]
+                sticks = regime // int(p[at + STEP]) % 3 == STICKS
+                out[2 * n + s] = v[far] - v[near] if sticks else 0.0
         i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
         if j >= 0:
             torque[j] -= shaft[e]
@@ -235,6 +251,11 @@ def line(t, y_, p_, k, regime, out_):
                 twist -= r[near] * w[i]
                 rate -= r1[near] * v[reference] * w[i] + r[near] * w[n + i]
             change = stiff[e] * twist + damp[e] * rate
+            for s in range(sliding):
+                at = slider + s * PER_SLIDER
+                if int(p[at + OF]) == e:
+                    change += p[at + SPRING] * w[2 * n + s]
+                    o[2 * n + s] = rate if regime // int(p[at + STEP]) % 3 == STICKS else 0.0
             if j >= 0:
                 o[n + j] -= change
             if i >= 0:
@@ -246,15 +267,16 @@ def line(t, y_, p_, k, regime, out_):
 
 @cfunc(_GUARD, cache=True)
 def line_guards(t, x_, p_, regime, sloped, g_, slope_):
-    """GUARDS switching functions per spring with stages, and their gradients by x and t."""
+    """GUARDS switching functions per spring with stages and per slider, and their gradients by x and t."""
     head = carray(p_, (HEAD,))
     n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
     compliance = HEAD + count * PER_STATION
-    scratch = compliance + joined * PER_COMPLIANCE + shaken * PER_HARMONIC + int(head[LAWS])
+    slider, sliding = compliance + joined * PER_COMPLIANCE + shaken * PER_HARMONIC, int(head[SLIDERS])
+    scratch = slider + sliding * PER_SLIDER + int(head[LAWS])
     p = carray(p_, (scratch + 5 * count,))
-    x, g = carray(x_, (2 * n,)), carray(g_, (GUARDS * joined,))
-    wide = 2 * n + 1
-    slope = carray(slope_, (GUARDS * joined * wide,))
+    x, g = carray(x_, (2 * n + sliding,)), carray(g_, (GUARDS * (joined + sliding),))
+    wide = 2 * n + sliding + 1
+    slope = carray(slope_, (GUARDS * (joined + sliding) * wide,))
     since = t - p[SINCE]
     omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
     theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
@@ -290,8 +312,56 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
                 drift = p[HEAD + near * PER_STATION + MEAN] * omega - r[near] * turning
                 growth = p[HEAD + far * PER_STATION + MEAN] * alpha - r1[near] * turning * v[reference]
                 growth -= r[near] * p[HEAD + reference * PER_STATION + MEAN] * alpha
-                row[2 * n] = by_twist * (drift + error_rate) + by_rate * (growth + error_acceleration)
+                row[wide - 1] = by_twist * (drift + error_rate) + by_rate * (growth + error_acceleration)
             m += 1
+    for s in range(sliding):
+        at = slider + s * PER_SLIDER
+        q = compliance + int(p[at + OF]) * PER_COMPLIANCE
+        near, far = int(p[q + NEAR]), int(p[q + FAR])
+        i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+        # Where it slips back and on from stick, and where the twist that it slips with turns.
+        g[m], g[m + 1], g[m + 2] = x[2 * n + s] + p[at + REACH], x[2 * n + s] - p[at + REACH], v[far] - v[near]
+        if sloped != 0:
+            slope[m * wide : (m + GUARDS) * wide] = 0.0
+            slope[m * wide + 2 * n + s] = slope[(m + 1) * wide + 2 * n + s] = 1.0
+            row = slope[(m + 2) * wide : (m + GUARDS) * wide]
+            reference = int(p[HEAD + near * PER_STATION + REFERENCE])
+            turning = p[HEAD + reference * PER_STATION + MEAN] * omega
+            if j >= 0:
+                row[n + j] += 1.0
+            if i >= 0:
+                row[i] -= r1[near] * v[reference]
+                row[n + i] -= r[near]
+            row[wide - 1] = p[HEAD + far * PER_STATION + MEAN] * alpha - r1[near] * turning * v[reference]
+            row[wide - 1] -= r[near] * p[HEAD + reference * PER_STATION + MEAN] * alpha
+        m += GUARDS
+    return 0
+
+
+@cfunc(_JUMP, cache=True)
+def line_jump(t, y_, p_, k, regime, which, delay_):
+    """Deflections of sliders behind a guard: where one begins to slip it stands at its end exactly, and where the
+    twist turns all that slip with it stick. The tangents know."""
+    head = carray(p_, (HEAD,))
+    n, joined, sliding = int(head[0]), int(head[2]), int(head[SLIDERS])
+    slider = HEAD + int(head[1]) * PER_STATION + joined * PER_COMPLIANCE + int(head[3]) * PER_HARMONIC
+    p, y = carray(p_, (slider + sliding * PER_SLIDER,)), carray(y_, (2 * n + sliding,))
+    first = 0
+    for e in range(joined):
+        if p[HEAD + int(head[1]) * PER_STATION + e * PER_COMPLIANCE + STAGES] >= 2.0:
+            first += GUARDS
+    if which < first:
+        return 0
+    one, guard = (which - first) // GUARDS, (which - first) % GUARDS
+    at = slider + one * PER_SLIDER
+    if guard < 2:
+        y[2 * n + one] = p[at + REACH] if guard == 1 else -p[at + REACH]
+        return 0
+    stage = regime // int(p[at + STEP]) % 3
+    for s in range(sliding):
+        other = slider + s * PER_SLIDER
+        if p[other + OF] == p[at + OF] and regime // int(p[other + STEP]) % 3 == stage:
+            y[2 * n + s] = (1.0 - SETBACK) * (p[other + REACH] if stage == SLIPS_ON else -p[other + REACH])
     return 0
 
 
@@ -305,6 +375,21 @@ def locate(t, x, p):
     for e in range(int(p[COMPLIANCES])):
         if p[compliance + e * PER_COMPLIANCE + STAGES] > 0.0:
             regime += stages[0, e] * int(p[compliance + e * PER_COMPLIANCE + STRIDE])
+    n, count = int(p[UNKNOWNS]), int(p[STATIONS])
+    v, r, r1, r2 = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
+    since = t - p[SINCE]
+    theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
+    walk(theta, p[OMEGA] + p[ALPHA] * since, x, p, count, HEAD, np.empty(count), v, r, r1, r2)
+    slider = compliance + int(p[COMPLIANCES]) * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
+    for s in range(int(p[SLIDERS])):
+        at = slider + s * PER_SLIDER
+        q = compliance + int(p[at + OF]) * PER_COMPLIANCE
+        rate, stage = v[int(p[q + FAR])] - v[int(p[q + NEAR])], STICKS
+        if x[2 * n + s] >= p[at + REACH] and rate > 0.0:
+            stage = SLIPS_ON
+        elif x[2 * n + s] <= -p[at + REACH] and rate < 0.0:
+            stage = SLIPS_BACK
+        regime += stage * int(p[at + STEP])
     return regime
 
 
@@ -340,6 +425,10 @@ def look(times, states, p, twist, torque, rotation, stages):
             stages[m, e] = stage_at(p, q, twist[m, e], rate)
             at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
             torque[m, e] = wave * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
+        slider = compliance + joined * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
+        for s in range(int(p[SLIDERS])):
+            at = slider + s * PER_SLIDER
+            torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]
 
 
 @njit(cache=True, nogil=True)
@@ -362,3 +451,7 @@ def energy(times, states, p, kinetic, potential):
             twist = d[int(p[q + FAR])] - d[int(p[q + NEAR])]
             if p[q + LAW] == 0.0:
                 potential[m] += 0.5 * p[q + STIFFNESS] * twist * twist
+        slider = compliance + joined * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
+        for s in range(int(p[SLIDERS])):
+            stretch = states[m, 2 * int(p[UNKNOWNS]) + s]
+            potential[m] += 0.5 * p[slider + s * PER_SLIDER + SPRING] * stretch * stretch

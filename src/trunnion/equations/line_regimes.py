@@ -3,7 +3,7 @@
 A spring with s stages counts them 0 … s − 1; the regime of the line is Σ stage · stride, the strides being products of
 the numbers of stages before. Each spring has three guards. Two stages see the surface between them as one function
 under one number, crossed upwards from one and downwards from the other, so that behind a crossing nothing starts at a
-zero whose sign is rounding.
+zero whose sign is rounding. Sliders of clutches are parts of three stages, with guards of their own.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.sliders import SLIDER_STAGES, sliders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -153,45 +154,91 @@ class LineRegimes(Regimes):
         return int(self.kernel.locate(float(time), np.ascontiguousarray(state, dtype=float), system.numbers))
 
 
+def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
+    """Strides of the stages of ``count`` sliders, which come after those of the springs."""
+    first = prod(spring.stages for spring in springs.values())
+    return [first * SLIDER_STAGES**i for i in range(count)]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What a regime is made of: one spring or slider with stages, and what each of its guards leads to.
+
+    ``along``: numbers of the parts, itself among them, that come to stick together where they slip together.
+    """
+
+    name: str
+    stride: int
+    stages: int
+    then: Integers
+    directions: Array
+    words: tuple[str, ...]
+    along: tuple[int, ...] = ()
+
+
 def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
-    """The regimes of a line; None where all springs are linear.
+    """The regimes of a line; None where all springs are linear and nothing rubs.
 
     Raises
     ------
     InputError : more stages together than are told apart.
     """
-    springs = [s for s in staged_springs(assembly, assembly.table(1)[0]).values() if s.stages > 1]
-    if not springs:
+    parts = _parts(assembly)
+    if not parts:
         return None
-    count = prod(s.stages for s in springs)
+    count = prod(part.stages for part in parts)
     if count > MOST_REGIMES:
         raise InputError(
             f"have {count} combinations of stages, more than the {MOST_REGIMES} that are told apart",
-            element=", ".join(s.name for s in springs), remedy="take some of the gaps out, or stages together",
+            element=", ".join(p.name for p in parts), remedy="take some of the gaps out, or stages together",
         )  # fmt: skip
-    transitions = np.full((count, GUARDS * len(springs)), -1, dtype=np.int64)
+    transitions = np.full((count, GUARDS * len(parts)), -1, dtype=np.int64)
     directions = np.zeros_like(transitions)
     for regime in range(count):
-        for i, spring in enumerate(springs):
-            stage = regime // spring.stride % spring.stages
+        for i, part in enumerate(parts):
+            stage = regime // part.stride % part.stages
             for guard in range(GUARDS):
-                then = spring.then[stage, guard]
+                then = part.then[stage, guard]
                 if then >= 0:
-                    transitions[regime, GUARDS * i + guard] = regime + (then - stage) * spring.stride
-                    directions[regime, GUARDS * i + guard] = int(spring.directions[stage, guard])
-    names = tuple(
-        ", ".join(f"{s.name} stage {regime // s.stride % s.stages + 1}" for s in springs) for regime in range(count)
-    )
-    guards = tuple(f"{s.name} guard {side}" for s in springs for side in range(1, GUARDS + 1))
-    compiled = kernel.line_guards
+                    same = [parts[j] for j in part.along if regime // parts[j].stride % parts[j].stages == stage]
+                    step = sum(p.stride for p in same) if same and stage != STICKS else part.stride
+                    transitions[regime, GUARDS * i + guard] = regime + (then - stage) * step
+                    directions[regime, GUARDS * i + guard] = int(part.directions[stage, guard])
+    names = tuple(", ".join(f"{p.name} {p.words[r // p.stride % p.stages]}" for p in parts) for r in range(count))
+    guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
+    compiled, jump = kernel.line_guards, kernel.line_jump
     return LineRegimes(
         names,
         guards,
         CFunction(compiled.address, compiled),
         (),
         lambda t, x, p: 0,
-        None,
+        CFunction(jump.address, jump) if any(part.along for part in parts) else None,
         transitions,
         directions,
         kernel,
     )
+
+
+STICKS = 1
+"""Stage of a slider between slipping back and slipping on."""
+_SLIDER_THEN = np.array([[-1, -1, STICKS], [0, 2, -1], [-1, -1, STICKS]], dtype=np.int64)
+_SLIDER_DIRECTIONS = np.array([[0, 0, 1], [-1, 1, 0], [0, 0, -1]])
+
+
+def _parts(assembly: Assembly) -> list[_Part]:
+    row = assembly.table(1)[0]
+    springs = staged_springs(assembly, row)
+    found = [
+        _Part(s.name, s.stride, s.stages, s.then, s.directions, tuple(f"stage {i + 1}" for i in range(s.stages)))
+        for s in springs.values()
+        if s.stages > 1
+    ]
+    rubbing = sliders(assembly, row)
+    first, words = len(found), ("slips back", "sticks", "slips on")
+    for slider, stride in zip(rubbing, slider_strides(springs, len(rubbing)), strict=True):
+        # All that slip on one twist stick together: it turns for them at the same instant.
+        along = tuple(first + j for j, other in enumerate(rubbing) if other.compliance == slider.compliance)
+        part = _Part(slider.name, stride, SLIDER_STAGES, _SLIDER_THEN, _SLIDER_DIRECTIONS, words, along)
+        found.append(part)
+    return found

@@ -19,8 +19,9 @@ from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.line_regimes import line_regimes, staged_springs
+from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
+from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.equations.topology import LONGEST_PERIOD, Link, common_rate
 from trunnion.errors import InputError
@@ -66,7 +67,8 @@ class LineSystem:
     """A line prepared for nonlinear analyses.
 
     ``system`` has the states "rotation of …" (deviations from uniform rotation at the mean speed, forks
-    subtracted) and "rate of …"; its parameters are the line's numbers by their paths, and the speed.
+    subtracted), "rate of …" and, of clutches with dry friction, "deflection of … slider …"; its parameters are the
+    line's numbers by their paths, and the speed.
     """
 
     assembly: Assembly
@@ -97,22 +99,32 @@ class LineSystem:
         return turns if turns <= LONGEST_PERIOD else None
 
     @cached_property
+    def sliders(self) -> tuple[PlacedSlider, ...]:
+        """The sliders of its clutches, whose deflections are its last states."""
+        return sliders(self.assembly, self.assembly.table(1)[0])
+
+    @cached_property
     def system(self) -> System:
         """The line as a system, its parameters being those of the description."""
         packed = self.assembly.packed
         values = dict(zip(packed.labels, map(float, packed.values), strict=True)) | {SPEED: self.speed}
-        n = self.assembly.topology.size
+        n, rubbing = self.assembly.topology.size, self.sliders
         compiled = kernel().line
+        reach = [slider.reach for slider in rubbing]
         return System(
             name=self.assembly.line.name or "driveline",
-            states=(*(f"rotation of {name}" for name in self.names), *(f"rate of {name}" for name in self.names)),
-            units=("rad",) * n + ("rad/s",) * n,
+            states=(
+                *(f"rotation of {name}" for name in self.names),
+                *(f"rate of {name}" for name in self.names),
+                *(f"deflection of {slider.name}" for slider in rubbing),
+            ),
+            units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(rubbing),
             rate=CFunction(compiled.address, compiled),
             parameters=values,
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
-            start=np.zeros(2 * n),
-            scale=np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n),
+            start=np.zeros(2 * n + len(rubbing)),
+            scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
             numbers_of=self._numbers,
             regimes=line_regimes(self.assembly, kernel()),
         )
@@ -224,7 +236,7 @@ class LineSystem:
                 harmonics.append([s, sense * amplitude, order, frequency, angle])
         laws = staged_springs(assembly, row)
         begin = core.HEAD + stations.size + len(topo.compliances) * core.PER_COMPLIANCE
-        begin += len(harmonics) * core.PER_HARMONIC
+        begin += len(harmonics) * core.PER_HARMONIC + len(self.sliders) * core.PER_SLIDER
         compliances = []
         for e, c in enumerate(topo.compliances):
             ends = [c.near, topo.reference[c.far_group]]
@@ -239,9 +251,13 @@ class LineSystem:
             ripple = _put_joint(core, joint, stations[s], begin)
             law_numbers, begin = np.append(law_numbers, ripple), begin + ripple.size
         head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
-        head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size]
+        rubbing = sliders(assembly, row)
+        strides = slider_strides(laws, len(rubbing))
+        friction = [[s.compliance, s.stiffness, s.reach, step] for s, step in zip(rubbing, strides, strict=True)]
+        head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size, len(rubbing)]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 3 * len(compliances))
-        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics), law_numbers, scratch]
+        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics)]
+        parts += [np.ravel(friction), law_numbers, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
 
     def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
@@ -281,11 +297,11 @@ class LineSystem:
         return at
 
     def rest(self) -> Array:
-        """The state (2n,) without twist: every disk where rigid shafts would hold it at t = 0."""
+        """The state without twist: every disk where rigid shafts would hold it at t = 0."""
         return self.rigid(0.0)
 
     def rigid(self, theta: float) -> Array:
-        """State (2n,) of the line with rigid shafts, the input standing at ``theta`` [rad]."""
+        """State of the line with rigid shafts, the input standing at ``theta`` [rad]."""
         topo = self.assembly.topology
         co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
         base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
@@ -293,17 +309,17 @@ class LineSystem:
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d = (base.angle - plain.angle)[0, 0, places]
         v = (base.speed - plain.speed)[0, 0, places] * self.speed
-        return np.concatenate([d, v])
+        return np.concatenate([d, v, np.zeros(len(self.sliders))])
 
     def twisted(self) -> Array:
-        """State (2n,) of the line with rigid shafts, each twisted by the torque it carries on average."""
+        """State of the line with rigid shafts, each twisted by the torque it carries on average; sliders at rest."""
         topo, table = self.assembly.topology, self.assembly.table(1, self.speed)
         plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
         held = self.assembly.coefficients(table, free_play=True)
         motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, plain.straight)]
         places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
-        return np.concatenate([d[places], v[places] * self.speed])
+        return np.concatenate([d[places], v[places] * self.speed, np.zeros(len(self.sliders))])
 
 
 def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:

@@ -83,12 +83,8 @@ def stage_law(line: Driveline, place: int, column: Column, table: Array) -> Stag
     """
     element, name = line.elements[place], line.names[place]
     if isinstance(element, PiecewiseShaft):
-        knots = np.stack(
-            [table[:, column(place, f"breakpoint {j + 1}")] for j in range(len(element.breakpoints))], axis=1
-        )
-        slopes = np.stack(
-            [table[:, column(place, f"stiffness {j + 1}")] for j in range(len(element.stiffnesses))], axis=1
-        )
+        knots = table[:, [column(place, f"breakpoint {j + 1}") for j in range(len(element.breakpoints))]]
+        slopes = table[:, [column(place, f"stiffness {j + 1}") for j in range(len(element.stiffnesses))]]
         if np.any(np.diff(knots, axis=1) <= 0):
             raise InputError("must rise", element=name, key="breakpoints", value=knots[0].tolist())
         if np.any(slopes < 0):

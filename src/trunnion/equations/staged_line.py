@@ -7,11 +7,12 @@ inertias from uniform rotation and e the transmission errors of the meshes, foll
 
 V the viscous loads and T the outer torques. In a line that starts free the rotation of the first inertia does not
 matter to the twists unless a viscous load resists it; then it is one more unknown, a spring without torque.
+
+A slider of a clutch is one more row between the two, on the twist of its clutch: the deflection of its spring.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -28,6 +29,7 @@ from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
 from trunnion.equations.line_system import refuse_second_speed
+from trunnion.equations.sliders import SLIDER_MOVES, SLIDER_STAGES, SLIDER_THEN, sliders
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
@@ -55,15 +57,18 @@ class Wave:
 class StagedLine:
     """A line ready for exact motion at one speed or frequency.
 
-    springs: names of the compliances (m,), massless shafts in series as one; ``turns`` with one more unknown at the
-    end, the rotation of the first inertia. speed [rad/s] of the input, None where nothing depends on it. pieces,
-    guards, then, counts as in ``StagedFlow``; sides (m, stages): −1 below the softest stage, +1 above, 0 in it;
+    springs: names of the compliances, massless shafts in series as one; ``sliders``: names of the rows behind them, dry
+    friction, and ``source`` (m,) on which row's twist each stands; ``turns`` with one more unknown at the end, the
+    rotation of the first inertia. speed [rad/s] of the input, None where nothing depends on it. pieces,
+    guards, then, counts, moves as in ``StagedFlow``; sides (m, stages): −1 below the softest stage, +1 above, 0 in it;
     staged (m,): whether a spring has more than one stage; knots: largest breakpoint of every spring (m,) [rad], 0 of
     linear ones.
     """
 
     assembly: Assembly
     springs: tuple[str, ...]
+    sliders: tuple[str, ...]
+    source: Integers
     turns: bool
     speed: float | None
     inverse: Array
@@ -76,6 +81,7 @@ class StagedLine:
     then: Integers
     counts: Integers
     sides: Integers
+    moves: Array
 
     @property
     def name(self) -> str:
@@ -84,13 +90,26 @@ class StagedLine:
 
     @property
     def size(self) -> int:
-        """Number of unknown twists, the rotation of the first inertia included where it counts."""
+        """Number m of unknown twists and deflections, the rotation of the first inertia included where it counts."""
         return len(self.inverse)
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Names of the springs and of the sliders."""
+        return self.springs + self.sliders
+
+    @property
+    def kept(self) -> Integers:
+        """Places of a state (2m,) that determine the motion and come back in a periodic one: not the rotation of the
+        first inertia, nor the rates of sliders, which are those of their springs."""
+        m = self.size
+        idle = {m + int(e) for e in np.flatnonzero(self.source != np.arange(m))} | ({m - 1} if self.turns else set())
+        return np.array([i for i in range(2 * m) if i not in idle])
 
     @property
     def staged(self) -> Integers:
         """Places of the springs with several stages."""
-        return np.flatnonzero(self.counts > 1)
+        return np.flatnonzero(self.counts[: len(self.springs)] > 1)
 
     @cached_property
     def knots(self) -> Array:
@@ -160,6 +179,8 @@ class StagedLine:
             guards=self.guards,
             then=self.then,
             counts=self.counts,
+            moves=self.moves,
+            source=self.source,
         )
 
     def errors(self, time: float) -> tuple[Array, Array]:
@@ -181,7 +202,18 @@ class StagedLine:
         e, rate = self.errors(time)
         n = len(state) // 2
         twisting = twisting_of(self.assembly.topology, self.turns)
-        return np.concatenate([twisting @ state[:n] + e, twisting @ state[n:] + rate])
+        own = self.source == np.arange(self.size)
+        twists = np.concatenate([twisting @ state[:n] + e[own], twisting @ state[n:] + rate[own]])
+        return self.from_twists(twists)
+
+    def from_twists(self, state: Array) -> Array:
+        """The state (2m,) from twists and rates of the springs and the first inertia's rotation, as if all sliders had
+        last been at rest without twist."""
+        own = np.flatnonzero(self.source == np.arange(self.size))
+        place = np.searchsorted(own, self.source)
+        q, v = state[: len(own)][place], state[len(own) :][place]
+        reach = np.where(self.source == np.arange(self.size), np.inf, self.knots)
+        return np.concatenate([np.clip(q, -reach, reach), v])
 
 
 def staged_line(line: Driveline | Assembly, speed: float | None = None) -> StagedLine:
@@ -248,7 +280,13 @@ class _Builder:
         self.laws = staged_springs(assembly, self.row)
         self.viscous = self._viscous()
         self.turns = self.topo.free and bool(self.viscous.any())
-        self.twisting = twisting_of(self.topo, self.turns)
+        self.sliders = sliders(assembly, self.row)
+        own = twisting_of(self.topo, self.turns)
+        count = len(self.topo.compliances)
+        places = [*range(count), *(slider.compliance for slider in self.sliders), *range(count, len(own))]
+        self.own = np.array([i for i in range(len(places)) if not count <= i < count + len(self.sliders)])
+        self.source = self.own[places]
+        self.twisting = own[places]
         mass = aligned_matrices(self.topo, self.coefficients).mass[0]
         self.accelerated = self.twisting / mass
         """E M⁻¹, (m, n)."""
@@ -257,18 +295,19 @@ class _Builder:
         line, topo = self.assembly.line, self.topo
         drag = np.zeros((len(self.twisting),) * 2)
         if self.viscous.any():
-            drag = (self.accelerated * self.viscous) @ np.linalg.inv(self.twisting)
+            drag[:, self.own] = (self.accelerated * self.viscous) @ np.linalg.inv(self.twisting[self.own])
         constant, by_speed = self._constant()
         waves = tuple(self._torques() + self._errors())
         needed = any(w.cycles for w in waves) or bool(by_speed.any() and not topo.free)
         speed = self.turning.given
         if needed:
             speed = self.turning.speed(line)
-        pieces, guards, then, counts, sides = self._stages()
+        pieces, guards, then, counts, sides, moves = self._stages()
         springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
+        inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
-            self.assembly, springs, self.turns, speed, self.accelerated @ self.twisting.T, drag, constant, by_speed,
-            waves, pieces, guards, then, counts, sides,
+            self.assembly, springs, names, self.source, self.turns, speed, inverse, drag, constant, by_speed, waves,
+            pieces, guards, then, counts, sides, moves,
         )  # fmt: skip
 
     def _push(self, station: int) -> Array:
@@ -326,9 +365,12 @@ class _Builder:
                     found.append(Wave(float(cycles), 0.0, np.zeros(len(error), dtype=complex), error))
         return found
 
-    def _stages(self) -> tuple[Array, Array, Integers, Integers, Integers]:
-        springs: Sequence[StagedSpring | None] = [self.laws.get(e) for e in range(len(self.twisting))]
+    def _stages(self) -> tuple[Array, Array, Integers, Integers, Integers, Array]:
+        first = len(self.topo.compliances)
+        springs: list[StagedSpring | None] = [self.laws.get(e) for e in range(first)]
+        springs += [None] * (len(self.twisting) - first)
         count, most = len(springs), max([1, *(s.stages for s in springs if s)])
+        most = max(most, SLIDER_STAGES if self.sliders else 1)
         pieces, guards = np.zeros((count, most, 3)), np.zeros((count, most, GUARDS, 4))
         then, sides = np.full((count, most, GUARDS), -1, dtype=np.int64), np.zeros((count, most), dtype=np.int64)
         counts = np.ones(count, dtype=np.int64)
@@ -340,4 +382,10 @@ class _Builder:
             counts[e] = n = spring.stages
             pieces[e, :n], sides[e, :n], then[e, :n] = spring.table[:, :3], spring.side, spring.then
             guards[e, :n] = spring.table[:, 3:].reshape(n, GUARDS, 4)
-        return pieces, guards, then, counts, sides
+        moves = np.ones((count, most))
+        for e, slider in enumerate(self.sliders, start=first):
+            counts[e] = SLIDER_STAGES
+            pieces[e, :SLIDER_STAGES, 1] = slider.stiffness
+            guards[e, :SLIDER_STAGES], then[e, :SLIDER_STAGES] = slider.guards, SLIDER_THEN
+            moves[e, :SLIDER_STAGES], sides[e, :SLIDER_STAGES] = SLIDER_MOVES, (-1, 0, 1)
+        return pieces, guards, then, counts, sides, moves

@@ -33,9 +33,9 @@ SIDES = {-1: "lower", 0: "none", 1: "upper"}
 class StageEvents:
     """Changes of stage in order of time.
 
-    time (events,) [s]; spring (events,): places in ``springs``; stage (events,): the one begun, counted from 0 as the
-    stiffnesses are; side (events,): −1 or +1 in contact below or above the softest stage, 0 in it; rate (events,):
-    twist rate [rad/s].
+    time (events,) [s]; spring (events,): places in ``springs``, behind them sliders; stage (events,): the one
+    begun, counted from 0 as the stiffnesses are; side (events,): −1 or +1 in contact below or above the softest
+    stage, 0 in it; rate (events,): twist rate [rad/s].
     """
 
     time: Array
@@ -55,7 +55,7 @@ class ExactMotion(Result):
     springs: names of all shafts and meshes (spring,); time (points,) [s]; twist [rad], rate [rad/s] and torque [N m]
     (points, spring), positive with the twist as in ``simulate``, a mesh as a shaft behind its rigid pair; stage
     (points, spring); events; start and final (2m,): twists, then rates, where ``line.turns`` those of the first
-    inertia's rotation after the springs' in each half; end: time reached [s]; outcome.
+    inertia's rotation after the springs' in each half, sliders between them; end: time reached [s]; outcome.
     """
 
     line: StagedLine
@@ -128,7 +128,7 @@ class ExactMotion(Result):
         yield over("time spring", "torque", self.torque, "N*m")
         yield over("time spring", "stage", self.stage[:, : len(self.springs)])
         yield over("event", "event_time", self.events.time, "s")
-        yield over("event", "event_spring", np.array([self.springs[i] for i in self.events.spring], dtype=str))
+        yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
         yield over("event", "event_stage", self.events.stage)
         yield over("event", "event_side", self.events.side)
         yield remark("driveline", self.line.name)
@@ -136,6 +136,7 @@ class ExactMotion(Result):
 
     def __str__(self) -> str:
         rows = []
+        slips = np.sum((self.events.spring >= len(self.springs)) & (self.events.side != 0))
         for e, name in enumerate(self.springs):
             count = int(np.sum(self.events.spring == e))
             extent = f"{self.torque_low[e]:.6g} … {self.torque_high[e]:.6g} N m"
@@ -143,6 +144,8 @@ class ExactMotion(Result):
             rows.append(f"  {name}: torque {extent}{changes}")
         span = f"from {self.start_time:.6g} to {self.end:.6g} s"
         head = f"exact motion of {self.line.name} {span}, {len(self.events)} events"
+        if self.line.sliders:
+            rows.append(f"  {', '.join(self.line.sliders)}: slipped {slips} times")
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
@@ -168,7 +171,8 @@ def exact_motion(
     speed : mean input speed [rad/s], by default that of the line's operation; only where meshes, orders or viscous
         loads depend on it.
     start : twists [rad] of all springs, then their rates [rad/s], (2m,); by default the line turning uniformly, every
-        disk where rigid shafts would hold it.
+        disk where rigid shafts would hold it. Sliders start as if last without twist, or as the deflections behind
+        the twists say.
     start_time : time of the start [s].
     times : rising times to be reported; by default 1025 over the whole run.
     most_events : changes of stage after which the run ends.
@@ -215,8 +219,10 @@ def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
     if start is None:
         return line.rest()
     state = np.array(start, dtype=float)
+    if state.shape == (2 * (line.size - len(line.sliders)),):
+        state = line.from_twists(state)
     if state.shape != (2 * line.size,) or not np.isfinite(state).all():
-        names = ", ".join([*line.springs, *(["rotation of the first disk"] if line.turns else [])])
+        names = ", ".join([*line.rows, *(["rotation of the first disk"] if line.turns else [])])
         raise InputError(
             f"must be {2 * line.size} finite numbers", element=line.name, key="start", value=f"shape {state.shape}",
             remedy=f"give the twists of {names}, then their rates",
@@ -239,7 +245,7 @@ def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:
     if run.done:
         return Outcome(True, "reached", f"reached {run.time:g} s with {len(run.events)} changes of stage")
     busiest = np.bincount(run.events[:, 1].astype(np.int64), minlength=line.size)
-    name = line.springs[int(np.argmax(busiest[: len(line.springs)]))]
+    name = line.rows[int(np.argmax(busiest[: len(line.rows)]))]
     since = float(run.events[0, 0]) if len(run.events) else run.time
     return Outcome(
         False, "chatter",

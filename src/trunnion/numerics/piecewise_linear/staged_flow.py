@@ -25,7 +25,8 @@ class StagedFlow:
 
     inverse (m, m): G; drag (m, m): D; constant (m,), frequencies (waves,), force (waves, m): b = B₀ + Σ Re[B_j
     e^{iω_j t}], and their derivatives constant_slope, frequency_slope, force_slope; pieces (m, stages, 3), guards (m,
-    stages, 3, 4), then (m, stages, 3), counts (m,): stages of every spring.
+    stages, 3, 4), then (m, stages, 3), counts (m,): stages of every spring; moves (m, stages) and source (m,): of
+    sliders, see the kernel.
     """
 
     inverse: Array
@@ -40,6 +41,8 @@ class StagedFlow:
     guards: Array
     then: Integers
     counts: Integers
+    moves: Array
+    source: Integers
 
     @property
     def size(self) -> int:
@@ -47,10 +50,13 @@ class StagedFlow:
         return len(self.inverse)
 
     def torque(self, state: Array, stages: Integers) -> Array:
-        """Torques (times, m) of states (times, 2m) in stages (times, m)."""
+        """Torques (times, m) of states (times, 2m) in stages (times, m); that of a spring holds that of its sliders."""
         piece = self.pieces[np.arange(self.size), stages]
         m = self.size
-        return np.asarray(piece[..., 0] * state[..., m:] + piece[..., 1] * state[..., :m] + piece[..., 2])
+        torque = np.asarray(piece[..., 0] * state[..., m:] + piece[..., 1] * state[..., :m] + piece[..., 2])
+        for e in np.flatnonzero(self.source != np.arange(m)):
+            torque[..., self.source[e]] += torque[..., e]
+        return torque
 
 
 @dataclass(frozen=True)
@@ -111,6 +117,7 @@ def move(
     """The motion from ``start`` to ``end``; ``times`` rise within it, ``watch`` fills ``seen``."""
     k, m = kernel(), flow.size
     z = np.array(state, dtype=float)
+    z[m:] = z[m:][flow.source]
     now = stages_of(flow, z) if stages is None else np.array(stages, dtype=np.int64)
     shown = np.ascontiguousarray(np.atleast_1d(np.asarray(times, dtype=float)))
     states, shown_stages = np.full((len(shown), 2 * m), np.nan), np.full((len(shown), m), -1, dtype=np.int64)
@@ -121,12 +128,14 @@ def move(
     seen[:, [k.HIGH, k.TORQUE_HIGH]] = -np.inf
     time, events, ended = k.advance(
         float(start), float(end), z, now, flow.inverse, flow.drag, flow.constant, flow.frequencies, flow.force,
-        flow.constant_slope, flow.frequency_slope, flow.force_slope, flow.pieces, flow.guards, flow.then, w,
+        flow.constant_slope, flow.frequency_slope, flow.force_slope, flow.pieces, flow.moves, flow.source,
+        flow.guards, flow.then, w,
         int(by_parameter and tangents), record, shown, states, shown_stages, seen, rate,
     )  # fmt: skip
     events_found = record[:events].copy()
+    gone = flow.moves[np.arange(m), now] * z[m:]
     return StagedPassage(
-        float(time), z, np.append(z[m:], rate), now, w.T, states, shown_stages, events_found, seen, int(ended)
+        float(time), z, np.append(gone, rate), now, w.T, states, shown_stages, events_found, seen, int(ended)
     )
 
 

@@ -8,6 +8,10 @@ Within a combination of stages this is linear with constant coefficients, so the
 follow from each other, q_{k+1} = v_k/(k+1) and v_{k+1} = (−G f_k − D v_k + b_k)/(k+1), and a step is so long that the
 last of them is below rounding. Nothing is divided by an eigenvalue: free flight and resonance are no exceptions.
 
+A slider (Jenkins element: spring in series with dry friction) is one more row on the twist of its ``source``, whose
+rate it has: q is the deflection of its spring, which stands still in the stages where it slips (``moves`` 0), so that
+its torque is a law of q like any other.
+
 A stage is left where one of its guards g = a q_e + h q_e′ − r crosses zero in the direction given. On a step g is a
 known polynomial and |g″| ≤ Σ k(k−1)|g_k|τ^{k−2}, so the first zero is approached from one side, quadratically, and
 none is overlooked.
@@ -98,12 +102,12 @@ def excite_slope(t, constant_slope, frequencies, frequency_slope, force, force_s
 
 
 @njit(cache=True, error_model="numpy")
-def expand(z, stages, g_matrix, drag, pieces, source, whole, q, v, f):
-    """Taylor coefficients q, v, f (m, ORDER + 1) of the motion from z (2m,) under ``source``; a tangent, for which
+def expand(z, stages, g_matrix, drag, pieces, moves, source, push, whole, q, v, f):
+    """Taylor coefficients q, v, f (m, ORDER + 1) of the motion from z (2m,) under ``push``; a tangent, for which
     ``whole`` is 0, does not have the offsets of the stages."""
     m = len(stages)
     for e in range(m):
-        q[e, 0], v[e, 0] = z[e], z[m + e]
+        q[e, 0], v[e, 0] = z[e], z[m + source[e]]
     for k in range(ORDER + 1):
         for e in range(m):
             s = stages[e]
@@ -113,10 +117,10 @@ def expand(z, stages, g_matrix, drag, pieces, source, whole, q, v, f):
         if k == ORDER:
             break
         for e in range(m):
-            a = source[e, k]
+            a = push[e, k]
             for i in range(m):
                 a -= g_matrix[e, i] * f[i, k] + drag[e, i] * v[i, k]
-            q[e, k + 1] = v[e, k] / (k + 1)
+            q[e, k + 1] = moves[e, stages[e]] * v[e, k] / (k + 1)
             v[e, k + 1] = a / (k + 1)
 
 
@@ -150,6 +154,8 @@ def carry(
     g_matrix,
     drag,
     pieces,
+    moves,
+    source,
     by_parameter,
     constant_slope,
     frequencies,
@@ -169,7 +175,7 @@ def carry(
     while done < span:
         if by_parameter:
             excite_slope(t + done, constant_slope, frequencies, frequency_slope, force, force_slope, push)
-        expand(w, stages, g_matrix, drag, pieces, push, 0, q, v, f)
+        expand(w, stages, g_matrix, drag, pieces, moves, source, push, 0, q, v, f)
         step = min(span - done, length(q), length(v))
         for e in range(m):
             w[e], w[m + e] = polynomial(q[e], step), polynomial(v[e], step)
@@ -233,8 +239,12 @@ def extent(c, span):
 
 
 @njit(cache=True, error_model="numpy")
-def watch(span, stages, q, v, f, guards, then, g, seen):
-    """Add a step to what is seen of every spring."""
+def watch(span, stages, q, v, f, source, guards, then, g, seen):
+    """Add a step to what is seen of every spring; its torque holds that of its sliders, in place."""
+    for e in range(len(stages)):
+        if source[e] != e:
+            for k in range(ORDER + 1):
+                f[source[e], k] += f[e, k]
     for e in range(len(stages)):
         row = seen[e]
         low, high, _ = extent(q[e], span)
@@ -289,6 +299,8 @@ def advance(
     frequency_slope,
     force_slope,
     pieces,
+    moves,
+    source,
     guards,
     then,
     tangents,
@@ -304,6 +316,7 @@ def advance(
 
     g_matrix, drag (m, m); constant (m,), frequencies (waves,), force (waves, m) complex: b, and their derivatives by a
     parameter, which the last ``moved`` (0 or 1) columns of the tangents belong to; pieces (m, stages, 3): c, s, d;
+    moves (m, stages): 0 where q stands still, else 1; source (m,): whose rate it has, its own or that of another row;
     guards (m, stages, GUARDS, 4): a, h, r, direction; then (m, stages, GUARDS): next stage or −1. record (rows,
     RECORDED) receives the events; states (times, 2m) and shown_stages (times, m) the motion at rising ``times``; seen
     (m or 0, SHARES + stages) what is seen of it; final_rate (m,) q″ at the end. Returns the time reached, the number
@@ -311,12 +324,12 @@ def advance(
     """
     m, t, events, shown, idle = len(stages), start, 0, 0, 0
     rows = (m, ORDER + 1)
-    q, v, f, source = np.zeros(rows), np.zeros(rows), np.zeros(rows), np.zeros(rows)
+    q, v, f, force_now = np.zeros(rows), np.zeros(rows), np.zeros(rows), np.zeros(rows)
     wq, wv, wf, push = np.zeros(rows), np.zeros(rows), np.zeros(rows), np.zeros(rows)
     g, columns = np.zeros(ORDER + 1), len(tangents)
     while True:
-        excite(t, constant, frequencies, force, source)
-        expand(z, stages, g_matrix, drag, pieces, source, 1, q, v, f)
+        excite(t, constant, frequencies, force, force_now)
+        expand(z, stages, g_matrix, drag, pieces, moves, source, force_now, 1, q, v, f)
         step, last = min(length(q), length(v)), False
         if not t + step < end:
             step, last = end - t, True
@@ -342,12 +355,12 @@ def advance(
                 shown_stages[shown, e] = stages[e]
             shown += 1
         if len(seen) > 0 and step > 0:
-            watch(step, stages, q, v, f, guards, then, g, seen)
+            watch(step, stages, q, v, f, source, guards, then, g, seen)
         for column in range(columns):
             # The steps of a tangent are its own: it has in it what the motion itself does not excite.
             carry(
-                t, step, tangents[column], stages, g_matrix, drag, pieces, column >= columns - moved, constant_slope,
-                frequencies, frequency_slope, force, force_slope, push, wq, wv, wf,
+                t, step, tangents[column], stages, g_matrix, drag, pieces, moves, source, column >= columns - moved,
+                constant_slope, frequencies, frequency_slope, force, force_slope, push, wq, wv, wf,
             )  # fmt: skip
         for e in range(m):
             z[e], z[m + e] = polynomial(q[e], step), polynomial(v[e], step)
@@ -363,15 +376,21 @@ def advance(
         if events >= len(record):
             return t, events, TOO_MANY_EVENTS
         a, h, r, direction = guards[which, stages[which], guard]
-        rate = a * z[m + which] + h * final_rate[which]
+        rate = a * moves[which, stages[which]] * z[m + which] + h * final_rate[which]
         old, new = pieces[which, stages[which]], pieces[which, then[which, stages[which], guard]]
         jump = (new[0] - old[0]) * z[m + which] + (new[1] - old[1]) * z[which] + new[2] - old[2]
+        onward = moves[which, then[which, stages[which], guard]] - moves[which, stages[which]]
         stages[which] = then[which, stages[which], guard]
         for column in range(columns):
             # Saltation: a neighbour meets the surface a little later, and has the other torque for that long.
             along = (a * tangents[column, which] + h * tangents[column, m + which]) / rate
+            tangents[column, which] += onward * z[m + which] * along
             for e in range(m):
                 tangents[column, m + e] -= g_matrix[e, which] * jump * along
+        if onward < 0:
+            z[which] = r / a  # it slips at its torque exactly
+        elif onward > 0:
+            z[m + source[which]], z[m + which] = 0.0, 0.0  # or the sign of what is rounding would let it slip again
         row = record[events]
         row[0], row[1], row[2], row[3] = t, which, stages[which], z[m + which]
         row[4] = rate / (abs(a) if a != 0.0 else 1.0)

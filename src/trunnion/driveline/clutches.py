@@ -1,0 +1,145 @@
+"""A clutch or torsional damper: springs, with stages or not, and dry friction beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Annotated, Any, ClassVar, Self
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from trunnion.driveline.quantities import (
+    ANGLE,
+    FREQUENCY,
+    STIFFNESS,
+    TORQUE,
+    Angle,
+    Kind,
+    Stiffness,
+    Torque,
+    parse,
+)
+from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.stages import PiecewiseShaft, quantities
+from trunnion.errors import InputError
+from trunnion.laws import friction
+
+SLIDER_KINDS = {"friction": {"torque": TORQUE, "stiffness": STIFFNESS}}
+"""Physical kinds of the numbers of a slider."""
+MOST_SLIDERS = 8
+
+
+class Slider(BaseModel):
+    """A Jenkins element: a spring in series with a slider that slips where it would carry more than its torque.
+
+    Parameters
+    ----------
+    torque : T that the slider holds [N m].
+    stiffness : k of its spring [N m/rad].
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    torque: Torque = Field(description="friction torque, at which it slips")
+    stiffness: Stiffness = Field(description="of the spring in series with the slider")
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            example = 'torque = "15 N*m" and stiffness = "5 kN*m/rad"'
+            raise refuse(error, type(self), data, element="friction", example=example) from None
+
+    @model_validator(mode="after")
+    def _positive(self) -> Self:
+        for key, example in (("torque", "15 N*m"), ("stiffness", "5 kN*m/rad")):
+            if not getattr(self, key) > 0:
+                raise InputError(
+                    "must be positive", key=key, value=getattr(self, key), remedy=f'write "{example}", say'
+                )
+        return self
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """Both numbers."""
+        return {"torque": self.torque, "stiffness": self.stiffness}
+
+
+def _sliders(value: object) -> tuple[Slider, ...]:
+    remedy = 'write friction = [{ torque = "15 N*m", stiffness = "5 kN*m/rad" }]'
+    if isinstance(value, str | dict | Slider) or not isinstance(value, Iterable):
+        raise InputError("is not a list of sliders", value=value, remedy=remedy)
+    made, wrong = [], []
+    for place, item in enumerate(value, start=1):
+        try:
+            if not isinstance(item, Slider | dict):
+                raise InputError("is not a slider", value=item, remedy=remedy)
+            made.append(item if isinstance(item, Slider) else Slider(**item))
+        except InputError as error:
+            wrong.append(numbered(error, "friction", place))
+    if wrong:
+        raise InputError.together(wrong)
+    if not 1 <= len(made) <= MOST_SLIDERS:
+        raise InputError(f"must be from 1 to {MOST_SLIDERS} sliders", value=len(made), remedy=remedy)
+    return tuple(made)
+
+
+class Clutch(PiecewiseShaft):
+    """A spring with dry friction beside it: the disk of a clutch, a torsional damper, a hose of steel wire.
+
+    Its torque is that of the spring, one slope or stage by stage as in a ``PiecewiseShaft``, and that of all sliders:
+    what it carries depends on where it has been (hysteresis).
+
+    Parameters
+    ----------
+    friction : the sliders in parallel, each a ``Slider`` of torque and stiffness; those that slip one after the other
+        round the loop.
+    stiffnesses : of the spring [N m/rad]: one, or below, between and above the breakpoints; 0 for none.
+    breakpoints : twists at which its stiffness changes [rad], rising; none by default.
+    damping, damping_law, fork_offset : as of a ``PiecewiseShaft``.
+
+    >>> disk = Clutch(stiffnesses=[800.0], friction=[{"torque": 6.0, "stiffness": 4000.0}])
+    >>> print(round(disk.lost_per_cycle("1 deg"), 4))
+    0.3829
+    """
+
+    example: ClassVar[str] = (
+        'stiffnesses = ["800 N*m/rad"] and friction = [{ torque = "6 N*m", stiffness = "4 kN*m/rad" }]'
+    )
+    fewest_breakpoints: ClassVar[int] = 0
+    slack: ClassVar[bool] = True
+
+    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(quantities)] = Field(
+        default=(), description="twists at which the stiffness of the spring changes, rising; none by default"
+    )
+    friction: Annotated[tuple[Slider, ...], BeforeValidator(_sliders)] = Field(
+        description="sliders in parallel with the spring, each with a spring of its own"
+    )
+
+    def lost_per_cycle(self, amplitude: float | str) -> float:
+        """Energy [J] that its friction takes in a cycle of the twist between ± ``amplitude`` [rad]."""
+        size = _positive(amplitude, ANGLE, "amplitude")
+        return sum(float(friction.lost_per_cycle(s.torque, s.stiffness, size)) for s in self.friction)
+
+    def linear(self, amplitude: float | str, frequency: float | str) -> Shaft:
+        """A Shaft with the stiffness and damping that the clutch has on average at one motion, for linear analyses.
+
+        Harmonic linearisation: the torque in phase with a twist of ± ``amplitude`` [rad] over the twist, and the
+        damping that takes as much energy at ``frequency`` [rad/s]. It holds at that motion about no twist only; the
+        linear analyses do not know how large their motion is, so compare.
+        """
+        size, rate = _positive(amplitude, ANGLE, "amplitude"), _positive(frequency, FREQUENCY, "frequency")
+        stiffness = friction.mean_slope(np.array(self.breakpoints), np.array(self.stiffnesses), size)
+        stiffness += sum(float(friction.mean_stiffness(s.torque, s.stiffness, size)) for s in self.friction)
+        damping = self.damping + self.lost_per_cycle(size) / (np.pi * size**2 * rate)
+        return Shaft(
+            stiffness=stiffness, damping=damping, fork_offset=self.fork_offset, name=self.name, after=self.after
+        )
+
+
+def _positive(value: float | str, kind: Kind, key: str) -> float:
+    found = parse(value, kind)
+    if not found > 0:
+        raise InputError("must be positive", element="Clutch", key=key, value=value, remedy=f'write "{kind.example}"')
+    return found

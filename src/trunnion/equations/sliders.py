@@ -1,0 +1,88 @@
+"""Sliders of clutches: where dry friction acts in a line, and when each sticks and slips.
+
+The deflection x of a slider's spring follows the twist of its clutch while it sticks and stands at ± T/k while it
+slips; its torque is kx throughout. It sticks while |x| < T/k, and slips until the twist rate turns its sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+SLIDER_STAGES = 3
+"""Slips with falling twist, sticks, slips with rising twist."""
+SLIDER_THEN = np.array([[1, 1, -1], [0, 2, -1], [1, 1, -1]], dtype=np.int64)
+"""Where the guards of each stage lead."""
+SLIDER_MOVES = np.array([0.0, 1.0, 0.0])
+"""Whether the deflection follows the twist in a stage."""
+
+
+@dataclass(frozen=True)
+class PlacedSlider:
+    """One slider: the compliance it is part of, its torque [N m] and the stiffness [N m/rad] of its spring."""
+
+    name: str
+    compliance: int
+    torque: float
+    stiffness: float
+
+    @property
+    def reach(self) -> float:
+        """Deflection [rad] at which it slips."""
+        return self.torque / self.stiffness
+
+    @property
+    def guards(self) -> Array:
+        """(stage, guard, 4): a, h, r, direction; a stage ends where a x + h q' − r crosses zero in that direction."""
+        table = np.zeros((SLIDER_STAGES, 3, 4))
+        # The second guards of slip are at rest in it, and tell it from stick.
+        table[0, 0], table[0, 1] = (0.0, 1.0, 0.0, 1.0), (1.0, 0.0, -self.reach, 1.0)
+        table[1, 0], table[1, 1] = (1.0, 0.0, -self.reach, -1.0), (1.0, 0.0, self.reach, 1.0)
+        table[2, 0], table[2, 1] = (0.0, 1.0, 0.0, -1.0), (1.0, 0.0, self.reach, -1.0)
+        return table
+
+
+def sliders(assembly: Assembly, row: Array) -> tuple[PlacedSlider, ...]:
+    """All sliders of a line at one row of packed numbers.
+
+    Raises
+    ------
+    InputError : a torque or stiffness that is not positive, where parameters were varied.
+    """
+    found, column = [], assembly.packed.column
+    for e, compliance in enumerate(assembly.topology.compliances):
+        place = compliance.shafts[0]
+        element, name = assembly.line.elements[place], assembly.line.names[place]
+        for i in range(1, len(element.friction) + 1 if isinstance(element, Clutch) else 1):
+            torque, stiffness = (float(row[column(place, f"friction {i} {k}")]) for k in ("torque", "stiffness"))
+            for key, value in (("torque", torque), ("stiffness", stiffness)):
+                if not value > 0:
+                    raise InputError("must be positive", element=name, key=f"friction {i} {key}", value=value)
+            found.append(PlacedSlider(f"{name} slider {i}", e, torque, stiffness))
+    return tuple(found)
+
+
+def refuse_friction(line: Driveline) -> None:
+    """Refuse a line with dry friction, for equations that are linear.
+
+    Raises
+    ------
+    InputError : names the clutch, and offers what stands for it at one amplitude.
+    """
+    for element, name in zip(line.elements, line.names, strict=True):
+        if isinstance(element, Clutch):
+            raise InputError(
+                "has dry friction, whose torque depends on how far it moves: linear equations have none",
+                element=name,
+                key="friction",
+                remedy='put clutch.linear(amplitude="1 deg", frequency="30 Hz") in its place, a Shaft with its mean '
+                "stiffness and loss at one motion, or use tn.simulate, tn.periodic_response or tn.sweep",
+            )
