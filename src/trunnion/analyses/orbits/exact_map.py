@@ -134,10 +134,12 @@ class LineMap(ExactMap):
     """Twists and rates over ``periods`` of the excitation.
 
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
-    the map, whose states stand at the places ``kept`` of the line's.
+    the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
+    throughout, which comes back whatever it is: ``stuck`` holds (row, deflection [rad]) of each.
     """
 
     line: StagedLine
+    stuck: tuple[tuple[int, float], ...] = ()
 
     @property
     def size(self) -> int:
@@ -150,8 +152,8 @@ class LineMap(ExactMap):
     @cached_property
     def kept(self) -> NDArray[np.int64]:
         """Places of the map's states among the line's."""
-        m = self.line.size
-        return np.array([i for i in range(2 * m) if not (self.line.turns and i == m - 1)])
+        still = {row for row, _ in self.stuck}
+        return np.array([i for i in self.line.kept if i not in still])
 
     @cached_property
     def flow(self) -> StagedFlow:
@@ -162,7 +164,16 @@ class LineMap(ExactMap):
         """The line's state (2m,) from the map's."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
+        for row, deflection in self.stuck:
+            state[row] = deflection
         return state
+
+    def idle(self, passage: StagedPassage, start: Array) -> tuple[tuple[int, float], ...]:
+        """Sliders that do not slip in a passage from ``start`` (2m,), as ``stuck`` has them."""
+        first = len(self.line.springs)
+        rows = range(first, first + len(self.line.sliders))
+        slipped = {int(e) for e in passage.events[:, 1]}
+        return tuple((row, float(start[row])) for row in rows if row not in slipped)
 
     def scale(self, start: Array) -> Array:
         """Size of every state of the map that counts as one, from a start (2m,) of the line."""

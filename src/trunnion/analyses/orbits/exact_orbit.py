@@ -9,7 +9,7 @@ those of the motion itself. Where it touches the end of a stage (grazing) there 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,8 @@ from trunnion.results.verdict import MEANING, Verdict
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+SETTLED = 100
+"""Periods after which a motion shows which sliders stick."""
 SINGULAR = 1e-12
 """Smallest singular value over the largest below which the condition of closing determines nothing."""
 
@@ -45,7 +47,8 @@ class ExactOrbit(Result):
     twist_high, twist_mean [rad], torque_low, torque_high, torque_mean [N m] (spring,); contacts: sides, impacts and
     their energy, per spring with stages; clearance [rad]: least distance of an extremum of a twist from an end of its
     stage, before it or behind it, inf without one; slowest_crossing [rad/s]: smallest rate at a change of stage, inf
-    without one; iterations of the shooting.
+    without one; iterations of the shooting; stuck: sliders that never slip, whose multipliers, exactly 1, are set
+    aside.
     """
 
     line: StagedLine
@@ -67,6 +70,7 @@ class ExactOrbit(Result):
     slowest_crossing: float
     iterations: int
     outcome: Outcome
+    stuck: tuple[str, ...] = ()
 
     @property
     def springs(self) -> tuple[str, ...]:
@@ -130,6 +134,7 @@ class ExactOrbit(Result):
                 f"{MEANING[self.verdict]}",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),
+                *(f"  {name} sticks throughout; its multiplier, exactly 1, is set aside" for name in self.stuck),
                 f"  {near}{slow}; largest multiplier {abs(self.multipliers[0]):.8g}; {self.outcome}",
             ]
         )
@@ -166,8 +171,28 @@ def refuse_found_speed(line: StagedLine) -> None:
 
 def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
     """The periodic motion near ``start`` (2m,) at a value of the clock."""
-    over_period = LineMap(value, periods, line)
+    if not line.sliders:
+        return _orbit(LineMap(value, periods, line), start, settle)
+    # Which sliders stick is told by the motion once it has settled, and again by the orbit found.
+    place, orbit = LineMap(value, periods, line), None
+    settled = place.settle(start[place.kept], SETTLED) if settle else start[place.kept]
+    if settled is None:
+        return _missing(place, start, Outcome(False, "chatter", "stages change too often in a period; raise damping"))
+    whole = place.whole(settled)
+    passage = place.watched(settled)
+    for _ in range(2 * len(line.sliders) + 1):
+        tried, place = place, replace(place, stuck=place.idle(passage, whole))
+        orbit = _orbit(place, whole, settle)
+        if not orbit.outcome.ok:
+            break
+        passage, whole = place.watched(orbit.start[place.kept]), orbit.start
+        if place.idle(passage, whole) == place.stuck or place.stuck == tried.stuck:
+            break
+    assert orbit is not None
+    return orbit
 
+
+def _orbit(over_period: LineMap, start: Array, settle: bool) -> ExactOrbit:
     def closing(guess: Array) -> ExactClosing:
         return ExactClosing(over_period, over_period.scale(over_period.whole(guess)))
 
@@ -199,7 +224,7 @@ def orbit_at(place: LineMap, part: Array, iterations: int = 0) -> ExactOrbit:
     passage, k, count = place(part, watch=True), kernel(), len(place.line.springs)
     run = passage.run
     closes = float(np.max(np.abs(passage.state - part) / place.scale(start)))
-    seen, rates = run.seen[:count], run.events[:, 4]
+    seen, rates = run.seen[:count], run.events[run.events[:, 1] < count, 4]
     return ExactOrbit(
         line=line,
         value=place.value,
@@ -220,6 +245,7 @@ def orbit_at(place: LineMap, part: Array, iterations: int = 0) -> ExactOrbit:
         slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
+        stuck=tuple(line.rows[row] for row, _ in place.stuck),
     )
 
 
