@@ -129,6 +129,13 @@ def branched(line: tn.Driveline) -> tn.Driveline:
     )
 
 
+def clutch(rubs: bool = False) -> Change:
+    stages = {"breakpoints": [-0.002, 0.002], "stiffnesses": [1.2e4, 1e4, 1.2e4], "damping": 5, "name": "front"}
+    if not rubs:
+        return front(tn.PiecewiseShaft(**stages))
+    return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}]))
+
+
 def rippled() -> Change:
     ripple = [{"order": 1, "amplitude": 0.01}, {"order": 6, "amplitude": 2e-3, "phase": 0.3}]
     return jointed(tn.RzeppaJoint(angle=0.3, ripple=ripple, name="extra"))
@@ -169,6 +176,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "mesh-stiffness variation": (meshed(), meshed(stiffness_variation=[{"share": 0.2}])),
     "stages": (same, staged()),
     "damping in contact only": (staged(), staged(damping_law="in contact")),
+    "dry friction": (clutch(), clutch(True)),
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),

@@ -6,8 +6,11 @@ is made as ``CONTRIBUTING.md`` walks through it.
 
 from __future__ import annotations
 
+import textwrap
 import warnings
 from math import gcd
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,29 +25,19 @@ from trunnion.laws.joint import JointLaw
 from trunnion.numerics import jets
 
 
-class Wobble(Joint):
-    """A joint that nobody builds: it runs ahead twice and five times a turn, by shares of its bend angle.
-
-    Parameters
-    ----------
-    angle : bend angle [rad].
-    distance_ratio : lead twice a turn over the angle's square; a fifth of it leads five times a turn.
-    plane : [rad].
-    """
-
-    angle: Angle
-    distance_ratio: Dimensionless = 0.3
-    plane: Angle = 0.0
-
-    @property
-    def orders(self) -> tuple[int, ...]:
-        return (2, 5)
-
-    def law(self, number: Numbers) -> JointLaw:
-        size = number("distance_ratio") * number("angle") ** 2
-        return FourierLaw(self.orders, (size, size / 5), (np.array(0.4), np.array(-1.0)))
+def made_by_the_walk() -> Any:
+    """``Wobble``, a joint that nobody builds, as ``CONTRIBUTING.md`` has it."""
+    text = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = text[text.index("       class Wobble(Joint):") :].partition("\n\n   `number(key)`")[0]
+    names: dict[str, Any] = {
+        "Angle": Angle, "Dimensionless": Dimensionless, "FourierLaw": FourierLaw, "Joint": Joint, "JointLaw": JointLaw,
+        "Numbers": Numbers, "np": np, "__name__": __name__,
+    }  # fmt: skip
+    exec(textwrap.dedent(block), names)
+    return names["Wobble"]
 
 
+Wobble = made_by_the_walk()
 RIPPLE = [{"order": 2, "amplitude": 0.02, "phase": 0.3}, {"order": 6, "amplitude": 1e-3}]
 JOINTS: dict[str, Joint] = {
     "HookeJoint": tn.HookeJoint(angle=0.6, plane=0.2),

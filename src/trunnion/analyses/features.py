@@ -100,8 +100,11 @@ _SERIES: dict[str, Words] = {
     )
 }
 _BY_PLACE = {**_HELD, **_SERIES}
-_FAR_END = {"prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
+_RUBBING = {"dry friction": "linear equations have none; Clutch.linear stands for it at one amplitude"}
+_NOT_FOLLOWED = {"dry friction": "sliders change between sticking and slipping, which is not followed"}
+_FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _BASE = {
+    **_RUBBING,
     "free start": "bent, it is judged about its own periodic motion",
     "drive share": "belongs to lines that start free",
     "prescribed far end": "two prescribed speeds leave a bent line nowhere to go",
@@ -130,6 +133,7 @@ _ONE_DRIVE = {
 }
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NOT_FOLLOWED,
     "free start": "the speed follows from the torques",
     "drive share": "belongs to lines that start free",
 }
@@ -150,6 +154,7 @@ _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
         "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
+        "dry friction",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
         "unlike damping in series", "free start", "drive share",
@@ -163,8 +168,9 @@ _STEADY = "torques are those of steady running; ask periodic_response() or simul
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 TABLE: dict[str, Row] = {
-    "natural_frequencies": _row(said=_MODES_SAID, inert=_MODES_INERT),
+    "natural_frequencies": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT),
     "resonance_speeds": _row(
+        refused=_RUBBING,
         said={
             "viscous load": "resonance speeds are those of the line without it",
             "quadratic load": "resonance speeds are those of the line without it",
@@ -226,6 +232,7 @@ TABLE: dict[str, Row] = {
             "excitation of a held disk": _STEADY,
             "unlike damping in series": _UNDAMPED_TURN,
             "drive share": "the first element drives alone",
+            "dry friction": "a turn has the springs of a clutch alone; its sliders hold it within a band of twist",
         },
         inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
     ),
@@ -241,12 +248,12 @@ TABLE: dict[str, Row] = {
     "poincare_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "bifurcation_diagram": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "certify_chaos": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic_branch": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic_branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
     "harmonic_balance": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "frequency_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "frequency_response": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
     "exact_motion": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
     "piecewise_orbit": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
-    "piecewise_branch": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "piecewise_branch": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
     "sweep": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
 }
 
@@ -266,10 +273,10 @@ MARKS = {Treatment.COUNTED: "●", Treatment.REFUSED: "✕", Treatment.SAID: "sa
 
 
 def groups() -> list[tuple[str, ...]]:
-    """Analyses that treat every feature alike, in the order of the table."""
-    alike: dict[tuple[Treatment, ...], list[str]] = {}
+    """Analyses that treat every feature alike, for the same reasons, in the order of the table."""
+    alike: dict[tuple[tuple[Treatment, str], ...], list[str]] = {}
     for name, row in TABLE.items():
-        alike.setdefault(tuple(cell.treatment for cell in row.values()), []).append(name)
+        alike.setdefault(tuple((cell.treatment, cell.reason) for cell in row.values()), []).append(name)
     return [tuple(names) for names in alike.values()]
 
 

@@ -19,6 +19,7 @@ from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffne
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.equations.loads import mean_load, static_torque, station_loads
+from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Mesh, Topology, topology
 from trunnion.errors import InputError
@@ -107,17 +108,21 @@ class Assembly:
     ) -> LineCoefficients:
         """Evaluate the line's coefficients for each row of ``table`` (cases, columns).
 
-        ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the
-        line is taken at zero twist and zero torque. ``damped=False`` leaves all damping out. ``free_play=True``
-        leaves a spring in its free play without stiffness, which is otherwise refused. ``any_frequency=True`` is for
-        equations by frequency, which have ``loss``; for all others a shaft that has it is refused.
+        ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the line is
+        taken at zero twist and zero torque. ``damped=False`` leaves all damping out. ``free_play=True`` leaves a
+        spring in its free play without stiffness, and dry friction out, which are otherwise refused.
+        ``any_frequency=True`` is for equations by frequency, which have ``loss``; for all others a shaft that has
+        it is refused.
 
         Raises
         ------
-        InputError : a loss factor without a frequency, for equations in time; a spring in its free play.
+        InputError : a loss factor without a frequency, for equations in time; a spring in its free play or with dry
+            friction, both unless ``free_play``.
         """
         if damped and not any_frequency:
             _refuse_any_frequency(self.line)
+        if not free_play:
+            refuse_friction(self.line)
         return _coefficients(self, np.atleast_2d(table), statically_twisted, damped, free_play)
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:

@@ -356,6 +356,12 @@ def line_jump(t, y_, p_, k, regime, which, delay_):
     at = slider + one * PER_SLIDER
     if guard < 2:
         y[2 * n + one] = p[at + REACH] if guard == 1 else -p[at + REACH]
+        for s in range(sliding):
+            # One that is about to slip at the same instant must not be past it by rounding: it follows at once.
+            other = slider + s * PER_SLIDER
+            if s != one and p[other + OF] == p[at + OF] and regime // int(p[other + STEP]) % 3 == STICKS:
+                most = (1.0 - SETBACK) * p[other + REACH]
+                y[2 * n + s] = min(max(y[2 * n + s], -most), most)
         return 0
     stage = regime // int(p[at + STEP]) % 3
     for s in range(sliding):

@@ -144,10 +144,16 @@ class LineRegimes(Regimes):
     transitions: Integers | None = None
     directions: Integers | None = None
     kernel: ModuleType | None = None
+    sliders: int = 0
 
     def tables(self) -> tuple[Integers, Integers]:
         assert self.transitions is not None and self.directions is not None
         return self.transitions, self.directions
+
+    def idle(self, fired: Integers) -> int:
+        """How many sliders never slip: their guards are the last."""
+        first = len(self.guards) - GUARDS * self.sliders
+        return self.sliders - len({(int(i) - first) // GUARDS for i in fired if first <= i < len(self.guards)})
 
     def at(self, system: System, time: float, state: Array) -> int:
         assert self.kernel is not None
@@ -217,6 +223,7 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
         transitions,
         directions,
         kernel,
+        sum(bool(part.along) for part in parts),
     )
 
 

@@ -7,14 +7,17 @@ slips; its torque is kx throughout. It sticks while |x| < T/k, and slips until t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.equations.coefficients import Assembly
 
 Array = NDArray[np.float64]
 SLIDER_STAGES = 3
@@ -70,8 +73,12 @@ def sliders(assembly: Assembly, row: Array) -> tuple[PlacedSlider, ...]:
     return tuple(found)
 
 
-def refuse_friction(line: Driveline) -> None:
-    """Refuse a line with dry friction, for equations that are linear.
+LINEAR = "whose torque depends on how far it moves: linear equations have none"
+NOT_FOLLOWED = "whose sliders change between sticking and slipping, which this analysis does not follow"
+
+
+def refuse_friction(line: Driveline, why: str = LINEAR) -> None:
+    """Refuse a line with dry friction, for equations that are linear or another reason ``why``.
 
     Raises
     ------
@@ -80,7 +87,7 @@ def refuse_friction(line: Driveline) -> None:
     for element, name in zip(line.elements, line.names, strict=True):
         if isinstance(element, Clutch):
             raise InputError(
-                "has dry friction, whose torque depends on how far it moves: linear equations have none",
+                f"has dry friction, {why}",
                 element=name,
                 key="friction",
                 remedy='put clutch.linear(amplitude="1 deg", frequency="30 Hz") in its place, a Shaft with its mean '

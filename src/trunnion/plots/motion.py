@@ -66,7 +66,8 @@ def draw_orbit(result: PeriodicOrbit, axes: Axes | None = None, *, x: str = "", 
     """A periodic motion in the plane of two states, with its state at the start of the period."""
     axes = axes or new_axes(5.2, 4.6)
     names = result.system.states
-    half = len(names) // 2 if names[0].startswith("rotation of ") else min(1, len(names) - 1)
+    rates = [i for i, name in enumerate(names) if name.startswith("rate of ")]
+    half = rates[0] if names[0].startswith("rotation of ") and rates else min(1, len(names) - 1)
     i, j = names.index(x) if x else 0, names.index(y) if y else half
     axes.plot(result.state[:, i], result.state[:, j], color=COLOURS[0], lw=1.6)
     axes.plot(*result.start[[i, j]], "o", color=COLOURS[1], ms=6, label="start of the period")

@@ -90,6 +90,11 @@ class Regimes:
             direction[place] = 2 if both else switch.direction
         return then, direction
 
+    def idle(self, fired: Integers) -> int:
+        """Multipliers exactly 1 of a periodic motion whose guards ``fired`` were these: of parts that keep what they
+        started with, as a slider does that never slips."""
+        return 0
+
     def compiled(self, system: System) -> tuple[CFunction, CFunction | None, Integers, Integers]:
         """Guard and jump as C functions, transitions and directions."""
         names, scale = tuple(system.parameters), tuple(map(float, system.scale))  # type: ignore[arg-type]

@@ -156,7 +156,10 @@ class LineSimulation(Result):
         yield axis("coordinate", self.line.names)
         yield axis("shaft", self.shafts)
         yield over("time coordinate", "rotation", self.state[:, :n], "rad")
-        yield over("time coordinate", "rate", self.state[:, n:], "rad/s")
+        yield over("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
+        if self.line.sliders:
+            yield axis("slider", [slider.name for slider in self.line.sliders])
+            yield over("time slider", "deflection", self.state[:, 2 * n :], "rad")
         yield over("time shaft", "twist", self.twist, "rad")
         yield over("time shaft", "torque", self.torque, "N*m")
         yield over("time", "input_speed", self.input_speed, "rad/s")

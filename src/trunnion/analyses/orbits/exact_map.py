@@ -135,7 +135,7 @@ class LineMap(ExactMap):
 
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
     the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
-    throughout, which comes back whatever it is: ``stuck`` holds (row, deflection [rad]) of each.
+    throughout: what it has beside the twist comes back whatever it is, and ``stuck`` holds (row, that [rad]) of each.
     """
 
     line: StagedLine
@@ -164,16 +164,25 @@ class LineMap(ExactMap):
         """The line's state (2m,) from the map's."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
-        for row, deflection in self.stuck:
-            state[row] = deflection
+        for row, beside in self.stuck:
+            state[row] = state[self.line.source[row]] + beside
         return state
+
+    @cached_property
+    def spread(self) -> Array:
+        """Derivative (2m, n) of the line's state by the map's."""
+        matrix = np.eye(2 * self.line.size)
+        for row, _ in self.stuck:
+            matrix[row] = matrix[self.line.source[row]]
+        return matrix[:, self.kept]
 
     def idle(self, passage: StagedPassage, start: Array) -> tuple[tuple[int, float], ...]:
         """Sliders that do not slip in a passage from ``start`` (2m,), as ``stuck`` has them."""
         first = len(self.line.springs)
         rows = range(first, first + len(self.line.sliders))
         slipped = {int(e) for e in passage.events[:, 1]}
-        return tuple((row, float(start[row])) for row in rows if row not in slipped)
+        beside = start[: self.line.size] - start[self.line.source]
+        return tuple((row, float(beside[row])) for row in rows if row not in slipped)
 
     def scale(self, start: Array) -> Array:
         """Size of every state of the map that counts as one, from a start (2m,) of the line."""
@@ -187,7 +196,7 @@ class LineMap(ExactMap):
         run = staged_flow.period(self.flow, self.whole(x), self.length, slope, watch=watch)
         if not (run.done and np.isfinite(run.tangents).all()):
             return _broken(self.size, len(by))
-        matrix = run.tangents[np.ix_(self.kept, self.kept)]
+        matrix = (run.tangents[:, : 2 * self.line.size] @ self.spread)[self.kept]
         by_value = run.tangents[self.kept, 2 * self.line.size :][:, : len(by)]
         return Passage(run.state[self.kept], matrix, by_value, len(run.events), True, run)
 

@@ -108,7 +108,7 @@ class ExactOrbit(Result):
         for name in ("torque_low", "torque_high", "torque_mean", "torque_peak_to_peak"):
             yield over("spring", name, getattr(self, name), "N*m")
         yield over("event", "event_time", self.events.time, "s")
-        yield over("event", "event_spring", np.array([self.springs[i] for i in self.events.spring], dtype=str))
+        yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("", "period", self.period, "s")
         yield over("", "clearance", self.clearance, "rad")

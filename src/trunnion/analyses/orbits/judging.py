@@ -2,7 +2,8 @@
 branches.
 
 An integrated motion is run at two tolerances, whose difference bounds the error of Φ and so of every multiplier
-(``numerics.spectrum``). Of a motion that nothing holds in phase the multiplier 1 is set aside. A motion is undecided
+(``numerics.spectrum``). Of a motion that nothing holds in phase the multiplier 1 is set aside, and that of each slider
+which never slips. A motion is undecided
 where the spectral radius is 1 to within its error (``results.verdict``).
 """
 
@@ -75,6 +76,8 @@ class IntegratedClosing(Closing[IntegratedMap]):
         counted = np.arange(len(values))
         if isinstance(place, TimedMap) and not rests(place, run):
             counted = np.delete(counted, int(np.argmin(np.abs(values - 1))))
+        for _ in range(system.regimes.idle(run.event_which) if system.regimes is not None else 0):
+            counted = np.delete(counted, int(np.argmin(np.abs(values[counted] - 1))))
         return Judged(values, bound, values[counted], bound[counted], np.nan)
 
     def multipliers(self, point: CurvePoint) -> Complex:
