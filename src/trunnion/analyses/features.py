@@ -101,6 +101,7 @@ _SERIES: dict[str, Words] = {
 }
 _BY_PLACE = {**_HELD, **_SERIES}
 _RUBBING = {"dry friction": "linear equations have none; Clutch.linear stands for it at one amplitude"}
+_SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
 _NOT_FOLLOWED = {"dry friction": "sliders change between sticking and slipping, which is not followed"}
 _FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _BASE = {
@@ -240,8 +241,8 @@ TABLE: dict[str, Row] = {
     "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "simulate": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "run_up": _row(refused=_PASSING, said=_BY_PLACE, inert=_PASSIVE),
-    "safe_accelerations": _row(refused=_PASSING, said=_BY_PLACE, inert=_PASSIVE),
+    "run_up": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
+    "safe_accelerations": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_spectrum": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_sweep": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
