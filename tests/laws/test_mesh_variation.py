@@ -9,6 +9,7 @@ import pytest
 from oracles.comparisons import floquet, set_distance
 from oracles.package_kernels import chain_kernel
 from oracles.random_lines import random_geared_line
+from oracles.sampling import quick_every
 from scipy.special import mathieu_a, mathieu_b
 
 import trunnion as tn
@@ -86,7 +87,7 @@ def test_one_mesh_and_one_disk_are_a_mathieu_oscillator(q: float, a: float, trac
     assert found.multipliers.sum() == pytest.approx(trace, abs=2e-5)
 
 
-@pytest.mark.parametrize("seed", [5, 9, 17, 24])
+@pytest.mark.parametrize("seed", quick_every(2, [9, 5, 24, 17]))  # the slow two have periods of many turns
 def test_chart_kernel_integrates_the_same_meshes(seed: int) -> None:
     """Joints in front of meshes, loads on them, two harmonics: the charts' kernel against the dense integrator."""
     line = random_geared_line(seed, steepest=0.4)

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "nonlinear.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_examples_run_in_order() -> None:
     names: dict[str, Any] = {}
     printed = io.StringIO()
