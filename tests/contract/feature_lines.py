@@ -73,8 +73,8 @@ def behind(name: str, *new: object) -> Change:
 
 
 def meshed(**more: object) -> Change:
-    gears = {"mesh_damping": 500.0, "name": "mesh"} | more
-    pair = tn.GearPair(teeth_in=25, teeth_out=40, module="3 mm", mesh_stiffness=1e8, **gears)
+    gears = {"teeth_out": 40, "mesh_damping": 500.0, "name": "mesh"} | more
+    pair = tn.GearPair(teeth_in=25, module="3 mm", mesh_stiffness=1e8, **gears)
     return behind("hub", pair, tn.Disk(inertia=0.05, name="pinion"))
 
 
@@ -171,7 +171,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
-    "backlash": (meshed(), meshed(backlash=1e-4)),
+    "backlash": (meshed(teeth_out=25), meshed(teeth_out=25, backlash=1e-4)),  # 1:1, so that the phases of joints tell
     "transmission error": (meshed(), meshed(transmission_error=[{"amplitude": 1e-5}])),
     "mesh-stiffness variation": (meshed(), meshed(stiffness_variation=[{"share": 0.2}])),
     "stages": (same, staged()),

@@ -28,7 +28,9 @@ RUN = {
     "resonance_speeds": tn.resonance_speeds,
     "stability": lambda line: tn.stability(line, SPEED),
     "stability_chart": lambda line: tn.stability_chart(line, ("speed", 300, 330, 3), ("load.inertia", 0.15, 0.25, 3)),
-    "stable_limit": lambda line: tn.stable_limit(line, "joint 2.angle", [145.0, 150.0, 460.0], scan=20, high=1.4),
+    "stable_limit": lambda line: tn.stable_limit(
+        line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4
+    ),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
     "bending_speeds": tn.bending_speeds,
