@@ -45,7 +45,8 @@ def draw(
     unit : of the speed; by default the one of the driveline's description.
     operating : its speed is marked.
     limit : vibratory torque [N m] that the spring bears, as a line across.
-    limits : further limits of torque [N m] by name; with "max torque" the largest torque, mean and all, is drawn too.
+    limits : limits of torque [N m] by name, by default those of the description; with "max torque" the largest
+        torque, mean and all, is drawn too.
 
     Raises
     ------
@@ -72,7 +73,8 @@ def draw(
             marker="o" if len(x) == 1 else None,
             **look,
         )
-    known = ({} if limit is None else {"limit": limit}) | dict(limits or {})
+    stated = result.limits[result.springs[column]] if limits is None and limit is None else limits
+    known = ({} if limit is None else {"limit": limit}) | dict(stated or {})
     for i, (name, value) in enumerate(known.items()):
         axes.axhline(value, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=f"{name} {value:.4g} N·m")
     if "max torque" in known:

@@ -32,6 +32,7 @@ from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 
 Array = NDArray[np.float64]
+TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
 NEAR_ENOUGH = 1e-9
 """Orders asked for are found within this."""
 
@@ -154,7 +155,22 @@ def _result(
         judged=judged,
         remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
         unit=speed_unit(assembly.line),
+        limits=_limits(assembly),
     )
+
+
+def _limits(assembly: Assembly) -> dict[str, dict[str, float]]:
+    """Limits of torque by spring and name; of shafts in series the smallest."""
+    names, found = assembly.line.names, {}
+    for spring, compliance in zip(shaft_names(assembly), assembly.topology.compliances, strict=True):
+        own: dict[str, float] = {}
+        members = [names[i] for i in compliance.shafts]
+        for one in assembly.line.limits_by_element:
+            if one.element in members and one.key in TORQUE_LIMITS:
+                key = one.key.replace("_", " ")
+                own[key] = min(own.get(key, float("inf")), float(one.value))
+        found[spring] = own
+    return found
 
 
 def _picked(values: NDArray[np.complex128], places: NDArray[np.intp]) -> NDArray[np.complex128]:

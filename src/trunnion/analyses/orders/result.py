@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -61,7 +61,8 @@ class OrderResponse(Result):
 
     The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
     exists: an undamped resonance. ``verdict`` says where the motion is stable; it is computed when asked for first, by
-    ``judged``. remarks: what excites the line and what was left out, in sentences.
+    ``judged``. remarks: what excites the line and what was left out, in sentences. limits: of torque by spring and name
+    [N m], as the description states them, for drawings.
     """
 
     speed: Array
@@ -80,6 +81,7 @@ class OrderResponse(Result):
     judged: Callable[[], NDArray[np.int8]]
     remarks: tuple[Finding, ...]
     unit: str
+    limits: Mapping[str, Mapping[str, float]]
 
     @property
     def sum_is_bound(self) -> bool:
