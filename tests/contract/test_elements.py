@@ -41,16 +41,16 @@ ONE_OF_EACH = [
     Disk(outer_diameter=0.3, thickness=0.02, density=7850, after="drive"),
     HookeJoint(angle="12 deg", plane="15 deg"),
     IdealJoint(),
+    Ratio(ratio=-4.1),
+    Ratio(teeth_in=10, teeth_out=41),
+]
+PARTS = [
     RzeppaJoint(
         angle="8 deg",
         plane=0.1,
         reference_angle="10 deg",
         ripple=[{"order": 6, "amplitude": "0.01 deg", "phase": "30 deg", "growth": 2}],
     ),
-    Ratio(ratio=-4.1),
-    Ratio(teeth_in=10, teeth_out=41),
-]
-PARTS = [
     Shaft(outer_diameter="76 mm", inner_diameter="72 mm", length="1.4 m", material="C45", loss_factor=0.02),
     Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="5 kN*m", heat_rating="350 W"),
     Disk(mass="2.2 t", radius="0.35 m"),
