@@ -318,7 +318,7 @@ def test_the_command(tmp_path):
 
 
 def test_findings_of_an_overview_rank_by_margin_and_look_beyond_the_range():
-    limits = [tn.Limit(of="shaft", max_torque=500.0, vibratory_torque=100.0)]
+    limits = [tn.Limit(of="shaft", max_torque=1000.0, vibratory_torque=100.0)]
     operation = tn.Operation(speed=90.0, speed_range=[80.0, 115.0])
     seen = overview(tn.Driveline(two_mass(*limits).elements, limits=limits, operation=operation))
     first, second = (str(f) for f in seen.findings[:2])
