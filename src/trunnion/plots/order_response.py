@@ -96,7 +96,7 @@ def draw(
     axes.set_ylabel("vibratory torque [N·m]", fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
-    words_are_long = not np.all(result.linear)
+    words_are_long = not np.all(result.linear) or "transient vibratory torque" in known or "max torque" in known
     axes.figure.figure.legend(
         loc="outside lower left", ncols=2 if words_are_long else 3, fontsize=SMALL, frameon=False, handlelength=2.6
     )
