@@ -45,18 +45,18 @@ ONE_OF_EACH = [
     Ratio(teeth_in=10, teeth_out=41),
 ]
 PARTS = [
-    RzeppaJoint(
-        angle="8 deg",
-        plane=0.1,
-        reference_angle="10 deg",
-        ripple=[{"order": 6, "amplitude": "0.01 deg", "phase": "30 deg", "growth": 2}],
-    ),
     Shaft(outer_diameter="76 mm", inner_diameter="72 mm", length="1.4 m", material="C45", loss_factor=0.02),
     Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="5 kN*m", heat_rating="350 W"),
     Disk(mass="2.2 t", radius="0.35 m"),
     Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
 ]
 WITH_STAGES = [
+    RzeppaJoint(
+        angle="8 deg",
+        plane=0.1,
+        reference_angle="10 deg",
+        ripple=[{"order": 6, "amplitude": "0.01 deg", "phase": "30 deg", "growth": 2}],
+    ),
     GearPair(
         teeth_in=20, teeth_out=31, module="4 mm", pressure_angle="22.5 deg", mesh_stiffness=2e8, mesh_damping=900,
         damping_law="in contact", backlash="0.1 mm", stiffness_ratio=0.05,
@@ -252,6 +252,12 @@ def test_a_line_introduces_itself():
         "  Disk 1           269.5 kg*m^2, mass 2200 kg, radius 350 mm",
         "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg*m^2, material steel",
     ]
+
+
+def test_lists_of_harmonics_and_sliders_are_counted():
+    listed = str(Driveline([ConstantSpeed(), WITH_STAGES[0], WITH_STAGES[-1], Disk(inertia=1)]))
+    assert "ripple of 1 harmonic, reference angle 10 deg" in listed
+    assert "friction of 1 slider" in listed
 
 
 def test_a_material_gives_what_is_not_stated_and_is_all_that_is_written():

@@ -48,8 +48,9 @@ def _numbers(element: Element) -> list[str]:
         if key == "excitation":
             parts.append(f"excitation of {len(value)} harmonics" if len(value) > 1 else "excitation of one harmonic")
             continue
-        if key in ("transmission_error", "stiffness_variation"):
-            parts.append(f"{key.replace('_', ' ')} of {len(value)} harmonic{'s' if len(value) > 1 else ''}")
+        if key in ("transmission_error", "stiffness_variation", "ripple", "friction"):
+            what = "slider" if key == "friction" else "harmonic"
+            parts.append(f"{key.replace('_', ' ')} of {len(value)} {what}{'s' if len(value) > 1 else ''}")
             continue
         if isinstance(value, tuple):
             parts.append(f"{key} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
