@@ -57,6 +57,8 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
+    from trunnion.analyses.tongues.tongues import tongues
+    from trunnion.analyses.tongues.windows import minimum_damping, stable_windows
     from trunnion.driveline import (
         Clutch,
         ConstantSpeed,
@@ -163,6 +165,9 @@ _HOME = {
     "stability_chart": "trunnion.analyses.charts.stability_chart",
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.charts.stable_limit",
+    "tongues": "trunnion.analyses.tongues.tongues",
+    "stable_windows": "trunnion.analyses.tongues.windows",
+    "minimum_damping": "trunnion.analyses.tongues.windows",
     "speed_sweep": "trunnion.analyses.linear.speed_sweep",
     "sweep_speeds": "trunnion.analyses.linear.speed_sweep",
     "order_response": "trunnion.analyses.orders.response",

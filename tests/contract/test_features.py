@@ -31,6 +31,11 @@ RUN = {
     "stable_limit": lambda line: tn.stable_limit(
         line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4
     ),
+    "tongues": lambda line: tn.tongues(line, ("speed", 140.0, 150.0), ("joint 2.angle", 0.9, 1.4), rows=3),
+    "stable_windows": lambda line: tn.stable_windows(line, "joint 2.angle", 0.9, 1.4, (140.0, 150.0), rows=3),
+    "minimum_damping": lambda line: tn.minimum_damping(
+        line.replace("joint 2", angle=1.3), (140.0, 150.0), damping="front.damping", maximum=10.0, rows=3
+    ),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
     "bending_speeds": tn.bending_speeds,
@@ -71,6 +76,7 @@ QUICK = {
     "phase_forks": ("Hooke's joint", "fork offset", "load torque", "branch"),
     "stability_chart": ("damping", "load torque", "excitation by order", "viscous load"),
     "stable_limit": ("load torque", "free start"),
+    **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
     "periodic_response": ("load torque", "prescribed far end"),
     "periodic_branch": ("viscous load", "free start"),
     "harmonic_balance": ("excitation by order", "free start"),

@@ -206,6 +206,10 @@ TABLE: dict[str, Row] = {
         said=_SERIES,
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
+    **dict.fromkeys(
+        ("tongues", "stable_windows", "minimum_damping"),
+        _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
+    ),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
         refused=_FAR_END,

@@ -12,7 +12,7 @@ from trunnion.errors import InputError
 
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
-RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s"}
+RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s", "point": ""}
 """Axes that may be the rows of a table, with their units."""
 
 

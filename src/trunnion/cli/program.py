@@ -23,6 +23,7 @@ from trunnion.cli.assess import assess, campbell_diagram
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
+from trunnion.cli.limits import minimum_damping, stable_windows, tongues
 from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
@@ -180,6 +181,9 @@ app.command("kinetostatics")(kinetostatics)
 app.command("order-response")(order_response)
 app.command("speed-sweep")(speed_sweep)
 app.command("stable-limit")(stable_limit)
+app.command("tongues")(tongues)
+app.command("stable-windows")(stable_windows)
+app.command("minimum-damping")(minimum_damping)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)
 app.command("run-up")(run_up)

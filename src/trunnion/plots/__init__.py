@@ -8,6 +8,8 @@ DRAWINGS = {
     "SpeedSweep.plot": "trunnion.plots.torque_over_speed:draw",
     "StabilityChart.plot": "trunnion.plots.stability_chart:draw",
     "StableLimit.plot": "trunnion.plots.stable_limit:draw",
+    "StableWindows.plot": "trunnion.plots.tongues:draw_windows",
+    "Tongues.plot": "trunnion.plots.tongues:draw",
     "Kinetostatics.plot": "trunnion.plots.kinetostatics:draw",
     # motions
     "Simulation.plot": "trunnion.plots.motion:draw_history",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
+from trunnion.analyses.tongues.result import Tongues
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
@@ -16,6 +17,8 @@ from trunnion.driveline.parameters import SPEED
 from trunnion.plots.quantity_axes import QuantityAxis, quantity_axis
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.plots.tongues import draw as draw_tongues
+from trunnion.plots.tongues import hidden_key
 from trunnion.results.chart import StabilityChart
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
@@ -44,6 +47,7 @@ def draw(
     unit: str | None = None,
     resonances: Iterable[Resonance] | None = None,
     operating: Operation | None = None,
+    tongues: Tongues | None = None,
 ) -> Axes:
     """Draw ``chart`` and return the axes (``axes.figure.savefig(…)``, or ``style.save``).
 
@@ -54,6 +58,7 @@ def draw(
     unit : of speeds, "rpm", "Hz" or "rad/s"; default the one of the description.
     resonances : named along the speed axis; default those of the chart's line up to order 2, () for none.
     operating : range and point to mark; default the operation of the chart's line.
+    tongues : of the same line over the same axes, drawn as curves; those narrower than a pixel are marked.
     """
     line = chart.line  # None for matrices of one's own
     unit = unit or (speed_unit(line) if line else "rad/s")
@@ -65,6 +70,10 @@ def draw(
     _frame(axes, chart, x, y, across, up)
     _unstable(axes, chart, x, y)
     handles = [*_key(chart), *_others(axes, chart, x, y), *_operating(axes, chart, operating, across, up)]
+    if tongues is not None:
+        apart = float(np.diff(chart.x).max()) if len(chart.x) > 1 else 0.0
+        draw_tongues(tongues, axes, unit=unit, pixel=apart)
+        handles += [hidden_key()] if tongues.narrower_than(apart) else []
     settle = axes.figure.figure.draw_without_rendering
     settle()  # the width decides what fits side by side
     width = 72 * axes.get_window_extent().width / axes.figure.dpi

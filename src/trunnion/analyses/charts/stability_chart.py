@@ -74,9 +74,9 @@ def stability_chart(
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
     task = (
-        _own_task(line, x, y)
+        own_task(line, x, y)
         if isinstance(line, PeriodicLinearFamily)
-        else _line_task(line, x, y, speed, statically_twisted)
+        else line_task(line, x, y, speed, statically_twisted)
     )
     if isinstance(line, PeriodicLinearFamily) and speed is not None:
         raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
@@ -123,7 +123,9 @@ def _points_of(request: AxisRequest) -> int:
 
 
 @dataclass(frozen=True)
-class _Task:
+class Task:
+    """What is to be searched: a family over two axes, the speed where neither is it, the line, and what to say."""
+
     family: ChartFamily
     x: Axis
     y: Axis
@@ -132,7 +134,20 @@ class _Task:
     remarks: tuple[str, ...]
 
 
-def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed: float | None, twisted: bool) -> _Task:
+def line_task(
+    line: Driveline | Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | None,
+    twisted: bool,
+    analysis: str = "stability_chart",
+) -> Task:
+    """A driveline over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
+
+    Raises
+    ------
+    InputError : see ``stability_chart``.
+    """
     assembly = line if isinstance(line, Assembly) else assemble(line)
     require_period(assembly.line, assembly.topology)
     across, said_x = axis(assembly, x, "x")
@@ -161,9 +176,9 @@ def _line_task(line: Driveline | Assembly, x: AxisRequest, y: AxisRequest, speed
     require_steady_base(assembly, corners)
     family = LineFamily(assembly, across, up, base, twisted)
 
-    said = [finding.sentence for finding in left_out("stability_chart", assembly.line)]
+    said = [finding.sentence for finding in left_out(analysis, assembly.line)]
     remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line"), *said) if s)
-    return _Task(family, across, up, None if swept else base, assembly.line, remarks)
+    return Task(family, across, up, None if swept else base, assembly.line, remarks)
 
 
 def _idle(family: ChartFamily, x: Axis, y: Axis, what: str) -> list[str]:
@@ -179,13 +194,14 @@ def _middle(x: Array, y: Array) -> tuple[float, float]:
     return float(np.median(x)), float(np.median(y))
 
 
-def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> _Task:
+def own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
+    """A family of one's own over two of its parameters, checked."""
     across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
     if across.label == up.label:
         raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
     family.require_period(dict(zip((across.label, up.label), _middle(across.values, up.values), strict=True)))
     own = OwnFamily(family, across.label, up.label, _middle(across.values, up.values))
-    return _Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
+    return Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
 
 
 def _pointwise(

@@ -141,7 +141,7 @@ def named_resonance(
         return None
     i, j = pair
     nu = content.excitation
-    multiple, source = _excited(nu, sources)
+    multiple, source = excited(nu, sources)
     if source is None or not min(frequency[i], frequency[j]) > 0:
         return None
     speed = float(frequency[i] + frequency[j]) / float(nu)
@@ -153,7 +153,7 @@ def named_resonance(
     return Resonance(speed, kind, (i + 1,), (multiple + 1) // 2, source.rate, source.mesh)
 
 
-def _excited(nu: Fraction, sources: tuple[Source, ...]) -> tuple[int, Source | None]:
+def excited(nu: Fraction, sources: tuple[Source, ...]) -> tuple[int, Source | None]:
     """ν as a multiple of one source, the lowest; else of two of them together as a source of its own."""
     alone = [(int(nu / (2 * s.rate)), s) for s in sources if (nu / (2 * s.rate)).denominator == 1]
     alone = [(m, s) for m, s in alone if m <= HIGHEST_ORDER]

@@ -1,0 +1,1 @@
+"""Instability regions in a box as curves: found by roots along rows, joined, named."""

@@ -1,0 +1,57 @@
+"""Zeros of many functions at once, each in a bracket of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ROUNDS = 60
+
+
+def bracketed(
+    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array, tolerance: Array | float
+) -> Array:
+    """Zeros (brackets,) by Chandrupatla's method: inverse quadratic steps where they are safe, halves elsewhere.
+
+    ``function(points, which)`` gives the values of the functions number ``which`` at one point each; it must change its
+    sign between ``low`` and ``high``, or the end where it is nearest to zero is returned. ``tolerance`` is absolute.
+    (T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.)
+    """
+    everyone = np.arange(len(low))
+    b, a = np.asarray(low, dtype=float).copy(), np.asarray(high, dtype=float).copy()
+    fb, fa = function(b, everyone), function(a, everyone)
+    c, fc = a.copy(), fa.copy()
+    bound = np.broadcast_to(np.asarray(tolerance, dtype=float), a.shape)
+    share = np.full(len(a), 0.5)
+    best, least = np.where(np.abs(fa) < np.abs(fb), a, b), np.minimum(np.abs(fa), np.abs(fb))
+    open_ = fa * fb < 0
+    for _ in range(ROUNDS):
+        which = np.flatnonzero(open_)
+        if not len(which):
+            break
+        x = a[which] + share[which] * (b[which] - a[which])
+        fx = function(x, which)
+        better = np.abs(fx) < least[which]
+        best[which[better]], least[which[better]] = x[better], np.abs(fx[better])
+        same = fx * fa[which] > 0
+        c[which], fc[which] = np.where(same, a[which], b[which]), np.where(same, fa[which], fb[which])
+        b[which], fb[which] = np.where(same, b[which], a[which]), np.where(same, fb[which], fa[which])
+        a[which], fa[which] = x, fx
+        width = np.abs(b[which] - a[which])
+        least_share = np.minimum(bound[which] / np.maximum(width, 1e-300), 0.5)
+        open_[which] = (least_share < 0.5) & (fx != 0) & np.isfinite(fx)
+        share[which] = np.clip(_step(a, b, c, fa, fb, fc, which), least_share, 1 - least_share)
+    return best
+
+
+def _step(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, which: NDArray[np.intp]) -> Array:
+    """The share of the way from a to b at which to look next."""
+    a, b, c, fa, fb, fc = (part[which] for part in (a, b, c, fa, fb, fc))
+    with np.errstate(all="ignore"):
+        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        quadratic = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
+        t = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    return np.where(quadratic & np.isfinite(t), t, 0.5)

@@ -1,0 +1,134 @@
+"""The resonance of a tongue: which modes, and how many cycles of the excitation.
+
+With all joints straight a line has multipliers e^{±iω_jT}. Bent by and by, they move along the circle, and each keeps
+the mode it came from until two of them meet. So the phase θ_j of every mode is followed from ω_jT on, as the angles of
+joints and the shares of mesh-stiffness variations grow from nothing to what they are where the tongue begins. There
+θ_i + θ_j is a whole number of turns, 2πN, and N cycles in the period name the resonance, whatever steep angles have
+made of the frequencies on the way: for one mode i = j, and 2θ_i = 2πN.
+
+The content of the growing mode by frequency (``linear.mode_content``) says the same at small angles and gets blurred at
+large ones, where a mode is spread over many harmonics.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from trunnion.analyses.charts.stability_chart import Task
+from trunnion.analyses.linear.mode_content import excited
+from trunnion.analyses.linear.resonance_speeds import Resonance, sources
+from trunnion.analyses.tongues.rows import Kind
+from trunnion.equations.aligned import aligned_matrices, frequencies
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+from trunnion.equations.topology import require_period
+from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+STEPS = 160
+"""Points of the way from straight joints to bent ones."""
+TOLERANCE = 1e-7
+FITS = 0.3
+"""How far [rad] a followed phase may end from the multiplier that it should be."""
+NUDGE = 1e-3
+"""A phase that waits on the real axis leaves it in the direction in which it came, by no less than this to begin
+with."""
+
+
+def resonances(
+    task: Task, assembly: Assembly, x: Array, y: Array, kinds: Array, twisted: bool, threads: int
+) -> list[Resonance | None]:
+    """Names of tongues that begin at points (x, y) with these kinds of multipliers; None where a phase was lost."""
+    if not len(x):
+        return []
+    share = np.linspace(0.0, 1.0, STEPS) ** 0.5  # angles act by their squares
+    table = np.repeat(_tables(task, assembly, x, y), STEPS, axis=0)
+    bent = [c for c, label in enumerate(assembly.packed.labels) if _bends(assembly, label)]
+    table[:, bent] *= np.tile(share, len(x))[:, None]
+    topo = assembly.topology
+    coefficients = assembly.coefficients(table, statically_twisted=twisted)
+    by_speed = loaded_by_speed(topo, coefficients)
+    turns = require_period(assembly.line, topo)
+    window = Window(0.0, 2 * np.pi * float(turns), False)
+    lanes = chain_lanes(topo, coefficients, by_speed)
+    matrix, _, _ = chain_monodromy(chain_program(topo, by_speed), lanes, window, TOLERANCE, threads)
+    every = np.linalg.eigvals(matrix).reshape(len(x), STEPS, -1)
+    modes = frequencies(aligned_matrices(topo, assembly.coefficients(table[::STEPS])), free=topo.free)
+    speed = table[::STEPS, 0]
+    return [_named(assembly, turns, float(speed[k]), modes[k], every[k], int(kinds[k])) for k in range(len(x))]
+
+
+def _tables(task: Task, assembly: Assembly, x: Array, y: Array) -> Array:
+    table = assembly.table(len(x), float("nan") if task.speed is None else task.speed)
+    task.x.columns.put(table, x)
+    task.y.columns.put(table, y)
+    return table
+
+
+def _bends(assembly: Assembly, label: str) -> bool:
+    owner, _, key = label.rpartition(".")
+    if key == "angle":
+        line = assembly.line
+        return owner in line.names and line.elements[line.names.index(owner)].kind == "HookeJoint"
+    return key.startswith("stiffness_variation") and key.endswith("share")
+
+
+def _named(
+    assembly: Assembly, turns: Fraction, speed: float, modes: Array, every: Complex, kind: int
+) -> Resonance | None:
+    elastic = [i for i, w in enumerate(modes.tolist()) if w > 0]
+    period = 2 * np.pi * float(turns) / speed
+    phases = _followed(np.array([modes[i] * period for i in elastic]), every)
+    last = every[-1][np.abs(every[-1]).argmax()]
+    meeting = _meeting(phases, last, kind)
+    if meeting is None:
+        return None
+    i, j, cycles = meeting
+    multiple, source = excited(Fraction(cycles) / turns, sources(assembly))
+    if source is None:
+        return None
+    first, second = sorted((elastic[i], elastic[j]))
+    at = float(modes[first] + modes[second]) / float(Fraction(cycles) / turns)
+    if first != second:
+        return Resonance(at, "sum", (first + 1, second + 1), multiple, source.rate, source.mesh)
+    named = "subharmonic" if multiple % 2 else "harmonic"
+    return Resonance(at, named, (first + 1,), (multiple + 1) // 2, source.rate, source.mesh)
+
+
+def _followed(start: Array, every: Complex) -> Array:
+    """Phases (modes,) at the end of the way, from ``start``; ``every`` (steps, 2n) are the multipliers on it."""
+    phase, pace = start.copy(), np.zeros(len(start))
+    for step, values in enumerate(every):
+        ahead = phase + pace + np.where(pace < 0, -NUDGE, NUDGE) * (step > 0)
+        apart = np.abs(np.angle(values[None, :] * np.exp(-1j * ahead)[:, None]))
+        # Multipliers that have all but vanished have no phase worth following.
+        mode, place = linear_sum_assignment(apart + 10.0 * (np.abs(values) < 1e-9))
+        moved = ahead.copy()
+        moved[mode] = ahead[mode] + np.angle(values[place] * np.exp(-1j * ahead[mode]))
+        if step:
+            still = np.abs(moved - phase) < 1e-12
+            pace = np.where(still, 0.5 * pace, moved - phase)
+        phase = moved
+    return phase
+
+
+def _meeting(phases: Array, multiplier: complex, kind: int) -> tuple[int, int, int] | None:
+    """The two modes that meet at ``multiplier``, and the cycles N in the period with θ_i + θ_j = 2πN."""
+
+    def off(phase: float) -> float:
+        return float(abs(np.angle(multiplier * np.exp(-1j * phase))))
+
+    pairs = [(i, j) for i in range(len(phases)) for j in range(len(phases)) if (i == j) == (kind != Kind.COMPLEX)]
+    if not pairs:
+        return None
+    i, j = min(pairs, key=lambda p: off(phases[p[0]]) + off(-phases[p[1]]))
+    if off(phases[i]) + off(-phases[j]) > FITS:
+        return None
+    cycles = round(float(phases[i] + phases[j]) / (2 * np.pi))
+    return (i, j, cycles) if cycles > 0 else None

@@ -1,0 +1,169 @@
+"""A family of lines over a box: patches to search by, and integration of single points to settle by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.charts.chart_families import ChartFamily
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices
+from trunnion.analyses.tongues.boundaries import MOST
+from trunnion.numerics.chain.characteristic import without_ones
+from trunnion.numerics.patches import patches
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+SHARPEST = 1e-13
+"""Error asked of single integrations, which settle what patches suggest."""
+NODES = 48
+"""Samples of a piece of a row that no patch covers."""
+PIECES = 8
+"""Into how many pieces such a stretch is cut."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Rows of one patch: their places, the stretch of u, cosine series (rows, q, J) of θ = arccos of u, errors (rows,
+    q).
+
+    ``undamped`` (rows,) where the trace of the damping vanishes. The last quantity of a patch, that trace, is left out.
+    """
+
+    rows: Places
+    u0: float
+    u1: float
+    series: Array
+    errors: Array
+    undamped: NDArray[np.bool_]
+
+    def u(self, theta: Array) -> Array:
+        """θ → u."""
+        return (self.u0 + self.u1) / 2 + (self.u1 - self.u0) / 2 * np.cos(theta)
+
+
+@dataclass(frozen=True)
+class Region:
+    """A family over a box in its patch variables (u from x, v from y), with patches that cover it."""
+
+    family: ChartFamily
+    function: PatchedFunction
+    box: Box
+    threads: int
+
+    @property
+    def by_coefficients(self) -> bool:
+        """Whether the patches hold characteristic coefficients (up to three unknowns) or entries of matrices."""
+        return 2 * self.family.size <= MOST
+
+    @property
+    def uncovered(self) -> int:
+        """Boxes that did not converge as patches."""
+        return len(self.function.direct)
+
+    def x(self, u: Array) -> Array:
+        """Values of the parameter along u."""
+        return self.family.from_patch(np.asarray(u, dtype=float), True)
+
+    def y(self, v: Array) -> Array:
+        """Values of the parameter along v."""
+        return self.family.from_patch(np.asarray(v, dtype=float), False)
+
+    def judged(self, u: Array, v: Array) -> Pixels:
+        """Points integrated by themselves: radius, its error, critical multiplier, verdict, each (points,)."""
+        x, y = self.x(u), self.y(v)
+        # Points with the same angles share the joints' laws where they stand together.
+        order = np.argsort(v, kind="stable")
+        back = np.argsort(order)
+        if self.family.set_aside:
+            values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
+            found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
+        else:
+            found = judge_matrices(*self.family.matrices(x[order], y[order], SHARPEST, self.threads))
+        return Pixels(found.radius[back], found.error[back], found.critical[back], found.verdict[back])
+
+    def above_one(self, u: Array, v: Array) -> Array:
+        """Spectral radius less 1 (points,)."""
+        if not len(u):
+            return np.zeros(0)
+        return self.judged(u, v).radius - 1
+
+    def pieces(self, v: Array) -> Iterator[Piece]:
+        """The rows at ``v`` (rows,), patch by patch; every row is covered from end to end."""
+        left = [np.ones(len(v), dtype=bool) for _ in self.function.direct]
+        for patch in self.function.patches:
+            inside = self._rows_of(patch.box, v)
+            if len(inside):
+                yield self._along(patch, inside, v[inside])
+        for box, _ in zip(self.function.direct, left, strict=True):
+            inside = self._rows_of(box, v)
+            edges = np.linspace(box.u0, box.u1, PIECES + 1)
+            for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+                if len(inside):
+                    yield self._integrated(a, b, inside, v[inside])
+
+    def _rows_of(self, box: Box, v: Array) -> Places:
+        """Rows that belong to a box: those on an edge between two boxes to the upper one."""
+        below = v < box.v1 if box.v1 < self.box.v1 * (1 + 1e-12) - 1e-300 and box.v1 != self.box.v1 else v <= box.v1
+        return np.flatnonzero((v >= box.v0) & below)
+
+    def _along(self, patch: Patch, rows: Places, v: Array) -> Piece:
+        weights = patch.weights(v)
+        series = np.einsum("ri,qij->rqj", weights, patch.coefficients)
+        _, block = patch.blocks(np.array([patch.box.u0]), v)
+        errors = patch.error.max(axis=2)[:, block].T
+        return self._piece(rows, patch.box.u0, patch.box.u1, series, errors)
+
+    def _integrated(self, u0: float, u1: float, rows: Places, v: Array) -> Piece:
+        from scipy.fft import dct
+
+        nodes = (u0 + u1) / 2 + (u1 - u0) / 2 * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+        values, bounds = self.family.evaluate(
+            self.x(np.tile(nodes, len(rows))), self.y(np.repeat(v, NODES)), 1e-12, self.threads
+        )
+        samples = values.reshape(len(rows), NODES, -1).transpose(0, 2, 1)
+        series = dct(samples, type=2, axis=2) / NODES
+        series[:, :, 0] /= 2
+        tail = np.abs(series[:, :, -4:]).sum(axis=2)
+        return self._piece(rows, u0, u1, series, bounds.reshape(len(rows), NODES, -1).max(axis=1) + tail)
+
+    def _piece(self, rows: Places, u0: float, u1: float, series: Array, errors: Array) -> Piece:
+        undamped = np.abs(series[:, -1]).sum(axis=1) < 1e-12 * self.family.size
+        series, errors = series[:, :-1], errors[:, :-1]
+        aside = self.family.set_aside
+        if self.by_coefficients and aside:
+            # (σ − 1) divides out of the polynomial, a linear operation: coefficient by coefficient of the series, where
+            # e₀ = 1 stands in the constant term alone.
+            series, errors = _set_aside(series, errors, aside)
+        return Piece(rows, u0, u1, series, errors, undamped)
+
+
+def _set_aside(series: Array, errors: Array, aside: int) -> tuple[Array, Array]:
+    rows, m, terms = series.shape
+    flat = series.transpose(1, 0, 2).reshape(m, -1)
+    known = np.repeat(errors.T[:, :, None], terms, axis=2).reshape(m, -1)
+    zero = np.zeros_like(flat)
+    with_one, bounds = without_ones(flat, known, aside)
+    constant, _ = without_ones(zero, zero, aside)
+    only = np.zeros((rows, terms))
+    only[:, 0] = 1.0
+    # ``without_ones`` adds e₀ = 1 to every column; only the constant terms have it.
+    left = with_one - constant * (1 - only.reshape(-1))
+    shape = (len(left), rows, terms)
+    return left.reshape(shape).transpose(1, 0, 2), bounds.reshape(shape)[:, :, 0].T
+
+
+def patched(
+    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Callable[[float], None]
+) -> Region:
+    """Patch a family over the box that the values ``x`` and ``y`` span, however few points a picture of it would
+    have."""
+    u, v = family.to_patch(x, True), family.to_patch(y, False)
+    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+    sampler = family.sampler(box, 1_000_000, tolerance / 4, threads)
+    built = patches.build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=-1, tick=tell)
+    return Region(family, built, box, threads)

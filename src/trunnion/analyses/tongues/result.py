@@ -1,0 +1,232 @@
+"""Tongues: instability regions of a box as curves, and what is known of each."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
+from trunnion.writing import written_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from trunnion.driveline.driveline import Driveline
+
+Array = NDArray[np.float64]
+Intervals = Callable[[float], Array]
+"""y → unstable intervals (intervals, 2) in x of that row, found anew."""
+
+
+@dataclass(frozen=True)
+class Tongue:
+    """One instability region: the interval ``low`` to ``high`` in x at each of ``y``, rising; all (rows,), SI units.
+
+    kind: how the multipliers leave the unit circle where it begins; resonance: the one its growing mode names (None
+    where the mode is mixed, or for a family of one's own). tip: (x, y) at which it closes below, or else above; top:
+    where it closes above as well. growth_rate [1/s, or per unit of a family's τ]: the largest found inside, at
+    ``growth_at``. joins, parts: numbers of the tongues it runs into above or comes out of below. cut: sides of the
+    box that cut it off.
+    """
+
+    number: int
+    kind: str
+    resonance: Resonance | None
+    y: Array
+    low: Array
+    high: Array
+    tip: tuple[float, float] | None
+    top: tuple[float, float] | None
+    growth_rate: float
+    growth_at: tuple[float, float]
+    joins: int | None
+    parts: int | None
+    cut: tuple[str, ...]
+    find: Intervals | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def name(self) -> str:
+        """Its resonance, or how its multipliers leave the circle."""
+        return str(self.resonance) if self.resonance is not None else f"unnamed ({self.kind})"
+
+    @property
+    def boundary(self) -> Array:
+        """Points (points, 2) along its edge: down the low side to the tip and up the high side."""
+        return np.concatenate([
+            np.stack([self.low, self.y], axis=1)[::-1],
+            np.stack([self.high, self.y], axis=1),
+        ])  # fmt: skip
+
+    def interval_at(self, y: float) -> tuple[float, float]:
+        """Where it is unstable at ``y``: (low, high) in x, solved anew.
+
+        Raises
+        ------
+        InputError : the tongue does not reach ``y``.
+        """
+        if not self.y[0] <= y <= self.y[-1]:
+            raise InputError(
+                f"is beyond this tongue, which reaches from {self.y[0]:.6g} to {self.y[-1]:.6g}",
+                element=f"tongue {self.number}", key="y", value=y, remedy="ask inside it",
+            )  # fmt: skip
+        guess = np.interp(y, self.y, self.low), np.interp(y, self.y, self.high)
+        if self.find is None:
+            return float(guess[0]), float(guess[1])
+        found = self.find(float(y))
+        if not len(found):
+            return float(guess[0]), float(guess[0])
+        meets = np.minimum(found[:, 1], guess[1]) - np.maximum(found[:, 0], guess[0])
+        low, high = found[int(meets.argmax())]
+        return float(low), float(high)
+
+    def width_at(self, y: float) -> float:
+        """Width in x at ``y``."""
+        low, high = self.interval_at(y)
+        return high - low
+
+    @property
+    def widest(self) -> float:
+        """The largest width in x on the rows known."""
+        return float((self.high - self.low).max())
+
+
+@dataclass(frozen=True, repr=False)
+class Tongues(Result):
+    """Every instability region found in a box, by falling growth rate; a sequence of ``Tongue``.
+
+    x_range, y_range: the box, SI units; rows: how many values of y were searched; complete: whether each of these was
+    searched for every zero of the boundary functions, or sampled; ``search`` says it in words; ``row_step`` is the
+    largest distance between rows: a region that lies wholly between two of them is not in the list.
+    """
+
+    tongues: tuple[Tongue, ...]
+    x_label: str
+    y_label: str
+    x_unit: str
+    y_unit: str
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+    rate_unit: str
+    rows: int
+    row_step: float
+    complete: bool
+    search: str
+    line: Driveline | None
+    remarks: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    find: Intervals | None = field(default=None, repr=False, compare=False)
+
+    def __iter__(self):  # type: ignore[no-untyped-def]
+        return iter(self.tongues)
+
+    def __len__(self) -> int:
+        return len(self.tongues)
+
+    def __getitem__(self, place: int) -> Tongue:
+        return self.tongues[place]
+
+    def intervals_at(self, y: float) -> Array:
+        """All unstable intervals (intervals, 2) in x of the row at ``y``, searched anew."""
+        if not self.y_range[0] <= y <= self.y_range[1]:
+            raise InputError(
+                f"lies outside the box, which reaches from {self.y_range[0]:.6g} to {self.y_range[1]:.6g}",
+                key=self.y_label, value=y, remedy="ask inside it",
+            )  # fmt: skip
+        if self.find is None:
+            raise InputError("was read without its family and cannot be searched anew", element="tongues")
+        return self.find(float(y))
+
+    def narrower_than(self, width: float) -> tuple[Tongue, ...]:
+        """Tongues that are nowhere as wide in x: those that pixels so far apart may hide."""
+        return tuple(t for t in self.tongues if t.widest < width)
+
+    def declared(self) -> Iterator[Held]:
+        """One entry a tongue; their edges one after another, with the number of the tongue at each point."""
+        every = self.tongues
+        none = (float("nan"), float("nan"))
+        yield axis("tongue", np.array([t.number for t in every], dtype=int))
+        yield over("tongue", "name", [t.name for t in every])
+        yield over("tongue", "kind", [t.kind for t in every])
+        for k, (part, unit) in enumerate((("x", self.x_unit), ("y", self.y_unit))):
+            yield over("tongue", f"tip_{part}", np.array([(t.tip or none)[k] for t in every]), unit)
+            yield over("tongue", f"top_{part}", np.array([(t.top or none)[k] for t in every]), unit)
+            yield over("tongue", f"growth_{part}", np.array([t.growth_at[k] for t in every]), unit)
+        yield over("tongue", "growth_rate", np.array([t.growth_rate for t in every]), self.rate_unit)
+        yield over("tongue", "widest", np.array([t.widest for t in every]), self.x_unit)
+        yield axis("point", np.arange(sum(len(t.boundary) for t in every)))
+        owners = np.repeat([t.number for t in every], [len(t.boundary) for t in every]).astype(int)
+        yield over("point", "of_tongue", owners)
+        points = np.concatenate([t.boundary for t in every] or [np.zeros((0, 2))])
+        yield over("point", "boundary_x", points[:, 0], self.x_unit, self.x_label)
+        yield over("point", "boundary_y", points[:, 1], self.y_unit, self.y_label)
+        yield remark("x", self.x_label)
+        yield remark("y", self.y_label)
+        yield remark("x_range", list(self.x_range))
+        yield remark("y_range", list(self.y_range))
+        yield remark("rows", self.rows)
+        yield remark("row_step", self.row_step)
+        yield remark("complete", int(self.complete))
+        yield remark("search", self.search)
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """One line per point of a boundary: number and name of the tongue, x, y."""
+        with written_whole(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(["tongue", "name", f"{self.x_label} [{self.x_unit}]", f"{self.y_label} [{self.y_unit}]"])
+            for tongue in self.tongues:
+                writer.writerows([tongue.number, tongue.name, x, y] for x, y in tongue.boundary.tolist())
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """The boundaries as curves, over a chart if ``axes`` shows one; see ``plots.tongues.draw``."""
+        return drawing(self, "plot")(self, axes, **options)
+
+    def table(self) -> list[dict[str, object]]:
+        """One row a tongue, SI units."""
+        return [
+            {
+                "tongue": t.number,
+                "resonance": t.name,
+                "tip": _place(t.tip),
+                f"growth rate [{self.rate_unit}]": t.growth_rate,
+                f"widest [{self.x_unit}]": t.widest,
+            }
+            for t in self.tongues
+        ]
+
+    def __str__(self) -> str:
+        if not self.tongues:
+            head = f"no instability found over {self.x_label} × {self.y_label}"
+        else:
+            many = "region" if len(self) == 1 else "regions"
+            head = f"{len(self)} instability {many} over {self.x_label} × {self.y_label}"
+        rows = [
+            f"  {t.number}  {t.name}: {_tip_words(t)}, grows by up to {t.growth_rate:.4g} {self.rate_unit}"
+            for t in self.tongues
+        ]
+        return "\n".join([head, *rows, f"  {self.search}", *(f"  note: {r}" for r in self.remarks)])
+
+
+def _tip_words(tongue: Tongue) -> str:
+    if tongue.tip is None:
+        return f"from y = {tongue.y[0]:.6g} on" if tongue.parts is None else f"parts from tongue {tongue.parts}"
+    closes = "above" if tongue.top is None and tongue.tip[1] >= tongue.y[-1] else "below"
+    return f"closes {closes} at {_place(tongue.tip)}"
+
+
+def _place(point: tuple[float, float] | None) -> str:
+    return "" if point is None else f"({point[0]:.6g}, {point[1]:.6g})"
+
+
+def by_growth(tongues: Sequence[Tongue]) -> tuple[Tongue, ...]:
+    """The fastest growth first."""
+    return tuple(sorted(tongues, key=lambda t: -t.growth_rate))

@@ -1,0 +1,89 @@
+"""The highest point of the spectral radius across a tongue, and the tip at which it is 1."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.analyses.tongues.region import Places, Region
+
+Array = NDArray[np.float64]
+
+LOOKS = 9
+"""Points across the window in each round."""
+ROUNDS = 3
+"""Rounds of looking, each a quarter as wide as the one before."""
+TIP = 1e-13
+"""How closely the height of a tip is solved, as a share of the box."""
+_T = np.linspace(-1.0, 1.0, LOOKS)
+_FIT = np.linalg.pinv(np.vander(_T, 5, increasing=True))
+
+
+def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Array]:
+    """Where ρ is highest between ``low`` and ``high`` on rows ``v``, and ρ − 1 there less its error; each (points,).
+
+    The last round fits a quartic, so that the place is known far better than its points are apart.
+    """
+    centre, half = (low + high) / 2, (high - low) / 2
+    best, top = centre, np.full(len(v), -np.inf)
+    for turn in range(ROUNDS + 1):
+        u = np.clip(centre[:, None] + half[:, None] * _T, low[:, None], high[:, None])
+        found = region.judged(u.ravel(), np.repeat(v, LOOKS))
+        height = (found.radius - 1).reshape(u.shape)
+        error = found.error.reshape(u.shape)
+        known = np.where(np.isfinite(height - error), height - error, -np.inf)
+        here = known.argmax(axis=1)[:, None]
+        best, top = np.take_along_axis(u, here, 1)[:, 0], np.take_along_axis(known, here, 1)[:, 0]
+        if turn == ROUNDS:
+            return _fitted(u, height, np.take_along_axis(error, here, 1)[:, 0], best, top, centre, half)
+        centre, half = best, half / 4
+    raise AssertionError
+
+
+def _fitted(
+    u: Array, height: Array, error: Array, best: Array, top: Array, centre: Array, half: Array
+) -> tuple[Array, Array]:
+    """Highest point of the quartic through the last points, where it is one and lies among them."""
+    even = np.ptp(u, axis=1) > 1.99 * half
+    c = _FIT @ np.where(np.isfinite(height), height, 0.0).T
+    with np.errstate(all="ignore"):
+        t = np.clip(-c[1] / (2 * c[2]), -1, 1)
+        for _ in range(6):
+            slope = c[1] + t * (2 * c[2] + t * (3 * c[3] + t * 4 * c[4]))
+            bend = 2 * c[2] + t * (6 * c[3] + t * 12 * c[4])
+            t = np.clip(t - slope / bend, -1, 1)
+        peak = c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * c[4])))
+        off = np.abs(np.vander(_T, 5, increasing=True) @ c - height.T).max(axis=0)
+    good = even & (np.abs(t) < 0.999) & (bend < 0) & (off < 0.05 * np.ptp(height, axis=1) + 1e-13) & np.isfinite(peak)
+    return np.where(good, centre + half * t, best), np.where(good, np.maximum(peak - error, top), top)
+
+
+def tips(
+    region: Region, outside: Array, inside: Array, centre: Array, slope: Array, width: Array, walls: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Where tongues close between a row without them, ``outside``, and one with them, ``inside`` (tongues,), in v.
+
+    centre, slope, width: of each tongue at its row ``inside`` and how its middle moves with v; walls (tongues, 2):
+    bounds in u that keep neighbours out. Returns u and v of the tips and whether each was found.
+    """
+
+    def window(v: Array, which: Places) -> tuple[Array, Array]:
+        shift = slope[which] * (v - inside[which])
+        reach = 0.75 * width[which] + np.abs(shift) + 1e-9 * (region.box.u1 - region.box.u0)
+        middle = centre[which] + shift
+        low, high = np.maximum(middle - reach, walls[which, 0]), np.minimum(middle + reach, walls[which, 1])
+        return np.minimum(low, high), np.maximum(low, high)
+
+    def height(v: Array, which: Places) -> Array:
+        return ridge(region, *window(v, which), v)[1]
+
+    everyone = np.arange(len(inside))
+    found = (height(outside, everyone) < 0) & (height(inside, everyone) > 0)
+    v = inside.copy()
+    pick = np.flatnonzero(found)
+    if len(pick):
+        exact = TIP * (region.box.v1 - region.box.v0)
+        v[pick] = bracketed(lambda at, own: height(at, pick[own]), outside[pick], inside[pick], exact)
+    u, top = ridge(region, *window(v, everyone), v)
+    return u, v, found & np.isfinite(top)

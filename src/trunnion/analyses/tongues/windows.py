@@ -1,0 +1,221 @@
+"""In which ranges of a parameter a whole range of speeds is stable: how large an angle, how much damping.
+
+A value is unfit where any speed of the range is unstable, so the unfit values are what the tongues over speed and
+parameter cover, from tip to tip. Their ends are tips, or edges at an end of the speed range; both are solved for.
+Damping can widen sum resonances, so there may be several windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.tongues.result import Tongue, Tongues
+from trunnion.analyses.tongues.tongues import ROWS, tongues
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+ALL_DAMPING = "factor of Shaft *.damping"
+
+
+@dataclass(frozen=True)
+class End:
+    """Where a window ends: the speed [rad/s] that turns unstable first, and the region it belongs to; None at the
+    ends of the range asked for."""
+
+    speed: float
+    region: str
+
+
+@dataclass(frozen=True, repr=False)
+class StableWindows(Result):
+    """Ranges ``windows`` (windows, 2) of ``parameter``, rising, in which every speed of ``speeds`` [rad/s] is stable.
+
+    ends: what begins beyond each end of each window; low, high: the range searched; margin: by which share the speeds
+    asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it.
+    """
+
+    parameter: str
+    unit: str
+    windows: Array
+    ends: tuple[tuple[End | None, End | None], ...]
+    speeds: tuple[float, float]
+    margin: float
+    low: float
+    high: float
+    search: str
+    speed_unit: str
+    tongues: Tongues
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def largest(self) -> float | None:
+        """The value up to which the line is stable from the low end on; None where it is unstable there at once."""
+        if not len(self.windows) or self.windows[0, 0] > self.low:
+            return None
+        return float(self.windows[0, 1])
+
+    @property
+    def smallest(self) -> float | None:
+        """The value from which on the line stays stable up to the high end; None where it is unstable there."""
+        if not len(self.windows) or self.windows[-1, 1] < self.high:
+            return None
+        return float(self.windows[-1, 0])
+
+    @property
+    def sentence(self) -> str:
+        """The answer in a sentence."""
+        span = f"from {show_speed(self.speeds[0], self.speed_unit)} to {show_speed(self.speeds[1], self.speed_unit)}"
+        if not len(self.windows):
+            asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
+            return f"No {asked} keeps every speed {span} stable."
+        parts = []
+        for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
+            begin = f"{self._value(low)}{self._why(below)}"
+            parts.append(f"from {begin} to {self._value(high)}{self._why(above)}")
+        return f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}."
+
+    def _value(self, value: float) -> str:
+        if self.unit == "rad":
+            return f"{np.rad2deg(value):.6g}°"
+        return f"{value:.6g}{'' if self.unit == '1' else ' ' + self.unit}"
+
+    def _why(self, end: End | None) -> str:
+        return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, self.speed_unit)})"
+
+    def declared(self) -> Iterator[Held]:
+        """Windows, and what ends them."""
+        yield axis("window", np.arange(len(self.windows)))
+        for k, name in enumerate(("from", "to")):
+            yield over("window", name, self.windows[:, k], self.unit, self.parameter)
+            speed = [float("nan") if e[k] is None else e[k].speed for e in self.ends]  # type: ignore[union-attr]
+            yield over("window", f"{name}_speed", np.array(speed), "rad/s")
+            yield over("window", f"{name}_region", ["" if e[k] is None else e[k].region for e in self.ends])  # type: ignore[union-attr]
+        yield remark("parameter", self.parameter)
+        yield remark("speeds", list(self.speeds))
+        yield remark("margin", self.margin)
+        yield remark("range", [self.low, self.high])
+        yield remark("search", self.search)
+        yield remark("sentence", self.sentence)
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """The unstable regions over speed and parameter; see ``plots.tongues.draw_windows``."""
+        return drawing(self, "plot")(self, axes, **options)
+
+    def __str__(self) -> str:
+        return "\n".join([self.sentence, f"  {self.search}", *(f"  {finding}" for finding in self.findings)])
+
+
+def stable_windows(
+    line: Driveline | Assembly,
+    parameter: str,
+    low: float,
+    high: float,
+    speeds: tuple[float, float],
+    *,
+    margin: float = 0.0,
+    rows: int = ROWS,
+    statically_twisted: bool = True,
+    progress: Progress | None = None,
+) -> StableWindows:
+    """The ranges of ``parameter`` between ``low`` and ``high`` in which every speed from one to another is stable.
+
+    Parameters
+    ----------
+    parameter, low, high : as of a chart's axis, SI units.
+    speeds : (lowest, highest) input speed [rad/s].
+    margin : share by which the speeds are widened at either end, 0.1 for 10 %.
+    rows : values of the parameter searched to begin with; see ``tongues``.
+
+    Raises
+    ------
+    InputError : see ``tongues``; a margin outside 0 to 0.9.
+    """
+    if not np.isfinite(margin) or not 0 <= margin < 0.9:
+        raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
+    _require_speeds(speeds)
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    span = (speeds[0] * (1 - margin), speeds[1] * (1 + margin))
+    found = tongues(
+        assembly, ("speed", *span), (parameter, low, high),
+        rows=rows, statically_twisted=statically_twisted, progress=progress,
+    )  # fmt: skip
+    windows, ends = _free_of(found)
+    return StableWindows(
+        parameter, found.y_unit, windows, ends, (float(speeds[0]), float(speeds[1])), float(margin),
+        *found.y_range, found.search, speed_unit(assembly.line), found, found.findings,
+    )  # fmt: skip
+
+
+def minimum_damping(
+    line: Driveline | Assembly,
+    speeds: tuple[float, float],
+    *,
+    damping: str = ALL_DAMPING,
+    maximum: float = 100.0,
+    margin: float = 0.0,
+    rows: int = ROWS,
+    progress: Progress | None = None,
+) -> StableWindows:
+    """All ranges of damping, up to ``maximum``, that keep every speed from one to another stable.
+
+    Parameters
+    ----------
+    damping : a factor of all shafts' damping by default, or the damping of one element, as "Shaft 2.damping".
+    maximum : the largest value of it, in its unit (1 is what the line has where it is a factor).
+
+    Raises
+    ------
+    InputError : see ``stable_windows``; a parameter that is no damping.
+    """
+    if not any(word in damping for word in ("damping", "loss_factor")):
+        raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')
+    return stable_windows(
+        line, damping, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows, progress=progress
+    )  # fmt: skip
+
+
+def _require_speeds(speeds: object) -> None:
+    good = isinstance(speeds, tuple | list) and len(speeds) == 2 and all(isinstance(s, int | float) for s in speeds)
+    if not good or not 0 < speeds[0] < speeds[1]:  # type: ignore[index]
+        raise InputError(
+            "must be two rising positive speeds", key="speeds", value=speeds, remedy="(tn.rpm(300), tn.rpm(2400))"
+        )
+
+
+def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:
+    """What of the range no tongue covers, and what ends each part."""
+    low, high = found.y_range
+    covered = sorted(((float(t.y[0]), float(t.y[-1]), t) for t in found), key=lambda c: c[0])
+    windows: list[tuple[float, float]] = []
+    ends: list[tuple[End | None, End | None]] = []
+    at, below = low, None
+    for begin, end, tongue in covered:
+        if begin > at:
+            windows.append((at, begin))
+            ends.append((below, _end(tongue, 0)))
+        if end > at or at == low:
+            at, below = max(end, at), _end(tongue, -1)
+    if at < high:
+        windows.append((at, high))
+        ends.append((below, None))
+    return np.array(windows).reshape(-1, 2), tuple(ends)
+
+
+def _end(tongue: Tongue, place: int) -> End:
+    return End(float(tongue.low[place] + tongue.high[place]) / 2, tongue.name)

@@ -1,0 +1,128 @@
+"""Tongues as curves: their boundaries, tips and names, alone or over a stability chart."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.tongues.result import Tongue, Tongues
+from trunnion.analyses.tongues.windows import StableWindows
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.plots.quantity_axes import quantity_axis
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+FACE, EDGE = "#d9c3c9", "#4a1526"
+LEAP = 100.0
+"""How many times steeper than on the whole an edge must run to count as leaping."""
+LABELLED = 12
+"""Names written at most: those of the fastest growth."""
+
+
+def draw(
+    tongues: Tongues,
+    axes: Axes | None = None,
+    *,
+    unit: str | None = None,
+    pixel: float | None = None,
+    labelled: int = LABELLED,
+) -> Axes:
+    """Draw ``tongues`` and return the axes.
+
+    Parameters
+    ----------
+    axes : of a chart with the same axes and unit, to draw over; default a figure of its own.
+    unit : of speeds; default the one of the description.
+    pixel : distance of a chart's pixels along x (SI): tongues nowhere as wide are marked, as its picture may hide them.
+    labelled : how many names are written.
+    """
+    alone = axes is None
+    axes = axes if axes is not None else new_axes()
+    unit = unit or (speed_unit(tongues.line) if tongues.line is not None else "rad/s")
+    across = quantity_axis(tongues.x_label, tongues.x_unit, unit)
+    up = quantity_axis(tongues.y_label, tongues.y_unit, unit)
+    hidden = set() if pixel is None else {t.number for t in tongues.narrower_than(pixel)}
+    for tongue in tongues:
+        edge = tongue.boundary * (across.factor, up.factor)
+        if alone:
+            axes.fill(edge[:, 0], edge[:, 1], color=FACE, lw=0, zorder=1)
+        for side in (tongue.low, tongue.high):
+            shown = np.where(_leaps(side, tongue), np.nan, side)
+            axes.plot(shown * across.factor, tongue.y * up.factor, color=EDGE if alone else ACCENT, lw=1.1, zorder=6)
+        if tongue.number in hidden:
+            x, y = _middle(tongue)
+            axes.plot(x * across.factor, y * up.factor, marker="v", ms=6, color=ACCENT, mec="white", zorder=7)
+    if alone:
+        axes.set_xlim(*(v * across.factor for v in tongues.x_range))
+        axes.set_ylim(*(v * up.factor for v in tongues.y_range))
+        axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
+        axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
+        plain(axes)
+        _names(axes, tongues, across.factor, up.factor, labelled)
+    if not len(tongues):
+        axes.text(0.5, 0.5, "no instability found", transform=axes.transAxes, ha="center", fontsize=TEXT, color=INK)
+    return axes
+
+
+def draw_windows(
+    found: StableWindows, axes: Axes | None = None, *, unit: str | None = None, labelled: int = LABELLED
+) -> Axes:
+    """The unstable regions over speed and parameter, and the windows in which every speed is stable."""
+    axes = draw(found.tongues, axes, unit=unit, labelled=labelled)
+    factor = quantity_axis(found.parameter, found.unit, "rad/s").factor
+    for low, high in found.windows.tolist():
+        axes.axhspan(low * factor, high * factor, color=ACCENT, alpha=0.12, lw=0, zorder=0)
+    return axes
+
+
+def hidden_key() -> Any:
+    """What the marks mean, for a legend."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], marker="v", ls="", color=ACCENT, mec="white", ms=6, label="region narrower than a pixel")
+
+
+def _leaps(side: Array, tongue: Tongue) -> NDArray[np.bool_]:
+    """Where an edge leaps because another tongue joins or parts, so that no line is drawn across."""
+    steps, apart = np.abs(np.diff(side)), np.abs(np.diff(tongue.y))
+    steep = steps > LEAP * np.median(np.abs(side.max() - side.min()) / max(np.ptp(tongue.y), 1e-300)) * apart
+    wide = steps > 0.3 * np.minimum(tongue.high - tongue.low, np.inf)[:-1]
+    return np.append(steep & wide & (steps > 0.002 * np.ptp(tongue.boundary[:, 0])), False)
+
+
+def _middle(tongue: Tongue) -> tuple[float, float]:
+    k = len(tongue.y) // 2
+    return float(tongue.low[k] + tongue.high[k]) / 2, float(tongue.y[k])
+
+
+def _names(axes: Axes, tongues: Tongues, across: float, up: float, most: int) -> None:
+    """Names under the tips, leaving out those that would stand on another."""
+    wide = abs(tongues.x_range[1] - tongues.x_range[0]) * across
+    tall = abs(tongues.y_range[1] - tongues.y_range[0]) * up
+    taken: list[tuple[float, float]] = []
+    for tongue in [t for t in tongues if t.resonance is not None and t.tip is not None][:most]:
+        assert tongue.resonance is not None and tongue.tip is not None
+        x, y = tongue.tip[0] * across, tongue.tip[1] * up
+        if any(abs(x - a) < 0.13 * wide and abs(y - b) < 0.06 * tall for a, b in taken):
+            continue
+        taken.append((x, y))
+        near_left, near_right = (
+            x < tongues.x_range[0] * across + 0.08 * wide,
+            x > tongues.x_range[1] * across - 0.08 * wide,
+        )
+        axes.annotate(
+            tongue.resonance.label,
+            (x, y),
+            xytext=(0, -3),
+            textcoords="offset points",
+            ha="left" if near_left else "right" if near_right else "center",
+            va="top",
+            fontsize=SMALL,
+            color=INK,
+            zorder=8,
+        )

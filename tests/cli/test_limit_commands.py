@@ -1,0 +1,49 @@
+"""tongues and the commands about limits: text, JSON, pictures and tables; refusals before computing."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+
+def test_tongues(run, here):
+    call = ("tongues", "two-shaft-cardan", "--x", "speed:1.4:1.8", "--y", "HookeJoint 1.angle:0deg:20deg:5")
+    done = run(*call, "-o", "t.csv", "-o", "t.png", "-o", "t.nc")
+    assert done.exit_code == 0 and "subharmonic ω₂: closes at input speed 1.618" in done.stdout
+    assert (
+        (here / "t.csv").read_text(encoding="utf-8").startswith("point,of_tongue,boundary_x [rad/s],boundary_y [rad]")
+    )
+    shown = json.loads(run(*call, "--json", "-o", "t.nc").stdout)
+    assert shown["name"] == ["subharmonic ω₂"] and shown["complete"] == 1
+    assert shown["tip_x"][0] == pytest.approx(1.618, abs=1e-3)
+
+
+def test_windows_and_damping(run, here):
+    call = ("stable-windows", "two-shaft-cardan", "-p", "HookeJoint 1.angle:0deg:20deg:5", "--speed", "1.4:1.8")
+    done = run(*call, "-o", "w.png", "-o", "w.nc")
+    assert done.exit_code == 0 and "is stable with HookeJoint 1.angle from 0° to 6.884" in done.stdout
+    call = ("minimum-damping", "two-shaft-cardan", "--speed", "1.4:1.8", "--maximum", "40", "--json", "-o", "d.nc")
+    shown = json.loads(run(*call).stdout)
+    assert len(shown["from"]) == 1 and shown["from_region"] == ["subharmonic ω₂"] and shown["to"] == [40.0]
+
+
+REFUSED = [
+    (("stable-windows", "two-shaft-cardan", "--speed", "1.8:1.4"), "is no rising range"),
+    (("minimum-damping", "two-shaft-cardan", "--damping", "Shaft 1.stiffness"), "is no damping"),
+    (("minimum-damping", "two-shaft-cardan", "--speed", "1:2", "--margin", "2"), "margin = 2.0: must lie between"),
+    (("minimum-damping", "two-shaft-cardan", "--damping", "Shaft 9.damping"), "is not a parameter"),
+    (("tongues", "two-shaft-cardan", "--x", "speed:1:2:log"), "is searched evenly; leave out :log"),
+    (("tongues", "two-shaft-cardan", "--x", "speed:2:1"), "is a reversed range"),
+    (("tongues", "two-shaft-cardan", "--y", "Shaft 1.stiffness"), "needs a range"),
+    (("tongues", "two-shaft-cardan", "--y", "HookeJoint 1.angle:0deg:20deg:2"), "rows = 2: must be a whole number"),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), REFUSED, ids=[" ".join(call) for call, _ in REFUSED])
+def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
+    result = run(*call)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == "" and words in result.stderr
+    assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
+    assert not (here / "trunnion-out").exists()

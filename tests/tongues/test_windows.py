@@ -1,0 +1,77 @@
+"""Windows of a parameter in which a range of speeds is stable, and the damping that is enough."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import two_shafts
+
+import trunnion as tn
+from trunnion.results.verdict import Verdict
+
+LINE = tn.catalogue("two-shaft-cardan")
+
+
+@pytest.fixture(scope="module")
+def angles() -> tn.analyses.tongues.windows.StableWindows:
+    return tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 1.4, (0.75, 0.9), rows=33)
+
+
+def test_largest_angle_is_a_tip(angles) -> None:
+    """ω₂/2 opens at the tip that an integration of its own confirms."""
+    assert angles.largest is not None and angles.ends[0][1].region == "harmonic ω₂/2"
+    speed = angles.ends[0][1].speed
+    assert two_shafts.radius(speed, angles.largest) == pytest.approx(1.0, abs=1e-9)
+    assert "set by harmonic ω₂/2" in angles.sentence
+
+
+def test_windows_are_stable_and_what_lies_between_is_not(angles) -> None:
+    chart = tn.stability_chart(LINE, ("speed", 0.75, 0.9, 1200), ("HookeJoint 1.angle", 0.0, 1.4, 141))
+    bad = (chart.verdict == Verdict.UNSTABLE).any(axis=1)
+    inside = np.zeros(len(chart.y), dtype=bool)
+    for low, high in angles.windows:
+        inside |= (chart.y > low) & (chart.y < high)
+    assert not np.any(bad & inside)
+    # Regions narrower than a pixel are missed by the chart alone.
+    assert np.count_nonzero(~bad & ~inside) <= 2
+
+
+def test_margin_widens_the_speeds() -> None:
+    near = tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 0.5, (1.3, 1.5), rows=9)
+    wide = tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 0.5, (1.3, 1.5), rows=9, margin=0.1)
+    assert wide.largest < near.largest and wide.margin == 0.1
+
+
+def test_minimum_damping() -> None:
+    line = tn.catalogue("two-shaft-cardan", angle=0.3)
+    found = tn.minimum_damping(line, (1.4, 1.8), maximum=40.0, rows=17)
+    assert found.smallest is not None and found.smallest < 40 and len(found.windows) == 1
+    zeta = 0.001 * found.smallest
+    at = found.ends[0][0].speed
+    assert two_shafts.radius(at, 0.3, zeta=zeta) == pytest.approx(1.0, abs=1e-8)
+    speeds = np.linspace(1.4, 1.8, 41)
+    assert max(two_shafts.radius(s, 0.3, zeta=1.001 * zeta) for s in speeds) < 1
+    assert found.data["from"].attrs["units"] == "1" and "subharmonic ω₂" in str(found)
+
+
+def test_no_window_at_all() -> None:
+    line = tn.catalogue("two-shaft-cardan", angle=0.5)
+    found = tn.minimum_damping(line, (1.5, 1.6), maximum=2.0, rows=5)
+    assert len(found.windows) == 0 and found.smallest is None and "No factor" in found.sentence
+
+
+BAD = [
+    (
+        lambda: tn.stable_windows(LINE, "HookeJoint 1.angle", 0, 1, (2.0, 1.0)),
+        "speeds = (2.0, 1.0): must be two rising",
+    ),
+    (lambda: tn.stable_windows(LINE, "HookeJoint 1.angle", 0, 1, (1.0, 2.0), margin=2.0), "margin = 2.0: must lie"),
+    (lambda: tn.minimum_damping(LINE, (1.0, 2.0), damping="Shaft 1.stiffness"), "damping = 'Shaft 1.stiffness': is no"),
+]
+
+
+@pytest.mark.parametrize(("run", "message"), BAD)
+def test_refusals(run, message: str) -> None:
+    with pytest.raises(tn.InputError) as caught:
+        run()
+    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
