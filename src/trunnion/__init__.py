@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
+    from trunnion.analyses.tolerance.study import tolerance_study
     from trunnion.analyses.tongues.tongues import tongues
     from trunnion.analyses.tongues.windows import minimum_damping, stable_windows
     from trunnion.driveline import (
@@ -165,6 +166,7 @@ _HOME = {
     "stability_chart": "trunnion.analyses.charts.stability_chart",
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.charts.stable_limit",
+    "tolerance_study": "trunnion.analyses.tolerance.study",
     "tongues": "trunnion.analyses.tongues.tongues",
     "stable_windows": "trunnion.analyses.tongues.windows",
     "minimum_damping": "trunnion.analyses.tongues.windows",

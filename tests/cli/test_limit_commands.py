@@ -28,7 +28,18 @@ def test_windows_and_damping(run, here):
     assert len(shown["from"]) == 1 and shown["from_region"] == ["subharmonic ω₂"] and shown["to"] == [40.0]
 
 
+def test_tolerance_study(run, here):
+    call = ("tolerance-study", "two-shaft-cardan", "-t", "Shaft 1.stiffness=10%", "-t", "Disk 1.inertia=normal 2%")
+    done = run(*call, "--speed", "1.2", "--samples", "256", "-o", "t.png")
+    assert done.exit_code == 0 and "with probability" in done.stdout and "what matters" in done.stdout
+    shown = json.loads(run(*call, "--speed", "1.2", "--samples", "256", "--json", "-o", "t.nc").stdout)
+    assert shown["parameter"] == ["Shaft 1.stiffness", "Disk 1.inertia"] and 0 <= shown["probability"] <= 1
+
+
 REFUSED = [
+    (("tolerance-study", "two-shaft-cardan", "-t", "Shaft 1.stiffness"), "is no tolerance"),
+    (("tolerance-study", "two-shaft-cardan", "-t", "Shaft 1.stiffness=much"), "is no tolerance"),
+    (("tolerance-study", "two-shaft-cardan", "-t", "Shaft 9.stiffness=1%", "--speed", "1"), "is not a parameter"),
     (("stable-windows", "two-shaft-cardan", "--speed", "1.8:1.4"), "is no rising range"),
     (("minimum-damping", "two-shaft-cardan", "--damping", "Shaft 1.stiffness"), "is no damping"),
     (("minimum-damping", "two-shaft-cardan", "--speed", "1:2", "--margin", "2"), "margin = 2.0: must lie between"),

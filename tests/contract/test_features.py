@@ -36,6 +36,7 @@ RUN = {
     "minimum_damping": lambda line: tn.minimum_damping(
         line.replace("joint 2", angle=1.3), (140.0, 150.0), damping="front.damping", maximum=10.0, rows=3
     ),
+    "tolerance_study": lambda line: tn.tolerance_study(line, {"hub.inertia": 0.1}, SPEED, samples=256),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
     "bending_speeds": tn.bending_speeds,

@@ -207,7 +207,7 @@ TABLE: dict[str, Row] = {
         inert={**_TORSION, **_EVEN, **_FORCING},
     ),
     **dict.fromkeys(
-        ("tongues", "stable_windows", "minimum_damping"),
+        ("tongues", "stable_windows", "minimum_damping", "tolerance_study"),
         _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
     ),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),

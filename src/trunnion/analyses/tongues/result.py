@@ -15,7 +15,6 @@ from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
-from trunnion.results.finding import Finding
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -123,7 +122,6 @@ class Tongues(Result):
     search: str
     line: Driveline | None
     remarks: tuple[str, ...] = ()
-    findings: tuple[Finding, ...] = ()
     find: Intervals | None = field(default=None, repr=False, compare=False)
 
     def __iter__(self):  # type: ignore[no-untyped-def]

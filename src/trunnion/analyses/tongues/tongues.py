@@ -99,7 +99,6 @@ def tongues(
         _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit),
         task.line,
         task.remarks,
-        (),
         _finder(region),
     )
 

@@ -22,7 +22,6 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
-from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
@@ -61,7 +60,6 @@ class StableWindows(Result):
     search: str
     speed_unit: str
     tongues: Tongues
-    findings: tuple[Finding, ...] = ()
 
     @property
     def largest(self) -> float | None:
@@ -118,7 +116,7 @@ class StableWindows(Result):
         return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
-        return "\n".join([self.sentence, f"  {self.search}", *(f"  {finding}" for finding in self.findings)])
+        return "\n".join([self.sentence, f"  {self.search}", *(f"  note: {r}" for r in self.tongues.remarks)])
 
 
 def stable_windows(
@@ -158,7 +156,7 @@ def stable_windows(
     windows, ends = _free_of(found)
     return StableWindows(
         parameter, found.y_unit, windows, ends, (float(speeds[0]), float(speeds[1])), float(margin),
-        *found.y_range, found.search, speed_unit(assembly.line), found, found.findings,
+        *found.y_range, found.search, speed_unit(assembly.line), found,
     )  # fmt: skip
 
 

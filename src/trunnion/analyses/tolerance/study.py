@@ -1,0 +1,276 @@
+"""How probable it is that a line within its tolerances is stable, by quasi-Monte Carlo, and what its worst corner is.
+
+Points are scrambled Sobol sequences, in several independent scrambles: each gives an estimate of its own, and their
+scatter the interval. Where every scramble gives the same share, none or all, the interval comes from the count alone
+(Clopper and Pearson), which is wider than need be.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.stats import beta, qmc
+from scipy.stats import t as student
+
+from trunnion.analyses.features import left_out
+from trunnion.analyses.tolerance.many_lines import ManyLines
+from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.results.chart import require_pixels
+from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding
+from trunnion.results.speeds import show_speed
+from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+SCRAMBLES = 16
+TOLERANCE = 1e-8
+"""Error asked of monodromy matrices: radii within it of 1 count as undecided."""
+CLIMBS = 6
+"""Steps of the search for the worst corner."""
+STEP = 1e-4
+"""Of differences, as a share of a tolerance."""
+BINS = 32
+"""Classes of a parameter between which the mean growth rate is compared."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The line of fastest growth found within the tolerances: values by parameter, speed, growth rate, verdict."""
+
+    values: dict[str, float]
+    speed: float
+    growth_rate: float
+    verdict: Verdict
+
+
+@dataclass(frozen=True, repr=False)
+class ToleranceStudy(Result):
+    """Probability that a line within its tolerances is stable at all of ``speeds`` [rad/s].
+
+    probability, interval: the share of stable lines and its interval of ``confidence``; undecided: share of lines whose
+    radius is 1 to within its error, which count as unstable in ``probability``; stable_share (speeds,) at each speed;
+    growth_rate (speeds, samples) of every sample [1/s]; worst: by gradient from the fastest sample; ranking:
+    parameters by the share of the scatter of the growth rate, at the speed where it is fastest, that each explains
+    alone.
+    """
+
+    parameters: tuple[str, ...]
+    low: Array
+    high: Array
+    speeds: Array
+    samples: int
+    probability: float
+    interval: tuple[float, float]
+    confidence: float
+    undecided: float
+    stable_share: Array
+    growth_rate: Array
+    worst: Worst
+    ranking: tuple[tuple[str, float], ...]
+    unit: str
+    findings: tuple[Finding, ...] = ()
+
+    def declared(self) -> Iterator[Held]:
+        """Tolerances with their ranking, shares over speed, the worst line."""
+        rank = dict(self.ranking)
+        yield axis("parameter", list(self.parameters))
+        yield over("parameter", "low", self.low)
+        yield over("parameter", "high", self.high)
+        yield over("parameter", "explained", np.array([rank[p] for p in self.parameters]), "1")
+        yield over("parameter", "worst", np.array([self.worst.values[p] for p in self.parameters]))
+        yield axis("speed", self.speeds, "rad/s")
+        yield over("speed", "stable_share", self.stable_share, "1")
+        yield axis("quantile", np.array(QUANTILES), "1")
+        yield over("speed quantile", "growth_rate", np.quantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
+        yield remark("probability", self.probability)
+        yield remark("interval", list(self.interval))
+        yield remark("confidence", self.confidence)
+        yield remark("undecided", self.undecided)
+        yield remark("samples", self.samples)
+        yield remark("worst_speed", self.worst.speed)
+        yield remark("worst_growth_rate", self.worst.growth_rate)
+        yield remark("worst_verdict", str(self.worst.verdict))
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """The growth rate's distribution, and the parameters by rank; see ``plots.tolerance.draw``."""
+        return drawing(self, "plot")(self, axes, **options)
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        where = (
+            f"at {len(self.speeds)} speeds"
+            if len(self.speeds) > 1
+            else f"at {show_speed(float(self.speeds[0]), self.unit)}"
+        )
+        lines = [
+            f"stable {where} with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
+            f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances",
+            f"  worst line found: {self.worst.verdict}, grows by {self.worst.growth_rate:+.4g} 1/s at "
+            f"{show_speed(self.worst.speed, self.unit)}, with "
+            + ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items()),
+            "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
+        ]
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+
+
+QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
+
+
+def tolerance_study(
+    line: Driveline | Assembly,
+    tolerances: Tolerances,
+    speeds: ArrayLike,
+    *,
+    samples: int = 1 << 14,
+    confidence: float = 0.95,
+    seed: int = 0,
+    statically_twisted: bool = True,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> ToleranceStudy:
+    """The probability that a line within its tolerances is stable at every one of ``speeds`` [rad/s].
+
+    Parameters
+    ----------
+    tolerances : parameter path → 0.1 (uniform within ±10 %), ("range", low, high) in SI units, or ("normal", 0.03)
+        (standard deviation as a share, cut at three of them).
+    speeds : one speed or several; a range is as dense as these are.
+    samples : lines in all, rounded up to 16 powers of two.
+    seed : of the scrambles; the same seed gives the same numbers.
+
+    Raises
+    ------
+    InputError : see ``read_tolerances`` and ``stability_chart``; speeds that are not positive; fewer than 256 samples.
+    """
+    at = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if at.ndim != 1 or not len(at) or not np.all(np.isfinite(at)) or not np.all(at > 0):
+        raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
+    if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 256:
+        raise InputError("must be a whole number, 256 or more", key="samples", value=samples)
+    if not 0.5 <= confidence < 1:
+        raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    spreads = read_tolerances(assembly, tolerances)
+    each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
+    require_pixels(each * SCRAMBLES, len(at))
+    lines = ManyLines.of(
+        assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
+        statically_twisted, threads or os.cpu_count() or 1,
+    )  # fmt: skip
+    shares = _sobol(len(spreads), each, seed)
+    growth, stable, undecided = (
+        np.empty((len(at), len(shares))),
+        np.ones(len(shares), bool),
+        np.zeros(len(shares), bool),
+    )
+    at_each = np.empty(len(at))
+    for k, speed in enumerate(at.tolist()):
+        table = tables(assembly, spreads, shares, speed)
+        found = lines.judged(table, TOLERANCE)
+        growth[k] = lines.growth(table, found.radius)
+        fine = np.isin(found.verdict, (Verdict.STABLE, Verdict.MARGINAL))
+        at_each[k] = fine.mean()
+        stable &= fine
+        undecided |= found.verdict == Verdict.UNDECIDED
+        if progress:
+            progress((k + 1) / (len(at) + 1))
+    probability = float(stable.mean())
+    fastest = int(np.nanargmax(growth.max(axis=1)))
+    return ToleranceStudy(
+        tuple(s.label for s in spreads),
+        np.array([s.low for s in spreads]),
+        np.array([s.high for s in spreads]),
+        at,
+        len(shares),
+        probability,
+        _interval(stable.reshape(SCRAMBLES, each), confidence),
+        confidence,
+        float(undecided.mean()),
+        at_each,
+        growth,
+        _worst(lines, spreads, shares, growth, at),
+        _ranking(spreads, shares, growth[fastest]),
+        speed_unit(assembly.line),
+        left_out("tolerance_study", assembly.line),
+    )
+
+
+def _sobol(parameters: int, each: int, seed: int) -> Array:
+    """Shares (scrambles · each, parameters), one scrambled sequence after another."""
+    generators = (np.random.default_rng([seed, k]) for k in range(SCRAMBLES))
+    return np.concatenate([qmc.Sobol(parameters, scramble=True, seed=g).random(each) for g in generators])
+
+
+def _interval(stable: NDArray[np.bool_], confidence: float) -> tuple[float, float]:
+    """Of the share of True: from the scatter of the rows' means, or where there is none from the count."""
+    means, count = stable.mean(axis=1), stable.size
+    middle = float(means.mean())
+    half = float(student.ppf(0.5 + confidence / 2, len(means) - 1) * means.std(ddof=1) / np.sqrt(len(means)))
+    # A scatter below what one line more or less would make says nothing.
+    if half < 1 / count:
+        yes, tail = int(stable.sum()), (1 - confidence) / 2
+        low = 0.0 if yes == 0 else float(beta.ppf(tail, yes, count - yes + 1))
+        high = 1.0 if yes == count else float(beta.ppf(1 - tail, yes + 1, count - yes))
+        return low, high
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth: Array, speeds: Array) -> Worst:
+    """Climb from the fastest sample along the gradient: first to the corner it points to, else part of the way."""
+    k, start = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
+    speed, place, best = float(speeds[k]), shares[start].copy(), float(growth[k, start])
+
+    def rates(points: Array) -> Array:
+        table = tables(lines.assembly, spreads, np.clip(points, LEAST, 1 - LEAST), speed)
+        return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE).radius)
+
+    size = len(spreads)
+    for _ in range(CLIMBS):
+        inside = np.clip(place, STEP, 1 - STEP)
+        probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
+        found = rates(probes)
+        gradient = found[:size] - found[size:]
+        corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
+        parts = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01])[:, None]
+        tried = place + parts * (corner - place)
+        reached = rates(tried)
+        top = int(np.nanargmax(reached))
+        if not reached[top] > best:
+            break
+        place, best = tried[top], float(reached[top])
+    place = np.clip(place, LEAST, 1 - LEAST)
+    table = tables(lines.assembly, spreads, place[None], speed)
+    verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
+    values = {s.label: float(s.values(place[k : k + 1])[0]) for k, s in enumerate(spreads)}
+    return Worst(values, speed, best, verdict)
+
+
+LEAST = 1e-12
+"""Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
+
+
+def _ranking(spreads: tuple[Spread, ...], shares: Array, growth: Array) -> tuple[tuple[str, float], ...]:
+    """Share of the growth rate's variance between classes of each parameter, less what chance alone would make."""
+    total, count = float(growth.var()), len(growth)
+    found = []
+    for k, one in enumerate(spreads):
+        member = np.minimum((shares[:, k] * BINS).astype(int), BINS - 1)
+        number = np.bincount(member, minlength=BINS)
+        mean = np.bincount(member, growth, BINS) / np.maximum(number, 1)
+        between = float((number * (mean - growth.mean()) ** 2).sum() / count)
+        chance = (BINS - 1) / count * (total - between)
+        found.append((one.label, float(np.clip((between - chance) / total, 0.0, 1.0)) if total > 0 else 0.0))
+    return tuple(sorted(found, key=lambda pair: -pair[1]))

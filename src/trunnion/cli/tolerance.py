@@ -1,0 +1,68 @@
+"""The command about tolerances."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.limits import written_paths
+from trunnion.cli.motion import Output
+from trunnion.cli.options import File, Json, LoadCase, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.errors import InputError
+
+EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
+
+
+def tolerance_study(
+    file: File,
+    tolerance: Annotated[
+        list[str],
+        typer.Option(
+            "--tolerance", "-t", metavar="PARAMETER=SHARE", help='As "Shaft 1.stiffness=10%" or "…=normal 3%".'
+        ),
+    ],
+    speeds: Annotated[
+        list[str] | None, typer.Option("--speed", metavar="SPEED", help="Repeat it for more; default the file's.")
+    ] = None,
+    samples: Annotated[int, typer.Option("--samples", help="Lines in all.")] = 1 << 14,
+    seed: Annotated[int, typer.Option("--seed", help="Of the random scrambles.", min=0)] = 0,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """The probability that the line is stable within its tolerances, its worst corner, and what matters.
+
+    Example: trunnion tolerance-study truck.toml -t "Shaft *.stiffness=10%" -t "HookeJoint 1.angle=5%" --speed 1500rpm
+    """
+    from trunnion.analyses.tolerance.study import tolerance_study as study
+    from trunnion.driveline.operating_speed import operating_speed
+
+    line = read_line(file, load_case)
+    unit = read_unit(line, unit)
+    given = dict(_tolerance(text) for text in tolerance)
+    at = [operating_speed(line, read_speed(text, unit)) for text in speeds or [None]]
+    check_places(to)
+    with output.progress("tolerance study") as advance:
+        found = study(line, given, at, samples=samples, seed=seed, progress=advance)
+    written = write_results(to, file_stem(file), "tolerance-study", found.data, lambda: found.plot())
+    if as_json:
+        output.write_json("tolerance-study", {**found.to_dict(), "written": written_paths(written)})
+        return
+    print_result(str(found), written)
+
+
+def _tolerance(text: str) -> tuple[str, object]:
+    """``PARAMETER=10%``, ``PARAMETER=0.1`` or ``PARAMETER=normal 3%``."""
+    path, equals, given = text.rpartition("=")
+    kind, _, number = given.strip().rpartition(" ")
+    try:
+        share = float(number.removesuffix("%")) / (100 if number.endswith("%") else 1)
+    except ValueError:
+        share = 0.0
+    if not equals or not path or kind not in ("", "normal") or not 0 < share < 1:
+        raise InputError("is no tolerance", key="--tolerance", value=text, remedy=EXAMPLE)
+    return path.strip(), ("normal", share) if kind else share

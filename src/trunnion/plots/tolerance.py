@@ -1,0 +1,42 @@
+"""What tolerances do: the distribution of the growth rate, and the parameters by what they explain of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.analyses.tolerance.study import ToleranceStudy
+from trunnion.plots.style import ACCENT, INK, TEXT, new_axes, plain
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SHOWN = 8
+"""Parameters shown at most."""
+
+
+def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
+    """Histogram of the growth rate at the speed where it is fastest; beside it the ranking as bars."""
+    axes = axes if axes is not None else new_axes(7.2, 3.6)
+    fastest = int(np.nanargmax(study.growth_rate.max(axis=1)))
+    rates = study.growth_rate[fastest]
+    axes.hist(rates, bins=60, color="#b9a7ad", lw=0)
+    axes.axvline(0.0, color="#4a1526", lw=1.4)
+    axes.set_xlabel(
+        f"growth rate at {show_speed(float(study.speeds[fastest]), study.unit)} [1/s]", fontsize=TEXT, color=INK
+    )
+    axes.set_ylabel("lines", fontsize=TEXT, color=INK)
+    low, high = study.interval
+    title = f"stable with probability {study.probability:.4g} ({low:.4g} to {high:.4g})"
+    axes.set_title(title, fontsize=TEXT, color=INK, loc="left")
+    plain(axes)
+    names, shares = zip(*study.ranking[:SHOWN], strict=True)
+    side = axes.inset_axes((0.64, 0.45, 0.34, 0.5))
+    side.barh(range(len(names)), [100 * s for s in shares], color=ACCENT)
+    side.set_yticks(range(len(names)), names, fontsize=7)
+    side.invert_yaxis()
+    side.set_xlabel("explains of the scatter [%]", fontsize=7)
+    side.tick_params(labelsize=7)
+    return axes

@@ -1,0 +1,107 @@
+"""Probabilities, worst corners and rankings of tolerances, against one-dimensional truths and plain Monte Carlo."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import two_shafts
+from scipy.optimize import brentq
+
+import trunnion as tn
+
+LINE = tn.catalogue("two-shaft-cardan", angle=0.3)
+
+
+def test_probability_of_one_parameter_is_a_length() -> None:
+    """The angle scatters over a tip's edge: stable below it, unstable above; the edge from an integration of its
+    own."""
+    edge = brentq(lambda b: two_shafts.radius(1.62, b) - 1, 0.1, 0.2, xtol=1e-9)
+    study = tn.tolerance_study(LINE, {"HookeJoint 1.angle": ("range", 0.1, 0.2)}, 1.62, samples=2048)
+    truth = (edge - 0.1) / 0.1
+    assert study.interval[0] <= truth <= study.interval[1]
+    assert study.probability == pytest.approx(truth, abs=2e-3)
+    assert study.worst.values["HookeJoint 1.angle"] == pytest.approx(0.2, rel=1e-6)
+    assert str(study.worst.verdict) == "unstable" and study.ranking[0][1] > 0.9
+
+
+def test_worst_corner_is_the_worst_of_all_corners() -> None:
+    tolerances = {"Shaft 1.stiffness": 0.01, "Disk 1.inertia": 0.02, "HookeJoint 1.angle": 0.05}
+    study = tn.tolerance_study(LINE, tolerances, 1.66, samples=256)
+    corners = []
+    for k in range(8):
+        signs = [1 if k >> b & 1 else -1 for b in range(3)]
+        line = LINE.replace("Shaft 1", stiffness=1 + 0.01 * signs[0]).replace("Disk 1", inertia=1 + 0.02 * signs[1])
+        line = line.replace("HookeJoint 1", angle=0.3 * (1 + 0.05 * signs[2]))
+        corners.append(tn.stability(line, 1.66).growth_rate)
+    assert study.worst.growth_rate >= max(corners) - 1e-9
+
+
+def test_interval_of_what_never_happens() -> None:
+    study = tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.01}, 1.0, samples=1024)
+    assert study.probability == 1.0 and 0.99 < study.interval[0] < 1.0 and study.interval[1] == 1.0
+
+
+def test_several_speeds_must_all_be_stable() -> None:
+    tolerances = {"HookeJoint 1.angle": ("range", 0.05, 0.4)}
+    both = tn.tolerance_study(LINE, tolerances, [1.1, 1.62], samples=1024)
+    assert both.probability <= both.stable_share.min() + 1e-12 and both.growth_rate.shape == (2, both.samples)
+    assert both.data.stable_share.sizes["speed"] == 2 and "at 2 speeds" in str(both)
+
+
+def test_the_same_seed_gives_the_same_numbers() -> None:
+    a, b, c = (tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.05}, 1.64, samples=256, seed=s) for s in (1, 1, 2))
+    assert np.array_equal(a.growth_rate, b.growth_rate) and not np.array_equal(a.growth_rate, c.growth_rate)
+
+
+def test_drawn() -> None:
+    axes = tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.05}, 1.64, samples=256).plot()
+    assert "probability" in axes.get_title(loc="left")
+
+
+@pytest.mark.slow
+def test_intervals_overlap_those_of_plain_monte_carlo() -> None:
+    """100 seeds: at least 90 intervals overlap that of 4096 independent random lines."""
+    tolerances = {"Shaft 1.stiffness": 0.05, "Disk 2.inertia": 0.05, "HookeJoint 1.angle": 0.05}
+    rng, count, hits = np.random.default_rng(8), 4096, 0
+    from trunnion.analyses.tolerance.many_lines import ManyLines
+    from trunnion.analyses.tolerance.spread import read_tolerances, tables
+    from trunnion.equations.coefficients import assemble
+
+    assembly = assemble(LINE)
+    spreads = read_tolerances(assembly, tolerances)
+    lines = ManyLines(assembly, True, 2)
+    for seed in range(100):
+        study = tn.tolerance_study(LINE, tolerances, 1.64, samples=1024, seed=seed)
+        found = lines.judged(tables(assembly, spreads, rng.random((count, 3)), 1.64), 1e-8)
+        share = float((found.verdict == 0).mean())
+        half = 1.96 * np.sqrt(share * (1 - share) / count)
+        hits += study.interval[0] <= share + half and share - half <= study.interval[1]
+    assert hits >= 90
+
+
+BAD = [
+    (lambda: tn.tolerance_study(LINE, {}, 1.0), "tolerances = {}: must name one parameter or more"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is no tolerance"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", 2, 1)}, 1.0), "Shaft 1.stiffness = ('range', 2"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.fork_offset": 0.1}, 1.0), "Shaft 1.fork_offset: is zero"),
+    (lambda: tn.tolerance_study(LINE, {"speed": 0.1}, 1.0), "speed: is no parameter of the line"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stifness": 0.1}, 1.0), "Shaft 1.stifness: is not a parameter"),
+    (
+        lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1, "Shaft *.stiffness": 0.1}, 1.0),
+        "Shaft *.stiffness: moves Shaft 1.stiffness, as",
+    ),
+    (
+        lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", -1.0, 1.0)}, 1.0),
+        "Shaft 1.stiffness: would reach -1, which no line can have",
+    ),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 0.0), "speeds = 0.0: must be positive"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 1.0, samples=10), "samples = 10: must be a whole"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 1.0, confidence=2), "confidence = 2: must lie"),
+]
+
+
+@pytest.mark.parametrize(("run", "message"), BAD)
+def test_refusals(run, message: str) -> None:
+    with pytest.raises(tn.InputError) as caught:
+        run()
+    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
