@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
+    from trunnion.analyses.tolerance.certify import certify_stability
     from trunnion.analyses.tolerance.study import tolerance_study
     from trunnion.analyses.tongues.tongues import tongues
     from trunnion.analyses.tongues.windows import minimum_damping, stable_windows
@@ -167,6 +168,7 @@ _HOME = {
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.charts.stable_limit",
     "tolerance_study": "trunnion.analyses.tolerance.study",
+    "certify_stability": "trunnion.analyses.tolerance.certify",
     "tongues": "trunnion.analyses.tongues.tongues",
     "stable_windows": "trunnion.analyses.tongues.windows",
     "minimum_damping": "trunnion.analyses.tongues.windows",

@@ -37,6 +37,7 @@ RUN = {
         line.replace("joint 2", angle=1.3), (140.0, 150.0), damping="front.damping", maximum=10.0, rows=3
     ),
     "tolerance_study": lambda line: tn.tolerance_study(line, {"hub.inertia": 0.1}, SPEED, samples=256),
+    "certify_stability": lambda line: tn.certify_stability(line, {"hub.inertia": 1e-4}, (100.0, 100.001), most_boxes=1),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
     "bending_speeds": tn.bending_speeds,
@@ -72,12 +73,14 @@ RUN = {
 BASE = {
     **dict.fromkeys(("exact_motion", "piecewise_orbit", "piecewise_branch", "sweep"), feature_lines.straight),
     "bending_speeds": feature_lines.with_tube,
+    "certify_stability": feature_lines.unloaded,
 }
 QUICK = {
     "phase_forks": ("Hooke's joint", "fork offset", "load torque", "branch"),
     "stability_chart": ("damping", "load torque", "excitation by order", "viscous load"),
     "stable_limit": ("load torque", "free start"),
     **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
+    "certify_stability": ("load torque", "stiffness", "ratio"),
     "periodic_response": ("load torque", "prescribed far end"),
     "periodic_branch": ("viscous load", "free start"),
     "harmonic_balance": ("excitation by order", "free start"),

@@ -65,7 +65,7 @@ BAD = [
         lambda: tn.stable_windows(LINE, "HookeJoint 1.angle", 0, 1, (2.0, 1.0)),
         "speeds = (2.0, 1.0): must be two rising",
     ),
-    (lambda: tn.stable_windows(LINE, "HookeJoint 1.angle", 0, 1, (1.0, 2.0), margin=2.0), "margin = 2.0: must lie"),
+    (lambda: tn.stable_windows(LINE, "HookeJoint 1.angle", 0, 1, (1.0, 2.0), margin=2.0), "margin = 2: must lie"),
     (lambda: tn.minimum_damping(LINE, (1.0, 2.0), damping="Shaft 1.stiffness"), "damping = 'Shaft 1.stiffness': is no"),
 ]
 

@@ -110,6 +110,18 @@ _BASE = {
     "drive share": "belongs to lines that start free",
     "prescribed far end": "two prescribed speeds leave a bent line nowhere to go",
 }
+_EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
+_UNPROVABLE = {
+    **_NO_LAW,
+    **_BASE,
+    **dict.fromkeys(
+        (
+            "ratio", "gear mesh", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
+            "stages", "damping in contact only", "load torque", "viscous load", "quadratic load", SERIES,
+        ),
+        "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
+    ),
+}  # fmt: skip
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
     **_SERIES,
@@ -210,6 +222,7 @@ TABLE: dict[str, Row] = {
         ("tongues", "stable_windows", "minimum_damping", "tolerance_study"),
         _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
     ),
+    "certify_stability": _row(refused=_UNPROVABLE, inert={**_TORSION, **_EVEN, **_EXCITED}),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
         refused=_FAR_END,

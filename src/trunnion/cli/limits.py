@@ -135,7 +135,7 @@ def minimum_damping(
     unit = read_unit(line, unit)
     assembly = assemble(line)
     assembly.packed.resolve(damping)
-    span = _speed_range(speeds, assembly, unit)
+    span = read_speed_range(speeds, assembly, unit)
     check_places(to)
     with output.progress("minimum damping") as advance:
         found = find(assembly, span, damping=damping, maximum=maximum, margin=margin, progress=advance)
@@ -166,14 +166,14 @@ def stable_windows(
     assembly = assemble(line)
     (label, low, high), rows = _range(parameter, assembly, unit, "--parameter")
     assert isinstance(label, str) and isinstance(low, float) and isinstance(high, float)
-    span = _speed_range(speeds, assembly, unit)
+    span = read_speed_range(speeds, assembly, unit)
     check_places(to)
     with output.progress("stable windows") as advance:
         found = find(assembly, label, low, high, span, margin=margin, rows=rows, progress=advance)
     _say_windows("stable-windows", file, found, unit, to, as_json)
 
 
-def _speed_range(text: str | None, assembly: Assembly, unit: str) -> tuple[float, float]:
+def read_speed_range(text: str | None, assembly: Assembly, unit: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s, or the file's range."""
     from trunnion.reporting.overview import speed_range
 

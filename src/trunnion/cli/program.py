@@ -28,7 +28,7 @@ from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
-from trunnion.cli.tolerance import tolerance_study
+from trunnion.cli.tolerance import certify_stability, tolerance_study
 from trunnion.errors import InputRemark, TrunnionError, short
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
@@ -185,6 +185,7 @@ app.command("stable-limit")(stable_limit)
 app.command("tongues")(tongues)
 app.command("stable-windows")(stable_windows)
 app.command("minimum-damping")(minimum_damping)
+app.command("certify-stability")(certify_stability)
 app.command("tolerance-study")(tolerance_study)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)

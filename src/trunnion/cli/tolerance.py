@@ -1,16 +1,17 @@
-"""The command about tolerances."""
+"""The commands about tolerances: how probable stability is, and a proof of it."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import written_paths
+from trunnion.cli.limits import read_speed_range, written_paths
 from trunnion.cli.motion import Output
 from trunnion.cli.options import File, Json, LoadCase, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import check_places, print_result, write_result, write_results
 from trunnion.errors import InputError
 
 EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
@@ -44,7 +45,8 @@ def tolerance_study(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     given = dict(_tolerance(text) for text in tolerance)
-    at = [operating_speed(line, read_speed(text, unit)) for text in speeds or [None]]
+    asked = [read_speed(text, unit) for text in speeds] if speeds else [None]
+    at = [operating_speed(line, one) for one in asked]
     check_places(to)
     with output.progress("tolerance study") as advance:
         found = study(line, given, at, samples=samples, seed=seed, progress=advance)
@@ -66,3 +68,38 @@ def _tolerance(text: str) -> tuple[str, object]:
     if not equals or not path or kind not in ("", "normal") or not 0 < share < 1:
         raise InputError("is no tolerance", key="--tolerance", value=text, remedy=EXAMPLE)
     return path.strip(), ("normal", share) if kind else share
+
+
+def certify_stability(
+    file: File,
+    tolerance: Annotated[
+        list[str], typer.Option("--tolerance", "-t", metavar="PARAMETER=SHARE", help='As "Shaft 1.stiffness=1%".')
+    ],
+    speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
+    boxes: Annotated[int, typer.Option("--boxes", help="Boxes judged before the rest is left undecided.")] = 20_000,
+    unit: Unit = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """Prove that no line within its tolerances is unstable in a range of speeds, or find one that is.
+
+    Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
+    """
+    from trunnion.analyses.tolerance.certify import certify_stability as certify
+    from trunnion.equations.coefficients import assemble
+
+    line = read_line(file)
+    unit = read_unit(line, unit)
+    given = dict(_tolerance(text) for text in tolerance)
+    assembly = assemble(line)
+    span = read_speed_range(speeds, assembly, unit)
+    if to and any(path.suffix != ".nc" for path in to):
+        raise InputError("is no picture", key="--output", value=str(to[0]), remedy="end it in .nc")
+    check_places(to)
+    with output.progress("certificate") as advance:
+        found = certify(assembly, given, span, most_boxes=boxes, progress=advance)
+    written = [write_result(path, found.data, lambda: None) for path in to or []]
+    if as_json:
+        output.write_json("certify-stability", {**found.to_dict(), "written": written_paths(written)})
+        return
+    print_result(str(replace(found, unit=unit)), written)

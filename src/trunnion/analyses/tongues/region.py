@@ -76,6 +76,9 @@ class Region:
     def judged(self, u: Array, v: Array) -> Pixels:
         """Points integrated by themselves: radius, its error, critical multiplier, verdict, each (points,)."""
         x, y = self.x(u), self.y(v)
+        if not len(x):
+            none = np.zeros(0)
+            return Pixels(none, none, none.astype(complex), none.astype(np.int8))
         # Points with the same angles share the joints' laws where they stand together.
         order = np.argsort(v, kind="stable")
         back = np.argsort(order)
@@ -88,8 +91,6 @@ class Region:
 
     def above_one(self, u: Array, v: Array) -> Array:
         """Spectral radius less 1 (points,)."""
-        if not len(u):
-            return np.zeros(0)
         return self.judged(u, v).radius - 1
 
     def pieces(self, v: Array) -> Iterator[Piece]:

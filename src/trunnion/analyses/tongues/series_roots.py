@@ -24,6 +24,8 @@ Functions = Callable[[Array], Array]
 """Quantities (q, …) → functions (f, …)."""
 
 HALVINGS = 40
+ROUNDING = 4e-16
+"""Of a series, relative to the sum of its coefficients."""
 AT_ONCE = 4_000_000
 """Numbers in one array of quantities."""
 
@@ -64,7 +66,7 @@ def row_roots(series: Array, errors: Array, functions: Functions, degree: int) -
     left, right = at_edges[:, :, :-1].ravel(), at_edges[:, :, 1:].ravel()
     found: list[tuple[Array, ...]] = []
     touched: list[tuple[Array, ...]] = []
-    search = _Search(series, errors, functions)
+    search = _Search(series, errors, functions, ROUNDING * coefficients.sum(axis=-1))
     for _ in range(HALVINGS):
         small = bend[which, row] * h**2
         near = (np.minimum(np.abs(left), np.abs(right)) <= small / 8) | (left * right <= 0)
@@ -99,6 +101,7 @@ class _Search:
     series: Array
     errors: Array
     functions: Functions
+    rounding: Array
 
     def quantities(self, row: NDArray[np.intp], theta: Array) -> Array:
         """Quantities (q, points) at points of rows."""
@@ -118,11 +121,11 @@ class _Search:
         """What errors of the quantities do to the function at each point."""
         e, points = self.quantities(row, theta), np.arange(len(row))
         base = self.functions(e)[which, points]
-        total = np.zeros(len(row))
+        total = self.rounding[which, row]
         for k in range(len(e)):
             moved = e.copy()
             moved[k] += self.errors[row, k]
-            total += np.abs(self.functions(moved)[which, points] - base)
+            total = total + np.abs(self.functions(moved)[which, points] - base)
         return total
 
 
