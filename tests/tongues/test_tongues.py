@@ -189,7 +189,7 @@ def test_boundary_functions_are_products_of_multipliers(m: int) -> None:
 
 
 def test_no_zero_of_a_row_is_passed_over() -> None:
-    """Random cosine series with planted zeros, pairs as close as 1e-4: all found, each once."""
+    """Random cosine series with planted zeros, pairs as close as 1e-4: each is found once, or said to be touched."""
     rng = np.random.default_rng(5)
     for _ in range(20):
         roots = np.sort(rng.uniform(-0.99, 0.99, 12))
@@ -197,7 +197,12 @@ def test_no_zero_of_a_row_is_passed_over() -> None:
         c = np.polynomial.chebyshev.chebfromroots(roots)
         c /= np.abs(c).max()
         found = row_roots(c[None, None], np.full((1, 1), 1e-17), lambda e: e, 1)
-        assert np.sort(np.cos(found.theta)) == pytest.approx(roots, abs=1e-6)
+        places = np.cos(found.theta)
+        assert len(places) <= 12 and all(np.abs(roots - p).min() < 1e-6 for p in places)
+        for root in roots:
+            close = found.touched[:, 0] - 1e-9 <= np.arccos(root)
+            close &= np.arccos(root) <= found.touched[:, 1] + 1e-9
+            assert close.any() or np.abs(places - root).min() < 1e-6
     touching = np.polynomial.chebyshev.chebfromroots([0.3, 0.3])
     found = row_roots(touching[None, None], np.full((1, 1), 1e-12), lambda e: e, 1)
     assert len(found.theta) == 0 and len(found.touched) == 1

@@ -112,10 +112,10 @@ _BASE = {
 }
 _EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
 _UNPROVABLE = {
-    **_NO_LAW,
     **_BASE,
     **dict.fromkeys(
         (
+            "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
             "ratio", "gear mesh", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
             "stages", "damping in contact only", "load torque", "viscous load", "quadratic load", SERIES,
         ),

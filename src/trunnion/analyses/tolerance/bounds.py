@@ -55,8 +55,9 @@ def over_boxes(assembly: Assembly, low: Array, high: Array) -> Coefficients:
     inertia = [_inertia(assembly, e) for e in ends]
     g, dg = _middle(1 / inertia[1], 1 / inertia[0])
     s, ds = _middle(1 / ends[1].speed, 1 / ends[0].speed)
-    angle = (ends[0].angle + ends[1].angle) / 2
-    turned = np.abs(ends[1].angle - ends[0].angle) / 2 * (1 + ROUNDED)
+    places = [assembly.packed.column(assembly.topology.stations[j].element, "angle") for j in assembly.topology.joints]
+    angle = (low[:, places] + high[:, places]) / 2
+    turned = np.abs(high[:, places] - low[:, places]) / 2 * (1 + ROUNDED)
     return Coefficients(k, c, g, s, dk, dc, dg, ds, angle, turned)
 
 
@@ -112,7 +113,7 @@ def ratios(assembly: Assembly, middle: Array, co: Coefficients, tau: Array) -> R
         b = station.before
         if station.link is Link.SHAFT:
             speed[:, s], gain[:, s] = speed[:, b], gain[:, b]
-        elif station.link is Link.HOOKE:
+        elif station.link is Link.JOINT:
             sj, cj, r = sine[:, joint], cosine[:, joint], co.turned[:, joint]
             joint += 1
             eta, eta1, eta2 = 1 / cj, sj**2 / cj**3, 2 * sj**2 / cj**3 + 2 * sj**4 / cj**5

@@ -252,7 +252,7 @@ def _require_provable(assembly: Assembly) -> None:
             raise refuse("is no single shaft, and only such can be certified", line.names[compliance.shafts[0]])
         bends = 0
         at = compliance.near
-        while topo.stations[at].link is Link.HOOKE:
+        while topo.stations[at].link is Link.JOINT:
             bends += 1
             at = topo.stations[at].before
         if bends > 1:
@@ -261,9 +261,10 @@ def _require_provable(assembly: Assembly) -> None:
     loaded = any(np.any(part != 0) for part in (co.load, co.viscous, co.quadratic))
     for s, station in enumerate(topo.stations):
         name = line.names[station.element] if station.element >= 0 else "driveline"
-        if station.link not in (Link.ROOT, Link.SHAFT, Link.HOOKE):
+        hooke = station.link is Link.JOINT and line.elements[station.element].kind == "HookeJoint"
+        if station.link not in (Link.ROOT, Link.SHAFT) and not hooke:
             raise refuse("is neither shaft, disk nor Hooke's joint, and only these can be certified", name)
-        if station.link is Link.HOOKE and co.inertia[0, s] > 0:
+        if hooke and co.inertia[0, s] > 0:
             raise refuse("carries an inertia behind the joint, so that it varies with the angle", name)
     if loaded:
         raise refuse("carries loads, and only unloaded lines can be certified", "driveline")

@@ -46,7 +46,7 @@ class ManyLines:
         topo = self.assembly.topology
         coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
         by_speed = loaded_by_speed(topo, coefficients)
-        program, lanes = chain_program(topo, by_speed), chain_lanes(topo, coefficients, by_speed)
+        program, lanes = chain_program(topo, coefficients, by_speed), chain_lanes(topo, coefficients, by_speed)
         begin = symmetry_phase(program, lanes, self.period)
         window = Window(0.0 if begin is None else begin, self.period, begin is not None)
         return chain_monodromy(program, lanes, window, tolerance, self.threads)

@@ -57,7 +57,7 @@ def resonances(
     turns = require_period(assembly.line, topo)
     window = Window(0.0, 2 * np.pi * float(turns), False)
     lanes = chain_lanes(topo, coefficients, by_speed)
-    matrix, _, _ = chain_monodromy(chain_program(topo, by_speed), lanes, window, TOLERANCE, threads)
+    matrix, _, _ = chain_monodromy(chain_program(topo, coefficients, by_speed), lanes, window, TOLERANCE, threads)
     every = np.linalg.eigvals(matrix).reshape(len(x), STEPS, -1)
     modes = frequencies(aligned_matrices(topo, assembly.coefficients(table[::STEPS])), free=topo.free)
     speed = table[::STEPS, 0]
@@ -74,9 +74,9 @@ def _tables(task: Task, assembly: Assembly, x: Array, y: Array) -> Array:
 def _bends(assembly: Assembly, label: str) -> bool:
     owner, _, key = label.rpartition(".")
     if key == "angle":
-        line = assembly.line
-        return owner in line.names and line.elements[line.names.index(owner)].kind == "HookeJoint"
-    return key.startswith("stiffness_variation") and key.endswith("share")
+        joints = {assembly.topology.stations[j].element for j in assembly.topology.joints}
+        return owner in assembly.line.names and assembly.line.names.index(owner) in joints
+    return key.startswith(("stiffness_variation", "ripple")) and key.endswith(("share", "amplitude"))
 
 
 def _named(
