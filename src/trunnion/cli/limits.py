@@ -175,7 +175,7 @@ def stable_windows(
 
 def read_speed_range(text: str | None, assembly: Assembly, unit: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s, or the file's range."""
-    from trunnion.reporting.overview import speed_range
+    from trunnion.reporting.answer import speed_range
 
     if text is None:
         return speed_range(assembly)
