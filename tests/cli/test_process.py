@@ -100,6 +100,7 @@ def test_ctrl_c_keeps_the_answer_and_the_report_without_its_chart(start, here):
     deadline = time.monotonic() + 120
     while not (here / "kept.html").exists() and time.monotonic() < deadline:
         time.sleep(0.05)
+    time.sleep(1)  # into the chart, which has millions of points
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err

@@ -94,7 +94,7 @@ def _answer(error: Exception, arguments: list[str]) -> int:
     """Exit code of a failure, said on stderr in one line, or in one line per complaint."""
     match error:
         case _Interrupted():
-            return _fail("interrupted; nothing was written", INTERRUPTED)
+            return _fail(f"interrupted; {str(error) or 'nothing was written'}", INTERRUPTED)
         case BrokenPipeError():  # who reads us has gone, as "head" does
             _discard_stdout()
             return 1
