@@ -139,7 +139,7 @@ def test_reproduction(tmp_path: Path) -> None:
     assert "height -0.89 %" in methods.rows[2].remark
     assert len({row.computed for row in found.tables[3].rows}) == 1
     smaller = found.conclusions[1]
-    assert "0.347" in smaller.evidence and smaller.holds == "holds"
+    assert "0.347" in smaller.evidence and smaller.holds == "confirmed"
     assert [row.place for row in found.errata.rows][0] == "(13)"
     written = found.save(tmp_path / "rattle")
     assert len(written) == 6 and all(path.stat().st_size > 10_000 for path in written)

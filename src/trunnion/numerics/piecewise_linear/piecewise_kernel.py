@@ -318,38 +318,6 @@ def settle(state, regime, least, most, tolerance, omega, force, pieces, guards, 
 
 
 @njit(cache=True, error_model="numpy")
-def sweep(state, omegas, least, most, tolerance, measured, force, pieces, guards, then, side, record, rows):
-    """Settle and measure at one frequency after another, each from where the last one ended.
-
-    rows (frequencies, ROW). A motion that has not settled is measured over ``measured`` periods.
-    """
-    regime = regime_at(state[0], state[1], guards, then)
-    for i in range(len(omegas)):
-        regime, count, settled, ended = settle(
-            state, regime, least, most, tolerance, omegas[i], force, pieces, guards, then, record
-        )
-        rows[i, 7], rows[i, 8] = settled, count
-        if ended == DONE:
-            regime, ended = measure(
-                state,
-                regime,
-                1 if settled else measured,
-                omegas[i],
-                force,
-                pieces,
-                guards,
-                then,
-                side,
-                record,
-                rows[i],
-            )
-        if ended != DONE:
-            rows[i, 7] = -1
-            return ended
-    return DONE
-
-
-@njit(cache=True, error_model="numpy")
 def basins(starts, least, most, tolerance, omega, force, pieces, guards, then, record, ends, counts):
     """Where motions from many starts (m, 2) settle: ends (m, 2), counts (m,) of periods, negative if they did not."""
     for i in range(len(starts)):
