@@ -226,11 +226,6 @@ PYTHON = [
         "stability at single speeds",
     ),
     (
-        lambda: tn.order_response(free(drive_share=1), [30, 40]),
-        "driveline: starts free and is bent",
-        "tn.periodic_response",
-    ),
-    (
         lambda: tn.harmonic_balance(free(drive_share=1), "speed", 30, 40),
         "driveline: starts free",
         "periodic_branch",
