@@ -32,9 +32,9 @@ RUN = {
         line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4
     ),
     "tongues": lambda line: tn.tongues(line, ("speed", 140.0, 150.0), ("joint 2.angle", 0.9, 1.4), rows=3),
-    "stable_windows": lambda line: tn.stable_windows(line, "joint 2.angle", 0.9, 1.4, (140.0, 150.0), rows=3),
+    "stable_windows": lambda line: tn.stable_windows(line, "joint 2.angle", 0.2, 1.4, (140.0, 150.0), rows=5),
     "minimum_damping": lambda line: tn.minimum_damping(
-        line.replace("joint 2", angle=1.3), (140.0, 150.0), damping="front.damping", maximum=10.0, rows=3
+        line.replace("joint 2", angle=0.7), (140.0, 150.0), damping="front.damping", maximum=200.0, rows=5
     ),
     "tolerance_study": lambda line: tn.tolerance_study(line, {"hub.inertia": 0.1}, SPEED, samples=256),
     "certify_stability": lambda line: tn.certify_stability(line, {"hub.inertia": 1e-4}, (100.0, 100.001), most_boxes=1),
