@@ -6,6 +6,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.analyses.kinetostatics import equivalent_angle
+from trunnion.analyses.kinetostatics.measures import extremes
 
 KNOWN = {  # degrees: lag [deg], largest acceleration over speed squared
     10: (0.4386, 0.030626),
@@ -75,3 +76,26 @@ def test_two_bearings_carry_the_couple_over_their_distance():
     assert np.allclose(force[2:], couple[1] / 0.2, rtol=1e-12)
     assert np.allclose(result.supports.force[0], -result.supports.force[1])
     assert result.supports.idle == ("HookeJoint 1",)
+
+
+@pytest.mark.parametrize("degrees", [5, 20, 45, 60])
+@pytest.mark.parametrize(("points", "error"), [(180, 2e-8), (720, 1e-12)])
+def test_extremes_between_samples(degrees, points, error):
+    """Wherever the samples fall, the extremes of a ratio are cos β and 1/cos β."""
+    cosine = np.cos(np.radians(degrees))
+    start = np.linspace(0, 2 * np.pi / points, 17)[:, None]
+    turn = start + 2 * np.pi * np.arange(points) / points
+    low, high = extremes(cosine / (1 - (1 - cosine**2) * np.cos(turn) ** 2))
+    assert np.abs(low - cosine).max() < error and np.abs(high - 1 / cosine).max() < error
+
+
+def test_extremes_beside_a_corner_keep_to_the_samples():
+    """|sin| has its least value at a corner, which no smooth curve through the samples knows."""
+    turn = 0.003 + 2 * np.pi * np.arange(720) / 720
+    low, high = extremes(np.abs(np.sin(turn)))
+    assert 0 <= low <= np.abs(np.sin(turn)).min() and high == pytest.approx(1, abs=1e-12)
+
+
+def test_extremes_of_a_curve_that_does_not_close():
+    low, high = extremes(np.linspace(0.0, 1.0, 100))
+    assert (low, high) == (0.0, 1.0)

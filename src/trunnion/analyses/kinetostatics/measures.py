@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,10 +34,19 @@ def phasor_angle(angles: ArrayLike, phases: ArrayLike) -> Array:
     return np.sqrt(np.abs(phasors.sum(axis=-1)))
 
 
-def extremes(values: Array) -> tuple[Array, Array]:
-    """Smallest and largest value of curves sampled along the last axis, refined by a parabola.
+REACH = 3
+"""Samples to either side of the largest one that its refinement looks at."""
+_OFFSETS = np.arange(-REACH, REACH + 1)
+_TO_POWERS = np.linalg.inv(np.vander(_OFFSETS.astype(float), increasing=True))
+"""Coefficients of the polynomial through values at the offsets, in rising powers of the distance in samples."""
 
-    The samples cover a turn whose end is left out: the last is followed by the first, where the curve closes.
+
+def extremes(values: Array) -> tuple[Array, Array]:
+    """Smallest and largest value of curves sampled along the last axis, refined by a polynomial through 7 samples.
+
+    The samples cover a turn whose end is left out: the last is followed by the first, where the curve closes. The
+    ratio of a joint at 45° is met to 1e-9 from 180 samples, and to rounding from 720. At a corner, where
+    no polynomial fits, the answer is off by up to the step between two samples.
     """
     return -_peak(-values), _peak(values)
 
@@ -44,13 +54,39 @@ def extremes(values: Array) -> tuple[Array, Array]:
 def _peak(values: Array) -> Array:
     n = values.shape[-1]
     at = np.expand_dims(np.argmax(values, axis=-1), -1)
-    below, top, above = (np.take_along_axis(values, (at + k) % n, -1)[..., 0] for k in (-1, 0, 1))
-    bend, slope = below - 2 * top + above, (above - below) / 2
-    # a line whose ratios do not bring it back to its start has no neighbour across the ends
+    top = np.take_along_axis(values, at, -1)[..., 0]
+    if n <= 2 * REACH:
+        return top
+    near = np.take_along_axis(values, (at + _OFFSETS) % n, -1) - top[..., None]
+    below, above = near[..., REACH - 1], near[..., REACH + 1]
+    bend, slope = below + above, (above - below) / 2
+    # a line whose ratios do not bring it back to its start has no neighbours across the ends
     steps = np.abs(np.diff(values, axis=-1))
     gap = np.abs(values[..., 0] - values[..., -1])
-    inside = (at[..., 0] > 0) & (at[..., 0] < n - 1) | (gap <= 3 * np.maximum(steps[..., 0], steps[..., -1]))
-    return top + np.divide(-(slope**2), 2 * bend, out=np.zeros_like(top), where=inside & (bend < 0))
+    closed = gap <= 3 * np.maximum(steps[..., 0], steps[..., -1])
+    inside = ((at[..., 0] >= REACH) & (at[..., 0] < n - REACH) | closed) & (bend < 0)
+    vertex = np.divide(-slope, bend, out=np.zeros_like(top), where=inside)
+    rise = -(slope**2) / np.where(inside, 2 * bend, 1.0)
+    refined = _vertex(near @ _TO_POWERS.T, vertex)
+    smooth = inside & (np.abs(refined - rise) <= np.abs(bend) / 8)
+    return top + np.where(smooth, refined, 0.0)
+
+
+def _vertex(powers: Array, start: Array) -> Array:
+    """Largest value of polynomials (..., degree + 1) in rising powers near ``start``, by Newton's method."""
+    place = start
+    for _ in range(5):
+        slope, bend = _value(powers, place, 1), _value(powers, place, 2)
+        step = np.divide(slope, bend, out=np.zeros_like(place), where=bend < 0)
+        place = np.clip(place - step, -1.0, 1.0)
+    return _value(powers, place, 0)
+
+
+def _value(powers: Array, place: Array, derivative: int) -> Array:
+    total = np.zeros_like(place)
+    for k in range(powers.shape[-1] - 1, derivative - 1, -1):
+        total = total * place + powers[..., k] * math.perm(k, derivative)
+    return total
 
 
 def largest(values: Array) -> Array:
