@@ -136,7 +136,7 @@ def test_phasing(run, here):
         (("-o", "turn.doc"), "--output", ".png"),
         (("--phase",), "driveline", "Shaft between two Hooke's joints"),
         (("--turns", "0"), "--turns", "--help"),
-        (("--branch", "sheel"), "branch", "did you mean"),
+        (("--branch", "sheel"), "branch", "known: Disk 2"),
     ],
 )
 def test_refusals(run, options, place, remedy):

@@ -176,14 +176,16 @@ def test_orders_and_means() -> None:
     assert -3000 < low < high < 3000
 
 
-def test_tripod_line_has_no_linear_comparison_and_says_so() -> None:
+def test_tripod_line_stands_beside_linear_theory() -> None:
     line = two_shafts().replace("HookeJoint 1", angle="12 deg")
     elements = [
         tn.TripodJoint(angle=tn.deg(12), radius=0.05, length=0.3) if e.kind == "HookeJoint" else e
         for e in line.elements
     ]
     found = tn.periodic_response(tn.Driveline(elements), SPEED)
-    assert found.outcome.ok and found.comparison is None and "tripod" in found.no_comparison
+    assert found.outcome.ok and found.comparison is not None
+    linear, true = found.comparison.linear_torque_peak_to_peak, found.comparison.torque_peak_to_peak
+    assert linear == pytest.approx(true, rel=1e-5)
     orders, amplitude = found.order_spectrum(7)
     assert amplitude[np.isclose(orders, 3)].min() > 0 and np.isclose(orders, 2).sum() == 0
 

@@ -83,7 +83,7 @@ BAD = [
     (lambda: tn.tolerance_study(LINE, {}, 1.0), "tolerances = {}: must name one parameter or more"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is no tolerance"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", 2, 1)}, 1.0), "Shaft 1.stiffness = ('range', 2"),
-    (lambda: tn.tolerance_study(LINE, {"Shaft 1.fork_offset": 0.1}, 1.0), "Shaft 1.fork_offset: is zero"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 2.fork_offset": 0.1}, 1.0), "Shaft 2.fork_offset: is zero"),
     (lambda: tn.tolerance_study(LINE, {"speed": 0.1}, 1.0), "speed: is no parameter of the line"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stifness": 0.1}, 1.0), "Shaft 1.stifness: is not a parameter"),
     (
@@ -94,7 +94,7 @@ BAD = [
         lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", -1.0, 1.0)}, 1.0),
         "Shaft 1.stiffness: would reach -1, which no line can have",
     ),
-    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 0.0), "speeds = 0.0: must be positive"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 0.0), "speeds = 0: must be positive"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 1.0, samples=10), "samples = 10: must be a whole"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1}, 1.0, confidence=2), "confidence = 2: must lie"),
 ]

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from trunnion.driveline.elements import Joint, Numbers
+from trunnion.driveline.elements import Joint
 from trunnion.driveline.quantities import ANGLE, DEGREE, RATIO, Angle, Dimensionless
 from trunnion.driveline.refusals import numbered, refuse
 from trunnion.errors import InputError
-from trunnion.laws.fourier import FourierLaw
+
+if TYPE_CHECKING:
+    from trunnion.driveline.elements import Numbers
+    from trunnion.laws.fourier import FourierLaw
 
 HIGHEST_ORDER = 100
 STEEPEST_GROWTH = 6
@@ -125,6 +127,10 @@ class RzeppaJoint(Joint):
 
     def law(self, number: Numbers) -> FourierLaw:
         """The ripple, of amplitudes as they are at the joint's angle."""
+        import numpy as np
+
+        from trunnion.laws.fourier import FourierLaw
+
         amplitudes, phases = [], []
         for i, h in enumerate(self.ripple, start=1):
             amplitude = number(f"ripple {i} amplitude")

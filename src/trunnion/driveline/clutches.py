@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Self
 
-import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from trunnion.driveline.quantities import (
@@ -23,7 +22,6 @@ from trunnion.driveline.refusals import numbered, refuse
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft, quantities
 from trunnion.errors import InputError
-from trunnion.laws import friction
 
 SLIDER_KINDS = {"friction": {"torque": TORQUE, "stiffness": STIFFNESS}}
 """Physical kinds of the numbers of a slider."""
@@ -119,6 +117,8 @@ class Clutch(PiecewiseShaft):
 
     def lost_per_cycle(self, amplitude: float | str) -> float:
         """Energy [J] that its friction takes in a cycle of the twist between ± ``amplitude`` [rad]."""
+        from trunnion.laws import friction
+
         size = _positive(amplitude, ANGLE, "amplitude")
         return sum(float(friction.lost_per_cycle(s.torque, s.stiffness, size)) for s in self.friction)
 
@@ -129,6 +129,10 @@ class Clutch(PiecewiseShaft):
         damping that takes as much energy at ``frequency`` [rad/s]. It holds at that motion about no twist only; the
         linear analyses do not know how large their motion is, so compare.
         """
+        import numpy as np
+
+        from trunnion.laws import friction
+
         size, rate = _positive(amplitude, ANGLE, "amplitude"), _positive(frequency, FREQUENCY, "frequency")
         stiffness = friction.mean_slope(np.array(self.breakpoints), np.array(self.stiffnesses), size)
         stiffness += sum(float(friction.mean_stiffness(s.torque, s.stiffness, size)) for s in self.friction)

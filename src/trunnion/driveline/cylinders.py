@@ -7,7 +7,6 @@ from math import pi
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import LENGTH, MASS, parse
 from trunnion.errors import InputError
-from trunnion.laws.slider_crank import inertia_harmonics
 
 MOST_ORDERS = 24
 
@@ -47,6 +46,8 @@ def reciprocating_mass(
         raise InputError("must be longer than the crank", key="rod_length", value=length, remedy='write "150 mm", say')
     if not 1 <= orders <= MOST_ORDERS:
         raise InputError(f"must be from 1 to {MOST_ORDERS}", key="orders", value=orders, remedy="orders=6, say")
+    from trunnion.laws.slider_crank import inertia_harmonics
+
     harmonics, mean = inertia_harmonics(r / length, orders)
     # b sin nθ = b cos(nθ − 90°)
     found = tuple(

@@ -12,10 +12,8 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import (
     BaseModel,
     BeforeValidator,
@@ -46,8 +44,17 @@ from trunnion.driveline.quantities import (
 )
 from trunnion.driveline.refusals import refuse
 from trunnion.errors import InputError, InputRemark
-from trunnion.laws import double_cardan, hooke, tripod
-from trunnion.laws.joint import JointLaw
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from trunnion.laws.joint import JointLaw
+
+    Numbers = Callable[[str], NDArray[np.float64]]
+    """The values of an element's number by its key, one or many, as they broadcast against the angle of a law."""
+else:  # the description is read without numpy
+    Numbers = Callable[[str], Any]
 
 LONGEST_NAME = 80
 LARGE_ANGLE = 45 * DEGREE
@@ -238,10 +245,6 @@ class Disk(Element):
         return disk_inertia(self.outer_diameter, self.inner_diameter, self.thickness, self.density)
 
 
-Numbers = Callable[[str], NDArray[np.float64]]
-"""The values of an element's number by its key, one or many, as they broadcast against the angle of a law."""
-
-
 class Joint(Element):
     """What all kinds of joint share: a bend angle below 90°, and a law of how they pass rotation on.
 
@@ -297,6 +300,8 @@ class HookeJoint(Joint):
 
     def law(self, number: Numbers) -> JointLaw:
         """That of one cross."""
+        from trunnion.laws import hooke
+
         return hooke.law(number("angle"))
 
 
@@ -354,6 +359,8 @@ class TripodJoint(Joint):
 
     def law(self, number: Numbers) -> JointLaw:
         """ψ = χ ± A sin 3χ, minus where the spider drives."""
+        from trunnion.laws import tripod
+
         found = tripod.law(number("angle"), number("radius") / number("length"))
         return found if self.spider == "output" else replace(found, amplitude=tuple(-a for a in found.amplitude))
 
@@ -392,6 +399,8 @@ class DoubleCardanJoint(Joint):
 
     def law(self, number: Numbers) -> JointLaw:
         """That of two unequally bent crosses without inertia between them."""
+        from trunnion.laws import double_cardan
+
         return double_cardan.law(number("angle"), number("distance_ratio"))
 
 

@@ -72,9 +72,9 @@ def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Ch
     yield Check(f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin, 0.0, angle,
                 SMALLEST, "rad", guideline=True, element=name)  # fmt: skip
     limit = allowed_angle(speed)
-    title, at = f"angle of {name}", f"at {speed / RPM:.5g} rpm of its shaft"
+    title, at = f"angle of {name}", f"at {subject.shown(speed)} of its shaft"
     if limit is None and angle > EASY:
-        because = f"{said} {at}: below 3500 rpm the acceleration judges"
+        because = f"{said} {at}: below {subject.shown(float(TABLE_SPEED[0]))} the acceleration judges"
         yield Check(title, Status.NOT_APPLICABLE, MOST, because)
         return
     limit = EASY if limit is None else limit

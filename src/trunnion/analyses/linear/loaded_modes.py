@@ -74,6 +74,8 @@ def matched(before: Complex, after: Complex) -> tuple[NDArray[np.intp], NDArray[
     """Which columns belong together, by the largest sum of MAC; vectors in coordinates scaled with √M."""
     share = np.abs(before.conj().T @ after) ** 2
     share /= np.maximum((np.abs(before) ** 2).sum(axis=0)[:, None] * (np.abs(after) ** 2).sum(axis=0), 1e-300)
+    if not share.size:  # nothing oscillates
+        return np.arange(0), np.arange(0)
     best = share.argmax(axis=1)
     if share.shape[0] <= share.shape[1] and len(set(best.tolist())) == len(best):
         return np.arange(len(best)), best  # each its own: no sum is larger

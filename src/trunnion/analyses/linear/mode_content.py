@@ -79,7 +79,8 @@ class ModeContent:
     def diverging(self) -> int | None:
         """The mode, numbered from 0, that is pushed aside without oscillating; None where that is not what grows."""
         i, j, k = int(self.forward.argmax()), int(self.backward.argmax()), int(self.still.argmax())
-        oscillating = self.forward[i] + self.backward[j] if i == j else 0.0
+        taken = (self.forward[i], self.backward[j])
+        oscillating = sum(taken) if i == j else 2 * min(taken)  # two modes swing together by as much as the lesser
         return k if self.still[k] > oscillating and self._leads(k, k) else None
 
     def _leads(self, i: int, j: int) -> bool:
