@@ -190,7 +190,8 @@ class Balance:
         h = np.arange(-self.count, self.count + 1)
         full = np.zeros((2, self.times, self.n), dtype=complex)
         full[0, h % self.times], full[1, h % self.times] = x, 1j * self.rate * h[:, None] * x
-        return np.concatenate(list((np.fft.ifft(full, axis=1) * self.times).real), axis=1)
+        # Each row goes to compiled code, so it must lie in one piece; how NumPy lays out strided parts joined varies.
+        return np.ascontiguousarray(np.concatenate(list((np.fft.ifft(full, axis=1) * self.times).real), axis=1))
 
     def sampled(self, x: Complex, torque: float) -> tuple[Array, Array, Array]:
         """Accelerations (time, n), their slopes by the states (time, n, 2n) and by the torque (time, n)."""
