@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, HookeJoint
+from trunnion.driveline.elements import Disk
 from trunnion.driveline.files import loads
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import LONGEST, InputError
 

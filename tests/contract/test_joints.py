@@ -17,7 +17,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.driveline.elements import Joint, Numbers
+from trunnion.driveline.joints import Joint, Numbers
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.quantities import Angle, Dimensionless
 from trunnion.laws.fourier import FourierLaw

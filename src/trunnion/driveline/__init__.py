@@ -6,19 +6,11 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import (
-    ConstantSpeed,
-    Disk,
-    DoubleCardanJoint,
-    Element,
-    HookeJoint,
-    IdealJoint,
-    Ratio,
-    TripodJoint,
-)
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
+from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm

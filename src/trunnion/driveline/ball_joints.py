@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from trunnion.driveline.elements import Joint
+from trunnion.driveline.joints import Joint
 from trunnion.driveline.quantities import ANGLE, DEGREE, RATIO, Angle, Dimensionless
 from trunnion.driveline.refusals import numbered, refuse
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.driveline.elements import Numbers
+    from trunnion.driveline.joints import Numbers
     from trunnion.laws.fourier import FourierLaw
 
 HIGHEST_ORDER = 100

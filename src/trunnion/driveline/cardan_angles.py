@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, Kind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError

@@ -10,8 +10,9 @@ from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, SerializeAsAny, ValidationError, field_validator, model_validator
 
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint, Name, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Name, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of, wrong_limits
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import Dimensionless, Frequency

@@ -10,7 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, DoubleCardanJoint
+from trunnion.driveline.elements import ConstantSpeed, Disk
+from trunnion.driveline.joints import DoubleCardanJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
 

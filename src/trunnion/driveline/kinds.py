@@ -4,17 +4,9 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.clutches import Clutch
-from trunnion.driveline.elements import (
-    ConstantSpeed,
-    Disk,
-    DoubleCardanJoint,
-    Element,
-    HookeJoint,
-    IdealJoint,
-    Ratio,
-    TripodJoint,
-)
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 

@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, HookeJoint
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.quantities import ANGLE, DEGREE, LENGTH, Kind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Joint, Ratio
+from trunnion.driveline.elements import Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.equations.loads import mean_load, static_torque, station_loads

@@ -15,8 +15,9 @@ from enum import IntEnum
 from fractions import Fraction
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Joint, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError

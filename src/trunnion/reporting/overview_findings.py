@@ -12,7 +12,7 @@ from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import LARGE_ANGLE, HookeJoint, Joint
+from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent

@@ -18,15 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import (
-    ConstantSpeed,
-    Disk,
-    DoubleCardanJoint,
-    HookeJoint,
-    Joint,
-    Ratio,
-)
+from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
 from trunnion.driveline.parameters import pack
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Spring

@@ -9,7 +9,8 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, HookeJoint
+from trunnion.driveline.elements import ConstantSpeed, Disk
+from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.driveline.shafts import Shaft
 
