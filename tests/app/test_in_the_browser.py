@@ -38,6 +38,12 @@ def test_a_link_is_restored_in_a_fresh_browser(look: Look, browser: object, serv
     other = browser.new_context().new_page()  # type: ignore[attr-defined]
     other.goto(look.page.url)
     other.get_by_text(sentence, exact=True).wait_for(timeout=180_000)
+    assert other.locator("[data-verdict]").inner_text() == sentence
+    named = {"name": "Driveline", "exact": True}
+    other.get_by_role("button", **named).or_(other.get_by_role("radio", **named)).first.click()
+    field = other.get_by_label("angle of HookeJoint 1", exact=True)
+    field.wait_for()
+    assert field.input_value() == "7.25 deg"
     other.context.close()
 
 
@@ -52,3 +58,4 @@ def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
     field.set_input_files({"name": "good.toml", "mimeType": "text/plain", "buffer": good})
     look.page.wait_for_function("() => document.location.search.length > 0", timeout=180_000)
     look.page.get_by_text("3.5").first.wait_for()
+    assert look.page.get_by_label("angle of HookeJoint 1", exact=True).input_value() == "3.5 deg"

@@ -19,7 +19,7 @@ def nothing(result: Any) -> None:
     """Nothing: the computation itself was wanted."""
 
 
-def text(result: Any, **options: Any) -> str:
+def text(result: Any) -> str:
     """The result as it prints."""
     return str(result)
 

@@ -251,21 +251,40 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
     return axes
 
 
-def draw_response(response: Any, axes: Axes | None = None, **options: Any) -> Axes:
+def draw_response(
+    response: Any,
+    axes: Axes | None = None,
+    *,
+    length: str = "",
+    unit: str = "rad/s",
+    marks: bool = True,
+    jumps: bool = True,
+    top: float | None = None,
+) -> Axes:
     """One method's curve: ``draw_responses`` of it alone."""
-    return draw_responses({response.method: response}, axes, **options)
+    alone = {response.method: response}
+    return draw_responses(alone, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
-def draw_compared(comparison: ResponseComparison, axes: Axes | None = None, **options: Any) -> Axes:
+def draw_compared(
+    comparison: ResponseComparison,
+    axes: Axes | None = None,
+    *,
+    length: str = "",
+    unit: str = "rad/s",
+    marks: bool = True,
+    jumps: bool = True,
+    top: float | None = None,
+) -> Axes:
     """Every method's curve: ``draw_responses`` of all."""
-    return draw_responses(comparison.responses, axes, **options)
+    return draw_responses(comparison.responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
-def draw_sweep(sweep: Sweep, axes: Axes | None = None, **options: Any) -> Axes:
+def draw_sweep(sweep: Sweep, axes: Axes | None = None, *, length: str = "", unit: str = "rad/s") -> Axes:
     """``draw_sweeps`` of one."""
-    return draw_sweeps([sweep], axes, **options)
+    return draw_sweeps([sweep], axes, length=length, unit=unit)
 
 
-def draw_line_sweep(sweep: LineSweep, axes: Axes | None = None, **options: Any) -> Axes:
+def draw_line_sweep(sweep: LineSweep, axes: Axes | None = None, *, spring: str = "", unit: str = "rad/s") -> Axes:
     """``draw_line_sweeps`` of one."""
-    return draw_line_sweeps([sweep], axes, **options)
+    return draw_line_sweeps([sweep], axes, spring=spring, unit=unit)
