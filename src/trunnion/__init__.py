@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.speed_sweep import speed_sweep, sweep_speeds
     from trunnion.analyses.linear.stability import stability
     from trunnion.analyses.motion.exact_motion import exact_motion
+    from trunnion.analyses.motion.linearity_check import linearity_check
     from trunnion.analyses.motion.order_map import order_map
     from trunnion.analyses.motion.run_up import run_up
     from trunnion.analyses.motion.safe_accelerations import safe_accelerations
@@ -196,6 +197,7 @@ _HOME = {
     "simulate": "trunnion.analyses.motion.simulate",
     "SpeedProfile": "trunnion.equations.speed_profile",
     "periodic_response": "trunnion.analyses.orbits.periodic_response",
+    "linearity_check": "trunnion.analyses.motion.linearity_check",
     "periodic_branch": "trunnion.analyses.orbits.periodic_branch",
     "run_up": "trunnion.analyses.motion.run_up",
     "safe_accelerations": "trunnion.analyses.motion.safe_accelerations",

@@ -57,6 +57,20 @@ def test_periodic_response(run, here):
     assert names == {"line-periodic-response.png", "line-periodic-response.nc"}
 
 
+def test_linearity_check(run, here):
+    call = ("linearity-check", "line.toml", "--load-case", "climb", "--speed", "900 rpm", "--acceleration", 40)
+    result = run(*call, "-o", "a.png", "-o", "a.csv")
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith("linear and nonlinear response at 900 rpm")
+    assert "Linear theory holds at 900 rpm" in result.stdout and "Passed at 40 rad/s² from 720 rpm" in result.stdout
+    assert (here / "a.png").is_file() and "linear_torque" in (here / "a.csv").read_text(encoding="utf-8")
+    data = json.loads(run(*call[:6], "--json").stdout)
+    expected = tn.linearity_check(tn.load("line.toml"), tn.rpm(900), "climb")
+    assert data["holds"] == 1 and data["relative_difference"] == pytest.approx(expected.relative_difference.tolist())
+    refused = run("linearity-check", "line.toml", "--allowed", 2)
+    assert refused.exit_code == 2 and refused.stderr.count("\n") == 1 and "between 0 and 1" in refused.stderr
+
+
 def test_run_up(run, here):
     call = ("run-up", "line.toml", "--from", "300 rpm", "--to", "600 rpm", "--acceleration", "200 rpm")
     result = run(*call, "--limit", "700 N*m")

@@ -240,6 +240,17 @@ PYTHON = [
         "driveline: starts free and is excited in time",
         "orders instead of frequencies",
     ),
+    (
+        lambda: tn.linearity_check(free(drive_share=1), 30.0, allowed=1.5),
+        "allowed = 1.5: must be between 0 and 1",
+        "0.05 is 5 %",
+    ),
+    (
+        lambda: tn.linearity_check(free(drive_share=1), 30.0, "hill"),
+        "load_case = 'hill': is not a load case",
+        "there are none",
+    ),
+    (lambda: tn.linearity_check(free(drive_share=1)), "operation.speed: is not given", "pass a speed"),
     # quantities
     (
         lambda: HookeJoint(angle="12 kg"),

@@ -49,6 +49,7 @@ RUN = {
     "periodic_branch": lambda line: tn.periodic_branch(line, "speed", *RANGE, longest_step=0.5),
     "harmonic_balance": lambda line: tn.harmonic_balance(line, "speed", *RANGE, longest_step=0.5),
     "frequency_response": lambda line: tn.frequency_response(line, *RANGE, longest_step=0.5),
+    "linearity_check": lambda line: tn.linearity_check(line, SPEED),
     "run_up": lambda line: tn.run_up(line, 100, 110, acceleration=200, steady=2),
     "safe_accelerations": lambda line: tn.safe_accelerations(
         line, 100, 110, limit=1000.0, accelerations=(100, 200), points=2
@@ -85,6 +86,7 @@ QUICK = {
     "periodic_branch": ("viscous load", "free start"),
     "harmonic_balance": ("excitation by order", "free start"),
     "frequency_response": ("load torque", "free start"),
+    "linearity_check": ("load torque", "dry friction", "prescribed far end"),
     "run_up": ("load torque",),
     "safe_accelerations": ("load torque",),
     "lyapunov_spectrum": ("load torque", "prescribed far end"),

@@ -26,6 +26,7 @@ QUESTIONS = {
     "speed_sweep": lambda line: tn.speed_sweep(line, [100.0, tn.rpm(1500)]),
     "stable_limit": lambda line: tn.stable_limit(line, "HookeJoint 1.angle", [150.0, tn.rpm(1500)], scan=8, high=0.5),
     "periodic_response": lambda line: tn.periodic_response(line, tn.rpm(1500), compare=False),
+    "linearity_check": lambda line: tn.linearity_check(line, tn.rpm(1500)),
     "run_up": lambda line: tn.run_up(line, tn.rpm(1400), tn.rpm(1500), acceleration=200, steady=0),
 }
 

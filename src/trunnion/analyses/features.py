@@ -258,6 +258,7 @@ TABLE: dict[str, Row] = {
     "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "simulate": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "linearity_check": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "run_up": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
     "safe_accelerations": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
     "lyapunov_spectrum": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),

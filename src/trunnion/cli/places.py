@@ -13,7 +13,7 @@ from trunnion.errors import InputError
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
 RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s", "point": ""}
-"""Axes that may be the rows of a table, with their units."""
+"""Axes that are the rows of a table, with their units; where a result has none, those of its first variable are."""
 
 
 def check_places(to: list[Path] | None, endings: tuple[str, ...] = ()) -> None:
@@ -66,9 +66,9 @@ def _write_table(path: Path, data: Any) -> None:
     """What runs along the first dimension of a dataset, a column per element, order or state."""
     import csv
 
-    axis = next(d for d in RUNS_ALONG if d in data.sizes)
+    axis = next((d for d in RUNS_ALONG if d in data.sizes), None) or next(v.dims[0] for v in data.values() if v.dims)
     there = axis in data.coords
-    unit = data[axis].attrs.get("units", RUNS_ALONG[axis]) if there else ""
+    unit = data[axis].attrs.get("units", RUNS_ALONG.get(axis, "")) if there else ""
     columns = {f"{axis} [{unit}]" if unit else axis: data[axis].values if there else range(data.sizes[axis])}
     for name, part in data.data_vars.items():
         if part.dims and part.dims[0] == axis:

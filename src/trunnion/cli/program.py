@@ -24,6 +24,7 @@ from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import minimum_damping, stable_windows, tongues
+from trunnion.cli.linearity import linearity_check
 from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
@@ -189,6 +190,7 @@ app.command("certify-stability")(certify_stability)
 app.command("tolerance-study")(tolerance_study)
 app.command("simulate")(simulate)
 app.command("periodic-response")(periodic_response)
+app.command("linearity-check")(linearity_check)
 app.command("run-up")(run_up)
 app.command("frequency-response")(frequency_response)
 app.command("sweep")(sweep)

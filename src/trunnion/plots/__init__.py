@@ -19,6 +19,7 @@ DRAWINGS = {
     "LineSimulation.plot_order_map": "trunnion.plots.order_map:draw",
     "RunUp.plot": "trunnion.plots.run_up:draw",
     "PeriodicOrbit.plot": "trunnion.plots.motion:draw_orbit",
+    "LinearityCheck.plot": "trunnion.plots.linearity:draw",
     "PeriodicResponse.plot": "trunnion.plots.motion:draw_period",
     "PeriodicResponse.plot_orders": "trunnion.plots.motion:draw_orders",
     "PeriodicBranch.plot": "trunnion.plots.response_curve:draw",

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.analyses.motion.simulation import simulate_system
 from trunnion.analyses.orbits.free_orbit import (
     kept_speed_orbit,
@@ -23,6 +22,7 @@ from trunnion.analyses.orbits.free_orbit import (
     require_closing,
     torque_driven_orbit,
 )
+from trunnion.analyses.orbits.linear_comparison import LinearComparison, compared
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit, speed_in_words
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
@@ -34,7 +34,7 @@ from trunnion.equations.loads import given_shares
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
-from trunnion.numerics.curves import extremes, fourier
+from trunnion.numerics.curves import Extremes, extremes, fourier
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -51,37 +51,6 @@ Complex = NDArray[np.complex128]
 FEWEST_SAMPLES = 2048
 """Of the torque over a period, as it is shown; with more than half as many steps it has more."""
 ORDERS = 12
-
-
-@dataclass(frozen=True)
-class LinearComparison:
-    """The same line linearised: about zero twist and about the twist of its static load.
-
-    growth_rate [1/s] of the true motion and of the two linearisations; torque_peak_to_peak (shaft,) [N m] of the
-    true motion and of the linear steady response about static twist.
-    """
-
-    growth_rate: float
-    zero_twist: Stability
-    static_twist: Stability
-    torque_peak_to_peak: Array
-    linear_torque_peak_to_peak: Array
-    shafts: tuple[str, ...]
-
-    @property
-    def agree(self) -> bool:
-        """Whether all three say the same about stability."""
-        signs = {np.sign(round(v, 9)) for v in (self.growth_rate, self.zero_twist.growth_rate)}
-        return len(signs | {np.sign(round(self.static_twist.growth_rate, 9))}) == 1
-
-    def __str__(self) -> str:
-        worst = int(np.argmax(self.torque_peak_to_peak))
-        return (
-            f"growth rate {self.growth_rate:+.6g} 1/s here, {self.zero_twist.growth_rate:+.6g} linearised about zero "
-            f"twist, {self.static_twist.growth_rate:+.6g} about the static twist; torque of {self.shafts[worst]} "
-            f"{self.torque_peak_to_peak[worst]:.5g} N m peak to peak here, "
-            f"{self.linear_torque_peak_to_peak[worst]:.5g} by linear theory"
-        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -171,15 +140,25 @@ class PeriodicResponse(Result):
         return self.motion.torque
 
     @cached_property
+    def _torque_extremes(self) -> Extremes:
+        return extremes(self._torque_at, self.orbit.trajectory.time_of_state)
+
+    @property
     def torque_peak_to_peak(self) -> Array:
         """Largest minus smallest torque of every shaft [N m], found on the dense output to its own error (about ten
         times the tolerance); NaN where no motion was found."""
-        if not self.outcome.ok:
-            return np.full(len(self.shafts), np.nan)
-        return extremes(self._torque_at, self.orbit.trajectory.time_of_state).span
+        return self._torque_extremes.span if self.outcome.ok else np.full(len(self.shafts), np.nan)
+
+    @property
+    def peak_torque(self) -> Array:
+        """Largest |torque| of every shaft [N m] over the period; NaN where no motion was found."""
+        return self._torque_extremes.largest if self.outcome.ok else np.full(len(self.shafts), np.nan)
 
     def _torque_at(self, times: Array) -> Array:
         return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times)).torque
+
+    def _input_at(self, times: Array) -> Array:
+        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times)).rotation[:, :1]
 
     @property
     def torque_amplitude(self) -> Array:
@@ -189,24 +168,37 @@ class PeriodicResponse(Result):
     @cached_property
     def torque_mean(self) -> Array:
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
-        return self.order_spectrum(0)[1][0] * np.sign(self.torque.mean(axis=0))
+        return np.asarray(self.order_torque(0)[1][0].real)
 
     @cached_property
     def contacts(self) -> tuple[SpringContact, ...]:
         """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
         return spring_contacts(self)
 
-    def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
-        """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]; order 0 is the mean.
+    def order_torque(self, highest: float = ORDERS) -> tuple[Array, Complex]:
+        """Orders (k,) in cycles per turn of the input, and complex torques (k, shaft) [N m]; order 0 is the mean.
 
-        Fourier integrals over the dense output, so that what is above ``highest`` does not appear below it; their
-        error is that of the motion. NaN where no motion was found.
+        A torque is Re[Y e^{i·order·Ωt}], its phase that of a cosine at zero rotation of the input, as in
+        ``order_response``; of a line that starts free, where the input is without vibration. Fourier integrals over
+        the dense output, so that what is above ``highest`` does not appear below it; their error is that of the
+        motion. NaN where no motion was found.
         """
         count = int(np.floor(highest * self.turns + 1e-9)) + 1
         orders = np.arange(count) / self.turns
         if not self.outcome.ok:
-            return orders, np.full((count, len(self.shafts)), np.nan)
-        return orders, np.abs(fourier(self._torque_at, self.orbit.trajectory.time_of_state, count - 1))
+            return orders, np.full((count, len(self.shafts)), np.nan, dtype=complex)
+        times = self.orbit.trajectory.time_of_state
+        found = fourier(self._torque_at, times, count - 1)
+        begun = self.speed * times[0]
+        if self.line.assembly.topology.free:  # a shift of time is no change there: count from where the input turns
+            begun += float(fourier(self._input_at, times, 0)[0, 0].real)
+        return orders, np.asarray(found * np.exp(-1j * orders * begun)[:, None])
+
+    def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
+        """Orders (k,) in cycles per turn of the input, and torque amplitudes (k, shaft) [N m]: the sizes of
+        ``order_torque``."""
+        orders, torque = self.order_torque(highest)
+        return orders, np.abs(torque)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -226,6 +218,7 @@ class PeriodicResponse(Result):
         yield over("time shaft", "twist", self.twist, "rad")
         yield over("time shaft", "torque", self.torque, "N*m")
         yield over("shaft", "torque_peak_to_peak", self.torque_peak_to_peak, "N*m")
+        yield over("shaft", "peak_torque", self.peak_torque, "N*m")
         yield over("shaft", "torque_mean", self.torque_mean, "N*m")
         yield over("order shaft", "order_amplitude", amplitude, "N*m")
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
@@ -321,7 +314,10 @@ def periodic_response(
     if not compare or not orbit.outcome.ok:
         return response
     try:
-        comparison, reason = _compare(response, description), ""
+        comparison, reason = (
+            compared(response.speed, description, response.growth_rate, response.torque_peak_to_peak, response.shafts),
+            "",
+        )
     except (InputError, ComputationError) as error:
         comparison, reason = None, f"does not apply ({error})"
     return PeriodicResponse(prepared, prepared.speed, orbit, comparison, reason)
@@ -399,19 +395,6 @@ def require_forced(line: LineSystem) -> None:
             key="excitation",
             remedy="give orders, or a frequency in a simple ratio to the speed; or simulate it",
         )
-
-
-def _compare(response: PeriodicResponse, line: Driveline) -> LinearComparison:
-    static = stability(line, response.speed)
-    assert static.response is not None
-    return LinearComparison(
-        response.growth_rate,
-        stability(line, response.speed, statically_twisted=False),
-        static,
-        response.torque_peak_to_peak,
-        2 * static.response.torque_amplitude,
-        response.shafts,
-    )
 
 
 def _findings(result: PeriodicResponse, unit: str) -> list[Finding]:
