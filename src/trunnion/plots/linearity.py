@@ -48,9 +48,8 @@ def draw(
     axes.set_ylabel(f"torque of {check.springs[s]} [N·m]", fontsize=TEXT, color=INK)
     words = "linear theory holds" if check.holds else "linear theory misleads"
     at = show_speed(check.speed, unit or check.unit)
-    axes.set_title(
-        f"{at}: {words}, {100 * check.relative_difference[s]:.2g} % of the largest order", fontsize=TEXT, loc="left"
-    )
+    apart = f"apart by {100 * check.relative_difference[s]:.2g} % of the largest order"
+    axes.set_title(f"{at}: {words}, {apart}", fontsize=TEXT, loc="left")
     plain(axes)
     axes.legend(fontsize=SMALL, frameon=False)
     return axes
