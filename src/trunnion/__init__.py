@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.perturbation.averaging import averaging
     from trunnion.analyses.perturbation.describing_function import DescribingFunction
     from trunnion.analyses.perturbation.multiple_scales import multiple_scales
+    from trunnion.analyses.sensitivity.sensitivity import sensitivity
     from trunnion.analyses.tolerance.certify import certify_stability
     from trunnion.analyses.tolerance.study import tolerance_study
     from trunnion.analyses.tongues.tongues import tongues
@@ -168,6 +169,7 @@ _HOME = {
     "stability_chart": "trunnion.analyses.charts.stability_chart",
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.charts.stable_limit",
+    "sensitivity": "trunnion.analyses.sensitivity.sensitivity",
     "tolerance_study": "trunnion.analyses.tolerance.study",
     "certify_stability": "trunnion.analyses.tolerance.certify",
     "tongues": "trunnion.analyses.tongues.tongues",

@@ -281,6 +281,7 @@ NOT_ANALYSES = {
     "assess": "judges by the analyses above, and prints what each of them says",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
+    "sensitivity": "derivatives of what the analyses above compute, with what each of them leaves out",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",

@@ -57,8 +57,8 @@ def tongues(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     assembly = assemble(line)
-    across, _ = _range(x, assembly, unit, "--x")
-    up, rows = _range(y, assembly, unit, "--y")
+    across, _ = read_box_range(x, assembly, unit, "--x")
+    up, rows = read_box_range(y, assembly, unit, "--y")
     check_places(to)
     with output.progress("tongues") as advance:
         found = find(assembly, across, up, speed=read_speed(speed, unit), rows=rows, progress=advance)
@@ -71,7 +71,7 @@ def tongues(
     print_result(_tongues_text(found, unit), written)
 
 
-def _range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[tuple[object, ...], int]:
+def read_box_range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[tuple[object, ...], int]:
     """``PARAMETER:LOW:HIGH[:ROWS]`` as a range and a number of rows."""
     parts = text.split(":")
     if parts[-1].strip() == "log":
@@ -164,7 +164,7 @@ def stable_windows(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     assembly = assemble(line)
-    (label, low, high), rows = _range(parameter, assembly, unit, "--parameter")
+    (label, low, high), rows = read_box_range(parameter, assembly, unit, "--parameter")
     assert isinstance(label, str) and isinstance(low, float) and isinstance(high, float)
     span = read_speed_range(speeds, assembly, unit)
     check_places(to)

@@ -12,7 +12,7 @@ from trunnion.errors import InputError
 
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
-RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s", "point": ""}
+RUNS_ALONG = {"time": "s", "turn": "", "speed": "rad/s", "point": "", "quantity": ""}
 """Axes that are the rows of a table, with their units; where a result has none, those of its first variable are."""
 
 

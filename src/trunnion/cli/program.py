@@ -29,6 +29,7 @@ from trunnion.cli.motion import periodic_response, run_up, simulate
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
+from trunnion.cli.sensitivity import sensitivity
 from trunnion.cli.tolerance import certify_stability, tolerance_study
 from trunnion.errors import InputRemark, TrunnionError, short
 
@@ -186,6 +187,7 @@ app.command("stable-limit")(stable_limit)
 app.command("tongues")(tongues)
 app.command("stable-windows")(stable_windows)
 app.command("minimum-damping")(minimum_damping)
+app.command("sensitivity")(sensitivity)
 app.command("certify-stability")(certify_stability)
 app.command("tolerance-study")(tolerance_study)
 app.command("simulate")(simulate)

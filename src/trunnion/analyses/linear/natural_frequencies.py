@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+NO_OSCILLATION = 1e-3
+"""Share of the lowest elastic frequency below which an eigenvalue does not oscillate."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,11 +119,21 @@ def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Arra
     ratio = np.divide(modal * frequency + lost, 2 * frequency**2, out=np.zeros(n), where=frequency > 0)
     if np.any(np.abs(ratio) >= 0.9):
         return ratio
-    system = np.block([[np.zeros((n, n)), np.eye(n)], [-(stiffness + 1j * loss), -damping]])
-    values = np.linalg.eigvals(system)
-    above = values[values.imag > 1e-9 * frequency.max()]
+    values, _ = damped_modes(damping, stiffness + 1j * loss, float(frequency[frequency > 0].min(initial=np.inf)))
     oscillating = frequency > 0
-    if len(above) == oscillating.sum():
-        above = above[np.argsort(np.abs(above))]
-        ratio[oscillating] = -above.real / np.abs(above)
+    if len(values) == oscillating.sum():
+        ratio[oscillating] = -values.real / np.abs(values)
     return ratio
+
+
+def damped_modes(damping: Array, stiffness: Complex, lowest: float) -> tuple[Complex, Complex]:
+    """Eigenvalues with positive imaginary part of λ² + λC + K, by modulus, and their shapes (n, values).
+
+    C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
+    own size, is no oscillation: far below ``lowest``, the lowest elastic frequency [rad/s].
+    """
+    n = len(damping)
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
+    above = np.flatnonzero(values.imag > NO_OSCILLATION * lowest)
+    above = above[np.argsort(np.abs(values[above]))]
+    return values[above], vectors[:n, above]

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
+from trunnion.analyses.linear.carried_modes import carried_mode, judged_multipliers, propagated
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
 from trunnion.analyses.linear.mode_content import (
     FARTHEST,
-    ModeMotion,
-    floquet_pair,
     mode_content,
     named_resonance,
 )
@@ -36,8 +35,8 @@ from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
-from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
-from trunnion.numerics.spectrum import multipliers, spectral_radius, without
+from trunnion.numerics.chain.dense_monodromy import Propagation
+from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.declared import Held, Result, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
@@ -46,9 +45,6 @@ from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
-SAMPLES, SAMPLES_PER_CYCLE = 128, 6
-"""Of a Floquet mode over the period, at least; per cycle of the highest mode."""
 NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1
@@ -192,7 +188,7 @@ def stability(
         if speed is not None:
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
-        run = _propagate(line, tolerance)
+        run = propagated(line, tolerance)
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, np.zeros((2 * line.size, 0)))
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
@@ -201,7 +197,7 @@ def stability(
         said = without_excitation(assembly, errors_counted=True)
         return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
-    run = _propagate(system, tolerance)
+    run = propagated(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     topo = assembly.topology
     response = linear_response(assembly, system.rate, statically_twisted=statically_twisted)
@@ -250,40 +246,6 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
     )
 
 
-def _propagate(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
-    def arrays(tau: Array) -> tuple[Array, Array, Array, Array]:
-        m = system.coefficients(tau)
-        return m.mass, m.damping, m.stiffness, m.forcing
-
-    # A step that leaps over cycles of the coefficients could agree with its half by accident.
-    cycles = system.fastest * system.period / (2 * np.pi)
-    least = max(TIMES_PER_PERIOD // 2, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1)))))
-    return propagate(arrays, system.period, system.size, tolerance, least)
-
-
-def _mode_motion(system: PeriodicLinearSystem, run: Propagation, multiplier: complex) -> ModeMotion | None:
-    """How the Floquet mode of a multiplier and its adjoint move over the period; None for a double multiplier."""
-    pair = floquet_pair(run.scaled_monodromy, multiplier)
-    if pair is None:
-        return None
-    start, last = pair[0] * run.scale, pair[1] / run.scale
-    at_rest = run.states(np.zeros(2 * system.size))
-    parts = [run.states(np.ascontiguousarray(part)) - at_rest for part in (start.real, start.imag)]
-    states = (parts[0] + 1j * parts[1])[:-1]
-    mean = system.coefficients(run.tau[: -1 : max(1, len(states) // 64)])
-    # Enough for the highest mode: steps are a power of two, at least as many.
-    cycles = max((*system.frequencies, system.fastest)) * system.period / (2 * np.pi)
-    count = min(len(states), max(SAMPLES, 1 << int(np.ceil(np.log2(max(SAMPLES_PER_CYCLE * cycles, 1))))))
-    return ModeMotion(
-        states[:: len(states) // count],
-        run.adjoint(last, count)[:-1],
-        np.log(complex(multiplier)) / system.period,
-        system.period,
-        mean.mass.mean(0),
-        mean.stiffness.mean(0),
-    )
-
-
 def _judge(
     system: PeriodicLinearSystem,
     run: Propagation,
@@ -298,9 +260,7 @@ def _judge(
     order = np.argsort(-np.abs(values))
     values, bound = values[order], bound[order]
     modes = np.linalg.eig(matrix)[1][:, order] * run.scale[:, None]
-    judged, off = values, bound
-    if aside.shape[1]:
-        judged, off = multipliers(without(matrix, aside / run.scale[:, None])[0], np.array(run.error))
+    judged, off = judged_multipliers(run, aside) if aside.shape[1] else (values, bound)
     # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
     radius, error = spectral_radius(judged, off) if len(judged) else (np.array(1.0), np.array(0.0))
     undamped = abs(run.damping_trace) < 1e-13 * system.size
@@ -310,7 +270,7 @@ def _judge(
         # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
         farthest = FARTHEST if verdict is Verdict.UNSTABLE else NEAR
         critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
-        motion = _mode_motion(system, run, complex(values[critical]))
+        motion = carried_mode(system, run, complex(values[critical]))
         if motion is not None:
             named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
     if named is not None:

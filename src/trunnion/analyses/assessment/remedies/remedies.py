@@ -81,14 +81,13 @@ margin 1.52 %
         trials = Trials(subject, base, design, targets)
         found = Search(trials, goals, most, progress).run()
         lines += trials.count
-    shape = (len(targets), len(design.variables))
     return Remedies(
         assessment=judged,
         checks=tuple(goals),
         variables=design.variables,
-        sensitivity=np.array([[s.slope for s in row] for row in slopes]).reshape(shape),
-        sensitivity_error=np.array([[s.error for s in row] for row in slopes]).reshape(shape),
-        sensitivity_speed=np.array([row[0].speed if row else np.nan for row in slopes]),
+        sensitivity=slopes.slope,
+        sensitivity_error=slopes.error,
+        sensitivity_speed=slopes.speed,
         remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
         lines=lines,
     )

@@ -10,7 +10,7 @@ from trunnion.analyses.assessment.check import Check, Status, worst
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.assessment.remedies.variables import Design, DesignVariable, Scale
 from trunnion.analyses.assessment.result import verdict_of
-from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.assessment.subject import Subject, cases_of
 from trunnion.driveline.driveline import Driveline
 
 QUICK_POINTS = 41
@@ -90,9 +90,3 @@ def _broken(before: Check | None, after: Check) -> bool:
             return True
         return after.margin < before.margin - WORSE * (1 + abs(before.margin))
     return after.status is Status.NOT_JUDGED and before is not None and before.status is Status.SATISFIED
-
-
-def at_speed(subject: Subject, case: Case, speed: float) -> Subject:
-    """The same question at one speed, of one load case."""
-    one = replace(case, low=speed, high=speed, given=(speed,))
-    return replace(subject, cases=(one,))

@@ -134,7 +134,7 @@ class Design:
         sources = sum(label.endswith("amplitude") for label in self.packed.labels) + len(joints)
         for column, (path, unit) in enumerate(zip(self.packed.labels, self.packed.units, strict=True)):
             value, key = float(self.packed.values[column]), path.rpartition(".")[2]
-            scale = _scale(key)
+            scale = scale_of(key)
             if scale is Scale.FACTOR and not value > 0:
                 continue
             if scale is Scale.BEND and path not in angles:
@@ -145,7 +145,7 @@ class Design:
                 yield DesignVariable(path, column, value, unit, scale)
 
 
-def _scale(key: str) -> Scale | None:
+def scale_of(key: str) -> Scale | None:
     """How changes of a number are measured; None for what no designer turns: loads, speeds, amplitudes."""
     if key in (*_WORDS, *_NAMED) or (key.startswith("stiffness ") and key.removeprefix("stiffness ").isdigit()):
         return Scale.FACTOR

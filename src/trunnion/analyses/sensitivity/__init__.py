@@ -1,0 +1,1 @@
+"""How what a line does follows the numbers of its description."""

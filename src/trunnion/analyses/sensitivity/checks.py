@@ -1,0 +1,162 @@
+"""How the value of a check follows parameters, at the speed where it binds.
+
+A largest value over speed changes as its value at that speed does, to first order (the peak's own shift counts for
+nothing): so the speed is made exact first, then the line is moved there along every parameter. Growth rates are
+differentiated exactly through their Floquet modes, where the line has a base motion that is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.assess import by_case, of_line
+from trunnion.analyses.assessment.check import Check
+from trunnion.analyses.assessment.parametric import NAME as GROWTH
+from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.sensitivity.differences import slope
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
+from trunnion.analyses.sensitivity.growth import radius_slope
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.steady_base import bent
+from trunnion.errors import ComputationError, InputError
+
+Array = NDArray[np.float64]
+ROUNDS, AROUND = 4, 17
+"""Rounds of so many speeds each that close in on a peak."""
+
+
+@dataclass(frozen=True)
+class CheckSlopes:
+    """Derivatives of values and margins of checks by parameters (check, 2, direction), their errors, the speed
+    (check,) [rad/s] where they were taken, value and margin there (check, 2); exact (check,): through Floquet modes,
+    not by differences; refused (check,): why a growth rate has none. NaN where a check has no value on both sides."""
+
+    slope: Array
+    error: Array
+    speed: Array
+    value: Array
+    exact: tuple[bool, ...]
+    refused: tuple[str, ...]
+
+
+def check_slopes(
+    subject: Subject,
+    near: Neighbours,
+    directions: Sequence[Direction],
+    checks: Sequence[Check],
+    progress: Callable[[float], None] | None = None,
+) -> CheckSlopes:
+    """Of every one of ``checks`` along every direction."""
+    shape = (len(checks), 2, len(directions))
+    slopes, errors = np.full(shape, np.nan), np.full(shape, np.nan)
+    speeds, here = np.full(len(checks), np.nan), np.full((len(checks), 2), np.nan)
+    exact, refused = [False] * len(checks), [""] * len(checks)
+    values = _Values(subject, near)
+    for c, check in enumerate(checks):
+        case = next((one for one in subject.cases if one.name == check.load_case), subject.cases[0])
+        speeds[c] = _peak(subject, case, check)
+        if check.name == GROWTH and not (case.assembly.topology.free and bent(case.assembly)):
+            slopes[c, 0], errors[c, 0], refused[c] = _growth(case, float(speeds[c]), directions)
+            here[c], exact[c] = (check.value, check.margin), True
+        else:
+            at = partial(values.at, case, float(speeds[c]), check)
+            here[c] = values.here(case, float(speeds[c]), check)
+            for d, one in enumerate(directions):
+                found = slope(partial(at, one))
+                if found is not None:
+                    slopes[c, :, d], errors[c, :, d] = (part / one.size for part in found)
+        if progress:
+            progress((c + 1) / len(checks))
+    return CheckSlopes(slopes, errors, speeds, here, tuple(exact), tuple(refused))
+
+
+class _Values:
+    """Values and margins of checks of changed lines, every line judged once for all checks that bind at one speed."""
+
+    def __init__(self, subject: Subject, near: Neighbours) -> None:
+        self.subject, self.near = subject, near
+        self.of_line = {check.name for check in of_line(subject)}
+        self._seen: dict[tuple[str, float, str, float], dict[str, Array]] = {}
+
+    def here(self, case: Case, speed: float, check: Check) -> Array:
+        """Of the line as it is."""
+        return self._known(case, speed, check, ("", 0.0), self.subject.line)
+
+    def at(self, case: Case, speed: float, check: Check, one: Direction, share: float) -> Array | None:
+        """Of the line moved along a direction; None where it is refused."""
+        if not share:
+            return self.here(case, speed, check)
+        line = self.near.line(one, share)
+        return None if line is None else self._known(case, speed, check, (one.label, share), line)
+
+    def _known(self, case: Case, speed: float, check: Check, moved: tuple[str, float], line: Driveline) -> Array:
+        whole = check.name in self.of_line
+        key = ("", 0.0, *moved) if whole else (case.name, speed, *moved)
+        if key not in self._seen or check.name not in self._seen[key]:
+            subject, own = _of(self.subject, case, line)
+            found = of_line(subject) if whole else _at_speed(subject, own, check, speed)
+            read = {one.name: np.array([one.value, one.margin]) for one in found}
+            self._seen[key] = {check.name: np.full(2, np.nan)} | self._seen.get(key, {}) | read
+        return self._seen[key][check.name]
+
+
+def _growth(case: Case, speed: float, directions: Sequence[Direction]) -> tuple[Array, Array, str]:
+    near = Neighbourhood(case.assembly)
+    try:
+        found = radius_slope(near, near.row(speed), [_under_load(case, one) for one in directions])
+    except (InputError, ComputationError) as error:
+        none = np.full(len(directions), np.nan)
+        return none, none, str(error).splitlines()[0]
+    rate = speed / found.period
+    return found.slope * rate, found.error * rate, found.refused
+
+
+def _under_load(case: Case, one: Direction) -> Direction:
+    """A direction that leaves alone what the load case itself states."""
+    operation, labels = case.assembly.line.operation, case.assembly.packed.labels
+    if not case.name or operation is None:
+        return one
+    stated = {f"{disk}.load_torque" for disk in operation.load_case(case.name).loads}
+    return one.but(column for column, label in enumerate(labels) if label in stated)
+
+
+def _of(subject: Subject, case: Case, line: Driveline) -> tuple[Subject, Case]:
+    changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high))
+    return changed, next(c for c in changed.cases if c.name == case.name)
+
+
+def _at_speed(subject: Subject, case: Case, check: Check, speed: float) -> Iterator[Check]:
+    """The checks of one load case at one speed; none where there is no speed."""
+    if np.isfinite(speed):
+        one = at_speed(subject, case, speed)
+        yield from by_case(one, one.cases[0], growth=check.name == GROWTH)
+
+
+def at_speed(subject: Subject, case: Case, speed: float) -> Subject:
+    """The same question at one speed, of one load case."""
+    one = replace(case, low=speed, high=speed, given=(speed,))
+    return replace(subject, cases=(one,))
+
+
+def _peak(subject: Subject, case: Case, check: Check) -> float:
+    """The speed where a check binds, made exact where that is a peak between two speeds of the grid."""
+    grid, speed = case.speeds, check.speed
+    if check.name == GROWTH or not np.any(grid == speed) or not np.isfinite(check.value):
+        return speed
+    at = int(np.argmax(grid == speed))
+    low, high = grid[max(at - 1, 0)], grid[min(at + 1, len(grid) - 1)]
+    for _ in range(ROUNDS):
+        points = np.linspace(low, high, AROUND)
+        one = replace(case, given=tuple(float(p) for p in points))
+        here = replace(subject, cases=(one,))
+        found = next((c for c in by_case(here, one, growth=False) if c.name == check.name), None)
+        if found is None or not np.any(points == found.speed):
+            return speed
+        speed = found.speed
+        low, high = max(low, speed - (high - low) / 16), min(high, speed + (high - low) / 16)
+    return float(speed)

@@ -1,0 +1,322 @@
+"""How frequencies, stability, torques, tips of tongues and checks follow every number of a description."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.assessment.assess import checks_of, subject_of
+from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.features import left_out
+from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.analyses.sensitivity.checks import check_slopes
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, directions_of
+from trunnion.analyses.sensitivity.growth import radius_slope
+from trunnion.analyses.sensitivity.modes import mode_slopes
+from trunnion.analyses.sensitivity.result import (
+    DIFFERENCES,
+    EXACT,
+    IMPLICIT,
+    Quantity,
+    Sensitivities,
+    directions_shown,
+)
+from trunnion.analyses.sensitivity.tips import tip_slopes
+from trunnion.analyses.sensitivity.torques import own_growth, slopes, torques
+from trunnion.analyses.tongues.result import Tongues
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.parameters import Parameter
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import bent
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed
+
+Array = NDArray[np.float64]
+KINDS = ("frequencies", "growth", "torques", "checks")
+MOST_CHECKS = 6
+"""Checks that are differentiated unless they are named."""
+
+
+def sensitivity(
+    line: Driveline,
+    speeds: ArrayLike | None = None,
+    parameters: Iterable[str | Parameter] | None = None,
+    *,
+    of: Iterable[str] = KINDS,
+    checks: Iterable[str] | None = None,
+    tips: Tongues | None = None,
+    load_case: str | None = None,
+    unit: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Sensitivities:
+    """Derivatives of what the line does by the numbers of its description, plain and logarithmic, ranked.
+
+    Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint, all
+    exact; tips by implicit differentiation; torques and checks by differences of fourth order, with their error.
+
+    Parameters
+    ----------
+    speeds : input speed or speeds [rad/s] of growth rates and torques; default the operating speed of the description,
+        or the ends of its range, or none.
+    parameters : paths as of a chart's axis, "HookeJoint *.angle" and "factor of Shaft *.damping" included; default
+        every number that the description states, zeros of angles included.
+    of : any of "frequencies", "growth", "torques", "checks".
+    checks : names of checks of ``assess``; default the six with the least to spare. They are judged over the range of
+        the description, or else over that of ``speeds``.
+    tips : ``tongues`` of this line with the speed along an axis: where they close.
+    load_case : name of one of the line's load cases.
+    unit : of speeds in print; default the one of the description.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : no such parameter, check or load case; speeds that are not positive; a line that an analysis asked for
+        refuses, if nothing else was asked for.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]
+    >>> found = tn.sensitivity(tn.Driveline(parts), of=["frequencies"])
+    >>> print(found)
+    sensitivity of 2 quantities to 4 parameters
+      natural frequency of mode 1 (17.7941 Hz): -0.5 % for +1 % of Disk 1.inertia, +0.5 % for +1 % of Shaft 1.stiffness
+      damping ratio of mode 1 (0.01118): +1 % for +1 % of Shaft 1.damping, -0.5 % for +1 % of Disk 1.inertia, \
+-0.5 % for +1 % of Shaft 1.stiffness
+    """
+    kinds = _kinds(of)
+    stated = line if load_case is None else line.with_load(load_case)
+    question = _Question(
+        line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
+        load_case=load_case, unit=unit or speed_unit(line), progress=progress or (lambda share: None),
+    )  # fmt: skip
+    parts: dict[str, Callable[[], Iterator[_Rows]]] = {
+        "frequencies": partial(_frequencies, question),
+        "growth": partial(_growth, question),
+        "torques": partial(_torques, question),
+        "checks": partial(_checks, question, line, checks),
+    }
+    rows: list[_Rows] = []
+    refusals: list[TrunnionProblem] = []
+    for kind in kinds:
+        try:
+            rows += parts[kind]()
+        except (InputError, ComputationError) as error:
+            if kind == "checks" and checks is not None:
+                raise
+            refusals.append(error)
+    if tips is not None:
+        rows += _tips(question, tips)
+    if not rows and refusals:
+        raise refusals[0]
+    said = [Finding(Gravity.CAUTION, str(error).splitlines()[0]) for error in refusals]
+    return _result(question, rows, [*said, *question.findings, *_left_out(stated, kinds)])
+
+
+TrunnionProblem = InputError | ComputationError
+ANALYSES = {"frequencies": "natural_frequencies", "growth": "stability", "torques": "order_response"}
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Quantities, their derivatives and errors (quantity, direction)."""
+
+    quantities: Sequence[Quantity]
+    slope: Array
+    error: Array
+
+
+@dataclass
+class _Question:
+    """The line under its load case, speeds (speed,) and directions; findings that come up on the way."""
+
+    line: Driveline
+    at: Array
+    directions: tuple[Direction, ...]
+    load_case: str | None
+    unit: str
+    progress: Callable[[float], None]
+    findings: list[Finding] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.assembly: Assembly = assemble(self.line)
+        self.near, self.lines = Neighbourhood(self.assembly), Neighbours(self.assembly)
+
+    def shown(self, speed: float) -> str:
+        return show_speed(float(f"{speed:.12g}"), self.unit)
+
+
+def _kinds(of: Iterable[str]) -> tuple[str, ...]:
+    asked = (of,) if isinstance(of, str) else tuple(of)
+    for one in asked:
+        if one not in KINDS:
+            raise InputError("is nothing to differentiate", key="of", value=one, remedy=f"use {', '.join(KINDS)}")
+    return tuple(kind for kind in KINDS if kind in asked)
+
+
+def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
+    if speeds is None:
+        operation = line.operation
+        if operation is None or (operation.speed is None and not operation.speed_range):
+            return np.zeros(0)
+        return np.array([operation.speed] if operation.speed is not None else operation.speed_range, dtype=float)
+    at = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if at.ndim != 1 or not len(at):
+        raise InputError("must be a speed or several", key="speeds", value=speeds, remedy="tn.rpm(1500)")
+    return np.array([operating_speed(line, float(one)) for one in at])
+
+
+def _frequencies(question: _Question) -> Iterator[_Rows]:
+    found = mode_slopes(question.near, question.directions)
+    names = [f"mode {m}" for m in found.numbers]
+    yield _Rows(
+        [
+            Quantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
+            for name, w, why in zip(names, found.frequency, found.refused, strict=True)
+        ],
+        found.frequency_slope,
+        1e-11 * np.abs(found.frequency_slope),
+    )
+    damped = np.flatnonzero(found.ratio != 0) if np.any(found.ratio_slope) else np.zeros(0, dtype=int)
+    yield _Rows(
+        [
+            Quantity(
+                f"damping ratio of {names[m]}", "damping ratio", float(found.ratio[m]), "1", EXACT,
+                refused=found.ratio_refused[m],
+            )
+            for m in damped
+        ],
+        found.ratio_slope[damped],
+        1e-11 * np.abs(found.ratio_slope[damped]),
+    )  # fmt: skip
+
+
+def _growth(question: _Question) -> Iterator[_Rows]:
+    if question.assembly.topology.free and bent(question.assembly):
+        yield from _own_growth(question)
+        return
+    for speed in question.at.tolist():
+        found = radius_slope(question.near, question.near.row(speed), question.directions)
+        rate = speed / found.period
+        yield _stability_rows(
+            question, speed, EXACT, found.refused, (found.growth_rate(speed), found.radius),
+            np.stack([found.slope * rate, found.slope * found.radius]),
+            np.stack([found.error * rate, found.error * found.radius]),
+        )  # fmt: skip
+
+
+def _own_growth(question: _Question) -> Iterator[_Rows]:
+    """Of a bent line that starts free: its own motion follows every parameter, so lines beside it are judged."""
+    if not len(question.at):
+        return
+    values = partial(own_growth, question.at)
+    here = values(question.line)
+    slope, error = slopes(values, question.lines, question.directions, question.progress)
+    for k, speed in enumerate(question.at.tolist()):
+        here_k = (float(here[0, k]), float(here[1, k]))
+        yield _stability_rows(question, speed, DIFFERENCES, "", here_k, slope[:, k], error[:, k])
+
+
+def _stability_rows(
+    question: _Question, speed: float, method: str, refused: str, value: tuple[float, float], slope: Array, error: Array
+) -> _Rows:
+    at = f"at {question.shown(speed)}"
+    kinds = (("growth rate", "1/s"), ("spectral radius", "1"))
+    return _Rows(
+        [
+            Quantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
+            for (kind, unit), v in zip(kinds, value, strict=True)
+        ],
+        slope,
+        error,
+    )
+
+
+def _torques(question: _Question) -> Iterator[_Rows]:
+    if not len(question.at):
+        return
+    values = partial(torques, question.at)
+    here = values(question.line)
+    slope, error = slopes(values, question.lines, question.directions, question.progress)
+    springs, words = shaft_names(question.assembly), ("peak torque", "vibratory torque")
+    for w, v, s in np.ndindex(here.shape):
+        speed, value = float(question.at[v]), float(here[w, v, s])
+        name = f"{words[w]} of {springs[s]} at {question.shown(speed)}"
+        why = "" if np.isfinite(value) else "there is no steady state"
+        one = Quantity(name, "torque", value, "N*m", DIFFERENCES, speed, why)
+        yield _Rows([one], slope[w, v, s], error[w, v, s])
+
+
+def _tips(question: _Question, tips: Tongues) -> Iterator[_Rows]:
+    for found in tip_slopes(question.near, tips, question.directions):
+        name = f"the tip of tongue {found.tongue.number}, {found.tongue.name}"
+        labels, units = (tips.x_label, tips.y_label), (tips.x_unit, tips.y_unit)
+        speed = found.place[labels.index("speed")]
+        yield _Rows(
+            [
+                Quantity(f"{label} at {name}", "tip", value, unit, IMPLICIT, speed, found.refused)
+                for label, value, unit in zip(labels, found.place, units, strict=True)
+            ],
+            found.slope,
+            found.error,
+        )
+
+
+def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[_Rows]:
+    operation = line.operation
+    span = None
+    if operation is None or not (operation.speed_range or operation.speed is not None):
+        if not len(question.at):
+            return
+        span = (float(question.at.min()), float(question.at.max()))
+    subject = subject_of(line, span, question.load_case, question.unit)
+    chosen = _chosen(checks_of(subject), names)
+    found = check_slopes(subject, question.lines, question.directions, chosen, question.progress)
+    for c, check in enumerate(chosen):
+        method, at = EXACT if found.exact[c] else DIFFERENCES, float(found.speed[c])
+        value, margin = found.value[c].tolist()
+        both = [Quantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
+        if not found.exact[c]:  # the margin of a growth rate follows another speed's straight line besides
+            both.append(Quantity(f"margin of {check.name}", "margin", margin, "1", method, at))
+        yield _Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
+
+
+def _chosen(every: tuple[Check, ...], names: Iterable[str] | None) -> list[Check]:
+    judged = [c for c in every if c.status in (Status.SATISFIED, Status.EXCEEDED) and np.isfinite(c.value)]
+    if names is None:
+        return judged[:MOST_CHECKS]
+    known = {check.name: check for check in judged}
+    chosen = []
+    for name in (names,) if isinstance(names, str) else names:
+        if name not in known:
+            problem = "is not judged" if any(c.name == name for c in every) else "is not a check of this line"
+            remedy = f"there are {', '.join(known)}" if known else "nothing is judged; state limits"
+            raise InputError(problem, key="checks", value=name, remedy=remedy)
+        chosen.append(known[name])
+    return chosen
+
+
+def _left_out(line: Driveline, kinds: Sequence[str]) -> list[Finding]:
+    return [finding for kind in kinds if kind in ANALYSES for finding in left_out(ANALYSES[kind], line)]
+
+
+def _result(question: _Question, rows: Sequence[_Rows], findings: Sequence[Finding]) -> Sensitivities:
+    width = len(question.directions)
+    once = {finding.sentence: finding for finding in findings}
+    labels, values, units = directions_shown(question.directions)
+    return Sensitivities(
+        quantities=tuple(q for part in rows for q in part.quantities),
+        parameters=labels,
+        parameter_value=values,
+        parameter_unit=units,
+        derivative=np.concatenate([part.slope.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
+        error=np.concatenate([part.error.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
+        unit=question.unit,
+        findings=by_gravity(once.values()),
+    )

@@ -1,0 +1,111 @@
+"""How the tip of a tongue follows parameters, by implicit differentiation.
+
+Over x and y a tongue closes where its ridge touches the level of stability. With L = ln ρ
+
+    L(x, y, p) = 0,   L_x(x, y, p) = 0    ⟹    y′ = −L_p/L_y,   x′ = −(L_xp + L_xy y′)/L_xx.
+
+First derivatives are exact (``growth``), those along x once more differences of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.sensitivity.differences import CENTRAL, central
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, direction
+from trunnion.analyses.sensitivity.growth import RadiusSlope, radius_slope
+from trunnion.analyses.tongues.result import Tongue, Tongues
+from trunnion.driveline.parameters import SPEED, Columns
+from trunnion.errors import ComputationError, InputError
+
+Array = NDArray[np.float64]
+STEP = 1e-5
+"""Share of x between the places where the gradient is compared."""
+ROUNDS = 6
+CLOSED = 1e-11
+"""|ln ρ| at which a tip is found."""
+
+
+@dataclass(frozen=True)
+class TipSlopes:
+    """Tip of one tongue: x and y, their slopes and errors (2, direction), x first; refused: why there are none."""
+
+    tongue: Tongue
+    place: tuple[float, float]
+    slope: Array
+    error: Array
+    refused: str = ""
+
+
+def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direction]) -> list[TipSlopes]:
+    """Of every tongue that has a tip.
+
+    Raises
+    ------
+    InputError : tongues of another line, or without the speed along an axis.
+    """
+    if tongues.line is None or tongues.line.names != near.assembly.line.names:
+        remedy = 'tips=tn.tongues(line, ("speed", 10, 200), ("HookeJoint 1.angle", 0, 0.5)) of the same line'
+        raise InputError("are not of this line", key="tips", remedy=remedy)
+    if SPEED not in (tongues.x_label, tongues.y_label):
+        raise InputError("must have the speed along one axis", key="tips", remedy='tn.tongues(line, ("speed", …), …)')
+    columns = [near.assembly.packed.resolve(label) for label in (tongues.x_label, tongues.y_label)]
+    taken = {int(i) for one in columns for i in one.index}
+    own = [one.but(taken) for one in directions]
+    return [_tip(near, tongue, columns, own) for tongue in tongues if tongue.tip is not None]
+
+
+def _tip(near: Neighbourhood, tongue: Tongue, columns: list[Columns], own: Sequence[Direction]) -> TipSlopes:
+    assert tongue.tip is not None
+    x, y = tongue.tip
+    try:
+        for _ in range(ROUNDS):
+            here, second = _gradients(near, (x, y), columns, own)
+            if here.refused:
+                return _none(tongue, own, here.refused)
+            level = float(np.log(here.radius))
+            slope_x, slope_y = here.slope[-2:]
+            jacobian = np.array([[slope_x, slope_y], [second[-2], second[-1]]])
+            if abs(level) < CLOSED and abs(slope_x) < 1e-6 * abs(second[-2]) * x:
+                break
+            step = np.linalg.solve(jacobian, [level, slope_x])
+            x, y = x - float(step[0]), y - float(step[1])
+        else:
+            return _none(tongue, own, "its tip was not found again")
+    except (InputError, ComputationError, np.linalg.LinAlgError) as error:
+        return _none(tongue, own, str(error).splitlines()[0])
+    by = here.slope[:-2]
+    up = -by / slope_y
+    across = -(second[:-2] + second[-1] * up) / second[-2]
+    share = here.error[:-2] / abs(slope_y)
+    return TipSlopes(tongue, (x, y), np.stack([across, up]), np.stack([np.abs(across) * 1e-6 + share, share]))
+
+
+def _none(tongue: Tongue, own: Sequence[Direction], why: str) -> TipSlopes:
+    nothing = np.full((2, len(own)), np.nan)
+    assert tongue.tip is not None
+    return TipSlopes(tongue, tongue.tip, nothing, nothing, why)
+
+
+def _gradients(
+    near: Neighbourhood, place: tuple[float, float], columns: list[Columns], own: Sequence[Direction]
+) -> tuple[RadiusSlope, Array]:
+    """The gradient of ln ρ along ``own``, x and y; and its derivative by x."""
+    axes = [direction(near.assembly, one, value) for one, value in zip(columns, place, strict=True)]
+    reach = STEP * axes[0].size
+
+    def at(shift: float) -> RadiusSlope:
+        row = near.row()
+        columns[1].put(row, place[1])
+        columns[0].put(row, place[0] + shift)
+        return radius_slope(near, row, own, axes)
+
+    here = at(0.0)
+    if here.refused:
+        return here, here.slope
+    beside = [at(float(k) * reach) for k in CENTRAL]
+    return here, central(np.array([one.slope for one in beside]), reach)

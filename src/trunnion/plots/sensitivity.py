@@ -1,0 +1,62 @@
+"""What one quantity follows: bars by the change that a usual step of every parameter makes, the largest on top."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
+from trunnion.errors import InputError
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SHOWN = 10
+"""Parameters shown at most."""
+DOWN = "#d55e00"
+"""Vermilion of the palette of Okabe and Ito, for steps downwards."""
+FIRST = ("check", "torque", "growth rate", "tip", "frequency")
+"""Kinds of quantities in the order in which one is chosen to be drawn."""
+
+
+def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = None, *, most: int = SHOWN) -> Axes:
+    """A tornado of ``quantity``, by default of the first check, torque or growth rate that follows anything.
+
+    Every bar goes to both sides: what the step upwards and the one downwards make of the quantity.
+    """
+    chosen = found.quantity(quantity) if quantity is not None else _chosen(found)
+    effects = found.ranked(chosen.name, most)
+    if not effects:
+        why = chosen.refused or "follows none of the parameters"
+        raise InputError(f"has nothing to draw: {why}", key="quantity", value=chosen.name, remedy="name another one")
+    axes = axes if axes is not None else new_axes(7.2, 1.6 + 0.34 * len(effects))
+    factor, label = share_of(chosen)
+    tenths = too_large(chosen, effects[0].change)
+    for place, one in enumerate(effects):
+        size = one.change * factor / 10**tenths
+        axes.barh(place, size, color=ACCENT, height=0.62, label="step upwards" if not place else None)
+        axes.barh(place, -size, color=DOWN, alpha=0.55, height=0.62, label="step downwards" if not place else None)
+    axes.axvline(0.0, color=INK, lw=1.0)
+    names = [f"{e.parameter} ({smaller(e.step_words, tenths).replace('+', '±')})" for e in effects]
+    axes.set_yticks(range(len(names)), names, fontsize=SMALL)
+    axes.invert_yaxis()
+    axes.set_xlabel(f"change{label}", fontsize=TEXT, color=INK)
+    axes.set_title(f"{chosen.name}: {found.shown(chosen)}", fontsize=TEXT, color=INK, loc="left")
+    axes.grid(axis="x", color="#dddddd", lw=0.6)
+    axes.set_axisbelow(True)
+    plain(axes)
+    axes.tick_params(axis="y", labelsize=SMALL)
+    legend = axes.legend(fontsize=SMALL, frameon=False, loc="lower right")
+    for text in legend.get_texts():
+        text.set_color(FAINT)
+    return axes
+
+
+def _chosen(found: Sensitivities) -> Quantity:
+    for kind in FIRST:
+        for one in found.quantities:
+            if one.kind == kind and found.ranked(one.name, 1):
+                return one
+    if not found.quantities:
+        raise InputError("holds no quantity to draw", element="sensitivity", remedy="ask for frequencies, say")
+    return found.quantities[0]

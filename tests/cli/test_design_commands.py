@@ -1,0 +1,39 @@
+"""sensitivity and its neighbours: text, JSON, pictures and tables; refusals before computing."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+
+def test_sensitivity(run, here):
+    call = ("sensitivity", "two-shaft-cardan", "-s", "1.2", "-p", "HookeJoint 1.angle", "-p", "Shaft 1.stiffness")
+    done = run(*call, "-o", "s.csv", "-o", "s.png", "-o", "s.nc")
+    assert (
+        done.exit_code == 0 and done.stdout.startswith("sensitivity of ") and "growth rate at 1.2 rad/s" in done.stdout
+    )
+    head = (here / "s.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert head.startswith("quantity,quantity_unit,kind,method,value,HookeJoint 1.angle: derivative")
+    shown = json.loads(run(*call, "--of", "growth", "--json", "-o", "t.nc").stdout)
+    assert shown["quantity"] == ["growth rate at 1.2 rad/s", "spectral radius at 1.2 rad/s"]
+    assert shown["parameter"] == ["HookeJoint 1.angle", "Shaft 1.stiffness"] and len(shown["derivative"][0]) == 2
+
+
+REFUSED = [
+    (("sensitivity", "two-shaft-cardan", "--of", "orders"), "is nothing to differentiate"),
+    (("sensitivity", "two-shaft-cardan", "-p", "Shaft 9.stiffness"), "is not a parameter"),
+    (("sensitivity", "two-shaft-cardan", "-s", "-1"), "must be positive"),
+    (("sensitivity", "two-shaft-cardan", "-s", "1", "--check", "U"), "is not a check of this line"),
+    (("sensitivity", "two-shaft-cardan", "--tips", "HookeJoint 1.angle:20deg:2deg"), "is a reversed range"),
+    (("sensitivity", "two-shaft-cardan", "--load-case", "hill"), "hill"),
+]
+
+
+@pytest.mark.parametrize(("call", "words"), REFUSED, ids=[" ".join(call) for call, _ in REFUSED])
+def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
+    result = run(*call)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == "" and words in result.stderr
+    assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
+    assert not (here / "trunnion-out").exists()

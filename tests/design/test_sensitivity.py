@@ -1,0 +1,291 @@
+"""Derivatives against closed forms and against central differences of the public analyses."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.results.files import read_dataset, save_dataset
+
+
+def chain(**changes):
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=900.0, damping=0.4, fork_offset=0.3, name="front"),
+            tn.Disk(inertia=0.02, viscous_load=0.01, name="hub"),
+            tn.HookeJoint(angle=0.3, name="joint 1"),
+            tn.Shaft(
+                outer_diameter=0.03, inner_diameter=0.024, length=1.5, shear_modulus=79e9, density=7850.0,
+                loss_factor=0.02, loss_factor_frequency=200.0, fork_offset=0.7, name="tube",
+            ),
+            tn.Disk(inertia=0.015, name="middle"),
+            tn.HookeJoint(angle=0.2, plane=0.4, name="joint 2"),
+            tn.Shaft(stiffness=3e3, damping=0.3, name="rear"),
+            tn.Disk(inertia=0.4, load_torque=15.0, name="load"),
+        ]
+    )  # fmt: skip
+    return line.replace_all(changes) if changes else line
+
+
+def geared():
+    """Free, straight, with varying mesh stiffness: two multipliers are set aside."""
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.05, load_torque=-30.0, name="motor"),
+            tn.Shaft(stiffness=5e3, damping=0.8, name="shaft"),
+            tn.Disk(inertia=0.01, name="pinion side"),
+            tn.GearPair(
+                teeth_in=20, teeth_out=20, module=0.003, mesh_stiffness=2e7, mesh_damping=400.0,
+                stiffness_variation=[{"order": 1, "share": 0.2, "phase": 0.3}], name="mesh",
+            ),
+            tn.Disk(inertia=0.02, load_torque=30.0, name="wheel"),
+        ]
+    )  # fmt: skip
+
+
+def common():
+    """One damping ratio that holds at the lowest elastic mode, wherever that lies."""
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1.0), tn.Disk(inertia=1.0), tn.HookeJoint(angle=0.3),
+        tn.Shaft(stiffness=1.3), tn.Disk(inertia=2.0),
+    ]  # fmt: skip
+    return tn.Driveline(parts, damping_ratio=0.02)
+
+
+def tripod():
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0),
+        tn.TripodJoint(angle=0.5, radius=0.05, length=0.25), tn.Shaft(stiffness=1.3, damping=0.02),
+        tn.Disk(inertia=2.0),
+    ]  # fmt: skip
+    return tn.Driveline(parts)
+
+
+LINES = {"chain": (chain, 170.0), "geared": (geared, 90.0), "common damping": (common, 1.1), "tripod": (tripod, 0.9)}
+
+
+def central(values, line, path, value, step):
+    """Central difference of fourth order of ``values(line)`` by one number."""
+    packed = tn.driveline.parameters.pack(line)
+    columns = packed.resolve(path)
+
+    def at(shift):
+        numbers = packed.values.copy()
+        columns.put(numbers, value + shift)
+        return np.asarray(values(packed.line_at(numbers)))
+
+    far, near = at(2 * step) - at(-2 * step), at(step) - at(-step)
+    return (8 * near - far) / (12 * step)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_growth_and_modes_follow_every_parameter_as_differences_do(name):
+    make, speed = LINES[name]
+    line = make()
+    found = tn.sensitivity(line, speed, of=["frequencies", "growth"])
+    assert {q.method for q in found.quantities} == {"exact"} and not any(q.refused for q in found.quantities)
+
+    def values(changed):
+        modes, stable = tn.natural_frequencies(changed), tn.stability(changed, speed, tolerance=1e-12)
+        first = int(modes.rigid_body)
+        return [*modes.frequency[first:], *modes.damping_ratio[first:], stable.growth_rate, stable.spectral_radius]
+
+    expected = values(line)
+    order = [q.value for q in found.quantities]
+    assert order == pytest.approx(expected, rel=1e-9)
+    tried = 0
+    for p, path in enumerate(found.parameters):
+        value = float(found.parameter_value[p])
+        if path.endswith("load_torque") and name == "geared":
+            continue  # torques would not balance
+        step = 2e-4 * (abs(value) if found.parameter_unit[p] != "rad" else 1.0)
+        if not value and found.parameter_unit[p] != "rad":
+            continue
+        slopes = central(values, line, path, value, step)
+        size = np.abs(expected) / (step / 2e-4)
+        assert np.all(np.abs(found.derivative[:, p] - slopes) <= 1e-6 * np.maximum(np.abs(slopes), size * 1e-2)), path
+        assert np.all(found.error[:, p] <= 1e-6 * np.maximum(np.abs(slopes), size)), path
+        tried += 1
+    assert tried >= 6
+
+
+def test_two_disks_by_hand():
+    k, j1, j2 = 1e4, 0.2, 0.8
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=j1, excitation=[{"order": 2, "amplitude": 100.0}], name="engine"),
+            tn.Shaft(stiffness=k, damping=2.0, name="shaft"),
+            tn.Disk(inertia=j2, name="mass"),
+        ]
+    )
+    found = tn.sensitivity(line, 100.0, of=["frequencies", "torques"])
+    assert found.parameters == (
+        "engine.inertia", "engine.excitation 1 amplitude", "engine.excitation 1 phase", "shaft.stiffness",
+        "shaft.damping", "shaft.fork_offset", "mass.inertia",
+    )  # fmt: skip
+    logarithmic = dict(zip(found.parameters, found.logarithmic[0], strict=True))
+    assert logarithmic["shaft.stiffness"] == pytest.approx(0.5, rel=1e-11)
+    assert logarithmic["engine.inertia"] == pytest.approx(-0.5 * j2 / (j1 + j2), rel=1e-11)
+    assert logarithmic["mass.inertia"] == pytest.approx(-0.5 * j1 / (j1 + j2), rel=1e-11)
+
+    def torque(k, c, j1, j2, amplitude):
+        w, pull = 200.0, k + 200j * c
+        x = np.linalg.solve([[pull - j1 * w * w, -pull], [-pull, pull - j2 * w * w]], [amplitude, 0.0])
+        return abs(pull * (x[1] - x[0]))
+
+    at = {"shaft.stiffness": 0, "shaft.damping": 1, "engine.inertia": 2, "mass.inertia": 3}
+    here = [k, 2.0, j1, j2, 100.0]
+    slopes = found.derivatives("peak torque of shaft at 100 rad/s")
+    for path, place in at.items():
+        h = 1e-5 * here[place]
+        ends = [here.copy(), here.copy()]
+        ends[0][place] -= h
+        ends[1][place] += h
+        by_hand = (torque(*ends[1]) - torque(*ends[0])) / (2 * h)
+        assert slopes[path] == pytest.approx(by_hand, rel=1e-6), path
+    assert slopes["engine.excitation 1 amplitude"] == pytest.approx(torque(*here) / 100.0, rel=1e-9)
+    assert slopes["engine.excitation 1 phase"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_groups_and_factors_are_sums_of_their_members():
+    line = chain()
+    members = ["joint 1.angle", "joint 2.angle"]
+    found = tn.sensitivity(line, 170.0, [*members, "HookeJoint *.angle", "factor of Shaft *.damping"], of="growth")
+    one, two, both, factor = found.derivative[0]
+    assert both == pytest.approx(one + two, rel=1e-9)
+    parts = tn.sensitivity(line, 170.0, ["front.damping", "rear.damping"], of="growth").derivative[0]
+    assert factor == pytest.approx(parts @ [0.4, 0.3], rel=1e-9)
+
+
+def test_a_bent_line_that_starts_free_follows_its_own_motion():
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=0.5, drive_share=1.0, name="motor"),
+            tn.Shaft(stiffness=2e4, damping=8.0, name="front"),
+            tn.Disk(inertia=0.05, name="yoke"),
+            tn.HookeJoint(angle=0.3, name="joint"),
+            tn.Shaft(stiffness=1e4, damping=4.0, name="rear"),
+            tn.Disk(inertia=0.3, viscous_load=0.5, name="load"),
+        ]
+    )
+    found = tn.sensitivity(line, 60.0, ["load.viscous_load", "load.inertia"], of="growth")
+    assert {q.method for q in found.quantities} == {"differences"}
+    for p, path in enumerate(found.parameters):
+        value = float(found.parameter_value[p])
+        slope = central(lambda one: tn.stability(one, 60.0).growth_rate, line, path, value, 0.01 * value)
+        assert found.derivative[0, p] == pytest.approx(float(slope), rel=1e-4), path
+
+
+OMEGA = (5**0.5 - 1) / 2
+"""Lowest natural frequency of two equal shafts and disks."""
+
+
+def test_coalescing_and_equal_multipliers_are_refused():
+    line = tn.catalogue("two-shaft-cardan", damping_ratio=0.01)
+    low, high = 0.01, 0.3  # on the axis of a tongue two multipliers meet on the real axis, below its tip
+
+    def real(angle):
+        found = tn.stability(line.replace("HookeJoint 1", angle=angle), OMEGA, tolerance=1e-12)
+        return abs(found.multipliers[0].imag) < 1e-12
+
+    assert not real(low) and real(high)
+    for _ in range(48):
+        middle = (low + high) / 2
+        low, high = (low, middle) if real(middle) else (middle, high)
+    met = tn.sensitivity(line.replace("HookeJoint 1", angle=low), OMEGA, of="growth")
+    assert "coalesce" in met.quantities[0].refused and np.isnan(met.derivative).all()
+    assert "no derivative, two multipliers coalesce" in str(met)
+    undamped = line.replace_all({"Shaft 1": {"damping": 0.0}, "Shaft 2": {"damping": 0.0}})
+    equal = tn.sensitivity(undamped, 1.2, of="growth")
+    assert "equally large" in equal.quantities[0].refused
+
+
+def test_modes_of_one_frequency_are_refused():
+    arm = [tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0)]
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0, name="hub"), *arm,
+        tn.Shaft(stiffness=1.0, damping=0.01, after="hub"), tn.Disk(inertia=1.0),
+        tn.Shaft(stiffness=1.0, damping=0.01, after="hub"), tn.Disk(inertia=1.0),
+    ]  # fmt: skip
+    found = tn.sensitivity(tn.Driveline(parts), of="frequencies")
+    said = {q.name: q.refused for q in found.quantities if q.kind == "frequency"}
+    assert said["natural frequency of mode 2"] == "modes 2 and 3 have one frequency"
+    assert not said["natural frequency of mode 1"] and np.isfinite(found.derivative[0]).all()
+
+
+def test_tips_follow_as_tongues_found_anew():
+    line = tn.catalogue("two-shaft-cardan", damping_ratio=0.01)
+
+    def tips(one):
+        return tn.tongues(one, ("speed", 1.5, 1.75), ("HookeJoint 1.angle", 0.05, 0.6), rows=5)
+
+    found = tn.sensitivity(line, 1.2, of=[], tips=tips(line))
+    assert [q.method for q in found.quantities] == ["implicit"] * 2
+    slopes = central(lambda one: tips(one)[0].tip, line, "Disk 2.inertia", 1.0, 1e-3)
+    p = found.parameters.index("Disk 2.inertia")
+    assert found.derivative[:, p] == pytest.approx(slopes, rel=3e-6, abs=3e-7)
+    own = found.parameters.index("HookeJoint 1.angle")
+    assert found.derivative[:, own] == pytest.approx(
+        [0, 0], abs=1e-9
+    )  # the tip is found along it, whatever the line has
+
+
+def test_checks_at_the_speed_where_they_bind():
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e3, damping=0.5, name="front"), tn.Disk(inertia=0.05, name="hub"),
+            tn.HookeJoint(angle=0.25, name="joint"), tn.Shaft(stiffness=2e3, damping=0.6, name="rear"),
+            tn.Disk(inertia=0.1, load_torque=10.0, name="load"),
+        ],
+        operation=tn.Operation(speed_range=(20.0, 60.0), load_cases=[tn.LoadCase(name="hill", loads={"load": 30.0})]),
+        limits=[tn.Limit(of="rear", max_torque=80.0)],
+    )  # fmt: skip
+    name = "max torque of rear"
+    judged = tn.assess(line).check(name)
+    found = tn.sensitivity(line, of="checks", checks=[name, "parametric stability"])
+    one = found.quantity(name)
+    assert one.value == pytest.approx(judged.value, rel=1e-3) and one.speed == pytest.approx(judged.speed, rel=0.02)
+    slopes = found.derivatives(name)
+    for path, value in (("rear.stiffness", 2e3), ("joint.angle", 0.25), ("front.damping", 0.5)):
+        slope = central(
+            lambda c: tn.assess(c, (one.speed, one.speed)).check(name).value, line, path, value, 1e-3 * value
+        )
+        assert slopes[path] == pytest.approx(float(slope), rel=1e-6), path
+    assert slopes["load.load_torque"] == 0.0  # the load case that binds states its own
+    margin = found.derivatives(f"margin of {name}")
+    assert margin["rear.stiffness"] == pytest.approx(-slopes["rear.stiffness"] / 80.0, rel=1e-9)
+    grows = found.quantity("parametric stability")
+    assert grows.method == "exact" and not grows.refused
+
+
+def test_one_sided_where_a_number_cannot_be_negative():
+    line = chain(front={"damping": 0.0})
+    found = tn.sensitivity(line, 170.0, ["load.drive_share", "front.damping"], of="torques")
+    assert np.isnan(found.derivative[:, 0]).all()  # beside a ConstantSpeed nothing shares the drive
+    slope = found.derivatives("peak torque of rear at 170 rad/s")["front.damping"]
+    ends = [tn.order_response(chain(front={"damping": d}), 170.0).peak_torque[0, 2] for d in (0.0, 1e-3)]
+    assert slope == pytest.approx((ends[1] - ends[0]) / 1e-3, rel=1e-2)
+
+
+def test_it_introduces_itself(tmp_path):
+    found = tn.sensitivity(chain(), 170.0)
+    assert str(found).startswith("sensitivity of ") and "\n" not in repr(found)
+    ranked = found.ranked("growth rate at 170 rad/s")
+    assert [abs(one.change) for one in ranked] == sorted((abs(one.change) for one in ranked), reverse=True)
+    assert {one.step_words for one in ranked} <= {"+1 %", "+1 deg", "+10 deg"}
+    assert found.table("growth rate at 170 rad/s")[0]["parameter"] == ranked[0].parameter
+    save_dataset(found.data.assign_attrs(format="s"), tmp_path / "s.nc")
+    again = read_dataset(tmp_path / "s.nc", "s")
+    assert again["derivative"].shape == found.derivative.shape
+    assert json.loads(found.to_json())["kind"][0] in ("frequency", "check")
+    axes = found.plot("growth rate at 170 rad/s")
+    assert ranked[0].parameter in axes.get_yticklabels()[0].get_text()
+
+
+def test_frequencies_alone_where_no_speed_is_known():
+    found = tn.sensitivity(chain())
+    assert {q.kind for q in found.quantities} == {"frequency", "damping ratio"}
