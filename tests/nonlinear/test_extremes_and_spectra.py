@@ -128,7 +128,9 @@ def test_nothing_folds_back_on_the_orders_of_a_long_period(teeth: tuple[int, int
     torque = response.line.observe(orbit.system, times, orbit.trajectory.at(times)).torque
     sampled = 2 * np.abs(np.fft.rfft(torque, axis=0)[1 : len(orders)]) / count
     np.testing.assert_allclose(amplitude[1:], sampled, rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(response.torque_peak_to_peak, np.ptp(torque, axis=0), rtol=1e-4)
+    # Of a cycle of the highest order they hit the top to (π/samples)²/2.
+    coarse = (np.pi * 2 * teeth[0] * response.turns / count) ** 2 / 2
+    np.testing.assert_allclose(response.torque_peak_to_peak, np.ptp(torque, axis=0), rtol=max(1e-4, coarse))
     assert np.all(response.torque_peak_to_peak >= np.ptp(torque, axis=0) - 1e-9)
 
 
@@ -142,10 +144,11 @@ def gear_line(seed: int) -> tuple[tn.Driveline, float]:
     def shaft() -> tn.Shaft:
         return tn.Shaft(stiffness=between(3e3, 3e4), damping=between(1, 10))
 
+    law, gap = str(rng.choice(["always", "in contact", "never pulling"])), float(rng.choice([0.0, 2e-5]))
     mesh = tn.GearPair(
         teeth_in=int(rng.integers(17, 40)), teeth_out=int(rng.integers(17, 60)), module=3e-3,
         mesh_stiffness=between(1e7, 1e8), mesh_damping=between(300, 3000),
-        damping_law=str(rng.choice(["always", "in contact", "never pulling"])), backlash=float(rng.choice([0.0, 2e-5])),
+        damping_law=law if gap else "always", backlash=gap,
         transmission_error=[
             {"amplitude": between(1e-6, 2e-5), "order": order, "phase": float(rng.uniform(0, 6))} for order in (1, 2, 3)
         ],

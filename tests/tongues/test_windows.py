@@ -75,3 +75,14 @@ def test_refusals(run, message: str) -> None:
     with pytest.raises(tn.InputError) as caught:
         run()
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def test_a_region_that_enters_through_the_side_of_the_speeds() -> None:
+    """A resonance just outside the speeds: the angle that it allows is the one at the nearest speed."""
+    for speeds, side in (((1.64, 1.7), 0), ((1.5, 1.6), -1)):
+        found = tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 0.6, speeds, rows=4)
+        end = found.ends[0][1]
+        assert found.largest is not None and end is not None and end.speed == speeds[side], found
+        assert two_shafts.radius(end.speed, found.largest) == pytest.approx(1.0, abs=1e-9)
+        inside = [two_shafts.radius(s, found.largest * (1 - 1e-6)) for s in np.linspace(*speeds, 21)]
+        assert max(inside) < 1

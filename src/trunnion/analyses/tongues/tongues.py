@@ -21,7 +21,7 @@ from trunnion.analyses.tongues.joining import Strand, joined
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import Region, patched
 from trunnion.analyses.tongues.result import Tongue, Tongues, by_growth
-from trunnion.analyses.tongues.ridges import ridge, tips
+from trunnion.analyses.tongues.ridges import TIP, ridge, tips
 from trunnion.analyses.tongues.rows import Kind, unstable_intervals
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -170,6 +170,8 @@ def _shapes(region: Region, strands: list[Strand]) -> list[_Shape]:
     closed = [(key, tip) for key, tip in found.items() if tip is not None]
     rows = [(tip, strands[k].v[end], strands[k].low[end], strands[k].high[end]) for (k, end), tip in closed]
     near = dict(zip([key for key, _ in closed], _near_tips(region, rows), strict=True))
+    at_sides = [key for key, tip in found.items() if tip is None]
+    near |= dict(zip(at_sides, _corners(region, [(strands[k], end) for k, end in at_sides]), strict=True))
     return [
         _closed(s, [found.get((k, end)) for end in (0, -1)], [near[k, end] for end in (0, -1) if (k, end) in near])
         for k, s in enumerate(strands)
@@ -208,6 +210,25 @@ def _tips(region: Region, ends: list[tuple[Strand, int]]) -> list[tuple[float, f
     edge = 1e-9 * (region.box.u1 - region.box.u0)
     good &= (u > region.box.u0 + edge) & (u < region.box.u1 - edge)
     return [(a, b) if ok else None for a, b, ok in zip(u.tolist(), v.tolist(), good.tolist(), strict=True)]
+
+
+def _corners(region: Region, ends: list[tuple[Strand, int]]) -> list[Points]:
+    """Where strands that leave through a side of the box cross it, beyond their last row; nothing for the others."""
+    sides = [(k, side) for k, (strand, end) in enumerate(ends) for side in (0, 1) if strand.clipped[end][side]]
+    u = np.array([region.box.u1 if side else region.box.u0 for _, side in sides])
+    inside = np.array([ends[k][0].v[ends[k][1]] for k, _ in sides])
+    missing = [ends[k][0].below if ends[k][1] == 0 else ends[k][0].above for k, _ in sides]
+    outside = np.array([row.v for row in missing if row is not None])
+    exact = TIP * (region.box.v1 - region.box.v0)
+    v = bracketed(lambda at, own: region.above_one(u[own], at), outside, inside, exact) if sides else inside
+    crossed: list[Points] = []
+    for k in range(len(ends)):
+        own = [place for place, (end, _) in enumerate(sides) if end == k]
+        # Of two sides, the one that it crosses further out.
+        best = max(own, key=lambda place: abs(v[place] - inside[place]), default=None)
+        at, place = (v[[best]], u[[best]]) if best is not None else (np.zeros(0), np.zeros(0))
+        crossed.append((at, place, place, place))
+    return crossed
 
 
 def _closed(strand: Strand, tips: list[tuple[float, float] | None], near: list[Points]) -> _Shape:
@@ -273,7 +294,7 @@ def _tongue(
 ) -> Tongue:
     strand = shape.strand
     y = _snapped(region.y(shape.v), task.y.values)
-    ends = np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0)
+    ends = _snapped(np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0), task.x.values)
     tip, top = (_point(region, t) for t in (shape.below, shape.above))
     order = np.argsort(y, kind="stable")
     if y[0] > y[-1]:
