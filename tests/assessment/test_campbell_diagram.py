@@ -93,6 +93,74 @@ def test_joints_excite_at_twice_and_four_times_their_input():
     assert [one.name for one in found.lines if not one.order] == ["50 Hz"]
 
 
+def test_a_mode_that_moves_is_crossed_where_it_stands():
+    """kΩ = √(K/J − (cΩ/J)²), so Ω² = (K/J)/(k² + (c/J)²); few speeds, and the crossing is exact all the same."""
+    shaken = fan(0.1, excitation=[{"order": 1.5, "amplitude": 3.0}])
+    (crossing,) = tn.campbell_diagram(shaken, [20.0, 150.0, 260.0]).crossings
+    at = np.sqrt(K / J1 / (1.5**2 + (0.1 / J1) ** 2))
+    assert crossing.speed == pytest.approx(at, rel=1e-8)
+    assert crossing.damping_ratio == pytest.approx(0.1 * at / J1 / np.sqrt(K / J1), rel=1e-7)
+    assert crossing.line.torque == 3.0
+
+
+def test_stages_hold_with_the_load_at_each_speed_and_modes_jump():
+    """A coupling of 4 kN m/rad, above 0.05 rad 16 kN m/rad: the fan's 0.02 Ω² passes 200 N m at 100 rad/s, where the
+    mode goes from 141.4 to 282.8 rad/s. Order 2 lies in the gap there and meets the stiff stage later."""
+    coupling = tn.PiecewiseShaft.symmetric([(4e3, 0.05), (16e3, None)], name="coupling")
+    wheel = tn.Disk(inertia=J1, quadratic_load=0.02, excitation=[{"order": 2, "amplitude": 1.0}])
+    parts = [tn.ConstantSpeed(), coupling, wheel]
+    found = tn.campbell_diagram(tn.Driveline(parts), np.linspace(60.0, 180.0, 25))
+    soft, stiff = found.frequency[found.speed < 99, 0], found.frequency[found.speed > 101, 0]
+    decay = 0.02 * found.speed / J1
+    np.testing.assert_allclose(soft, np.sqrt(4e3 / J1 - decay[found.speed < 99] ** 2), rtol=1e-9)
+    np.testing.assert_allclose(stiff, np.sqrt(16e3 / J1 - decay[found.speed > 101] ** 2), rtol=1e-9)
+    at = [np.sqrt(k / J1 / (4 + (0.02 / J1) ** 2)) for k in (4e3, 16e3)]  # 2Ω = √(k/J − (cΩ/J)²)
+    assert [c.speed for c in found.crossings] == pytest.approx(at, rel=1e-8)
+    ((where, mode, line),) = found.jumps
+    assert (where, mode, line.order) == (pytest.approx(100.0, rel=1e-6), 1, 2.0)
+    assert "Mode 1 jumps over order 2 at 100 rad/s, where a spring changes its stage" in str(found)
+
+
+def test_orders_that_the_firing_cancels_excite_nothing():
+    """Four cylinders fired every 180°: of orders 0.5 to 4 only 2 and 4 are left, four times as large."""
+    harmonics = [{"order": k / 2, "amplitude": 10.0} for k in range(1, 9)]
+    firing = ["0 deg", "180 deg", "540 deg", "360 deg"]
+    engine = tn.Disk(inertia=J1, excitation=harmonics, firing_angles=firing, name="engine")
+    parts = [engine, tn.Shaft(stiffness=K, damping=C), tn.Disk(inertia=J2)]
+    found = tn.campbell_diagram(tn.Driveline(parts), [50.0, 200.0])
+    assert [(one.order, round(one.torque, 9)) for one in found.lines] == [(2.0, 40.0), (4.0, 40.0)]
+    misfired = tn.Driveline(parts).replace("engine", misfiring=2)
+    assert [one.order for one in tn.campbell_diagram(misfired, [50.0, 200.0]).lines] == [k / 2 for k in range(1, 9)]
+
+
+def test_torques_of_disks_at_their_largest_and_none_where_a_table_ends():
+    square = [{"order": 2, "quadratic_amplitude": 0.01}]
+    assert tn.campbell_diagram(fan(0.0, excitation=square), [10.0, 60.0]).lines[0].torque == pytest.approx(36.0)
+    table = [{"order": 2, "speeds": [20.0, 50.0], "amplitudes": [1.0, 4.0]}]
+    assert tn.campbell_diagram(fan(0.0, excitation=table), [25.0, 50.0]).lines[0].torque == pytest.approx(4.0)
+    assert np.isnan(tn.campbell_diagram(fan(0.0, excitation=table), [10.0, 60.0]).lines[0].torque)
+
+
+def test_a_loss_factor_damps_by_half_of_it():
+    """λ = iω√(1 + iη): ζ = η/2 to first order."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=K, loss_factor=0.02),
+            tn.Disk(inertia=J1, excitation=[{"order": 2, "amplitude": 1.0}]),
+        ]
+    )
+    (crossing,) = tn.campbell_diagram(line, [50.0, 200.0]).crossings
+    assert crossing.amplification == pytest.approx(50.0, rel=1e-3)
+
+
+def test_a_crossing_at_the_last_speed_counts():
+    line = fan(0.0, excitation=[{"order": 2, "amplitude": 1.0}])
+    at = float(tn.natural_frequencies(line).frequency[0]) / 2
+    found = tn.campbell_diagram(line, [at / 2, at])
+    assert [c.speed for c in found.crossings] == pytest.approx([at], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("speeds", "margin", "said"),
     [

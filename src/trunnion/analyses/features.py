@@ -1,4 +1,4 @@
-"""What every analysis does with every feature of a line: counts, refuses, or says that it leaves it out.
+"""What every analysis does with every feature of a line: counts, refuses, does not judge, or says it is left out.
 
 One row an analysis; what a row does not name is *counted*. ``tests/contract/test_features.py`` builds a line for each
 cell, changes the feature and sees the answer change, the refusal, the sentence, or that nothing changes; an analysis
@@ -24,6 +24,7 @@ class Treatment(Enum):
     COUNTED = "counted"
     REFUSED = "refused"
     SAID = "said"
+    NOT_JUDGED = "not judged"
     INERT = "cannot matter"
 
 
@@ -61,6 +62,7 @@ def _row(
     *,
     refused: dict[str, str] | None = None,
     said: Mapping[str, Words] | None = None,
+    not_judged: dict[str, str] | None = None,
     inert: dict[str, str] | None = None,
 ) -> Row:
     """Cells of all features: those named, the others counted."""
@@ -69,6 +71,8 @@ def _row(
         row[key] = Cell(Treatment.REFUSED, reason)
     for key, words in (said or {}).items():
         row[key] = Cell(Treatment.SAID, *((words,) if isinstance(words, str) else words))
+    for key, reason in (not_judged or {}).items():
+        row[key] = Cell(Treatment.NOT_JUDGED, reason)
     for key, reason in (inert or {}).items():
         row[key] = Cell(Treatment.INERT, reason)
     return {f.key: row[f.key] for f in FEATURES}
@@ -222,6 +226,22 @@ TABLE: dict[str, Row] = {
         ("tongues", "stable_windows", "minimum_damping", "tolerance_study"),
         _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
     ),
+    "campbell_diagram": _row(
+        refused=_RUBBING,
+        said=_BY_PLACE,
+        inert={
+            **_TORSION,
+            **_EVEN,
+            **{key: _MODES_INERT[key] for key in ("fork offset", "joint plane", "drive share", "backlash")},
+            "load torque": _MODES_INERT["load torque"],
+        },
+    ),
+    "assess": _row(
+        refused=_RUBBING,
+        said=_BY_PLACE,
+        not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
+        inert=_EVEN,
+    ),
     "certify_stability": _row(refused=_UNPROVABLE, inert={**_TORSION, **_EVEN, **_EXCITED}),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
@@ -277,8 +297,6 @@ TABLE: dict[str, Row] = {
 }
 
 NOT_ANALYSES = {
-    "campbell_diagram": "natural frequencies and the orders of order_response in one picture",
-    "assess": "judges by the analyses above, and prints what each of them says",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "sensitivity": "derivatives of what the analyses above compute, with what each of them leaves out",
@@ -289,7 +307,13 @@ NOT_ANALYSES = {
 }
 """Public functions that take a line and need no row, and why."""
 
-MARKS = {Treatment.COUNTED: "●", Treatment.REFUSED: "✕", Treatment.SAID: "said", Treatment.INERT: "–"}
+MARKS = {
+    Treatment.COUNTED: "●",
+    Treatment.REFUSED: "✕",
+    Treatment.SAID: "said",
+    Treatment.NOT_JUDGED: "not judged",
+    Treatment.INERT: "–",
+}
 
 
 def groups() -> list[tuple[str, ...]]:

@@ -1,8 +1,10 @@
 """Campbell diagram: the modes of the loaded line over speed, what excites them, and where the two meet.
 
-Modes are those of the aligned line with the slopes of its speed-dependent loads, followed by their shape. Orders are
-those of the disks' excitations, of transmission errors and varying meshes, and 2R and 4R of every bent joint, R the
-speed of its input over the line's. A crossing has the amplification 1/(2ζ) of its mode.
+Modes are those of the aligned line with the slopes of its speed-dependent loads and the stages that its loads hold
+springs in at each speed, followed by their shape. Orders are those of the disks' excitations (but for orders that the
+firing of cylinders cancels), of transmission errors and varying meshes, and 2R and 4R of every bent joint, R the speed
+of its input over the line's. A crossing has the amplification 1/(2ζ) of its mode; where a spring changes its stage a
+mode jumps, and an order in the gap meets it nowhere.
 """
 
 from __future__ import annotations
@@ -14,16 +16,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import aligned_matrices, elongation
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
-from trunnion.equations.exciters import exciters
+from trunnion.equations.exciters import Exciter, exciters, size
+from trunnion.equations.harmonic_torques import cylinders
+from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
@@ -34,15 +41,24 @@ Complex = NDArray[np.complex128]
 MULTIPLES = (1, 2)
 """Of a joint's own orders; the second is weaker by the square of the angle."""
 MARGIN = 0.10
+CANCELLED = 1e-9
+"""Share of what all cylinders would give in step below which an order is cancelled by their firing."""
+CLOSE = 1e-9
+"""Share of the speed within which a crossing of a mode that moves is found."""
 
 
 @dataclass(frozen=True)
 class ExcitationLine:
-    """Frequency = order · Ω + frequency [rad/s], and what excites with it."""
+    """Frequency = order · Ω + frequency [rad/s], and what excites with it.
+
+    torque [N m]: largest amplitude, over the speeds, of the disks' torques of that order, added up; NaN where none acts
+    (joints, meshes, transmission errors) or a table does not reach all speeds.
+    """
 
     order: float
     frequency: float
     causes: tuple[str, ...]
+    torque: float = np.nan
 
     @property
     def name(self) -> str:
@@ -73,7 +89,9 @@ class CampbellDiagram(Result):
     speed (speed,) [rad/s]; mode (mode,) numbers, 2 first where the line can turn as a whole; frequency (speed, mode)
     damped [rad/s] and damping_ratio (speed, mode) [1], NaN where a mode does not oscillate; kinetic (rotation, mode)
     and potential (spring, mode): shares of the energy at the middle speed; lines: excitations; crossings: by speed;
-    margin: half width of the band about the modes [1].
+    margin: half width of the band about the modes [1]; jumps: speeds [rad/s] at which a mode jumps over an excitation,
+    with its number and that excitation; bent: whether modes are those of joints made straight; remarks: what is left
+    out.
     """
 
     speed: Array
@@ -87,7 +105,27 @@ class CampbellDiagram(Result):
     lines: tuple[ExcitationLine, ...]
     crossings: tuple[Crossing, ...]
     margin: float
+    jumps: tuple[tuple[float, int, ExcitationLine], ...]
+    bent: bool
+    remarks: tuple[Finding, ...]
     unit: str
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first; speeds in the unit of the line's description."""
+        return self.findings_in(self.unit)
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        jumps = [
+            Finding(
+                Gravity.NOTE,
+                f"Mode {mode} jumps over {line.name} at {show_speed(float(f'{speed:.5g}'), unit)}, where a spring "
+                "changes its stage: on either side of that speed the order is not at resonance.",
+            )
+            for speed, mode, line in self.jumps
+        ]
+        return by_gravity([*jumps, *self.remarks])
 
     def named(self, mode: int) -> str:
         """What moves in a mode and which spring holds most of its energy."""
@@ -124,6 +162,8 @@ class CampbellDiagram(Result):
         yield over("rotation mode", "kinetic", self.kinetic, "1", "share of the kinetic energy")
         yield over("spring mode", "potential", self.potential, "1", "share of the elastic energy")
         yield over("excitation_line", "order", [line.order for line in self.lines], "1")
+        yield over("excitation_line", "torque", [line.torque for line in self.lines], "N*m", "of disks, the largest")
+        yield over("excitation_line", "sources", [len(line.causes) for line in self.lines], "1", "elements that excite")
         yield over("excitation_line", "fixed_frequency", [line.frequency for line in self.lines], "rad/s")
         yield over("crossing", "crossing_speed", [c.speed for c in self.crossings], "rad/s")
         yield over("crossing", "crossing_frequency", [c.frequency for c in self.crossings], "rad/s")
@@ -136,7 +176,8 @@ class CampbellDiagram(Result):
         """The modes by what moves, and the crossings, speeds in ``unit``."""
         unit = unit or self.unit
         span = f"{show_speed(self.speed[0], unit)} to {show_speed(self.speed[-1], unit)}"
-        rows = [f"{len(self.mode)} modes from {span}, crossed {len(self.crossings)} times"]
+        straight = ", joints made straight" if self.bent else ""
+        rows = [f"{len(self.mode)} modes from {span}{straight}, crossed {len(self.crossings)} times"]
         for m, number in enumerate(self.mode):
             hertz = self.frequency[:, m] / (2 * np.pi)
             low, high = np.nanmin(hertz, initial=np.inf), np.nanmax(hertz, initial=-np.inf)
@@ -152,6 +193,7 @@ class CampbellDiagram(Result):
             )
         if not self.lines:
             rows.append("  Nothing excites this line.")
+        rows += [f"  {finding}" for finding in self.findings_in(unit)]
         return "\n".join(rows)
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
@@ -206,28 +248,38 @@ def campbell_diagram(
     frequency = values.imag
     ratio = -values.real / np.abs(values)
     mode = np.arange(frequency.shape[1]) + (2 if assembly.topology.free else 1)
-    lines = excitation_lines(assembly)
+    lines = excitation_lines(assembly, speed)
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
-    met = [
-        crossing
-        for one in lines
-        for m in range(len(mode))
-        for crossing in _crossings(speed, frequency[:, m], ratio[:, m], int(mode[m]), one)
-    ]
+    met, jumps = [], []
+    for one in lines:
+        for m in range(len(mode)):
+            for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], one):
+                if zeta is None:
+                    jumps.append((at, int(mode[m]), one))
+                else:
+                    met.append(Crossing(at, here, int(mode[m]), one, zeta))
     return CampbellDiagram(
         speed, mode, frequency, ratio, kinetic, potential, assembly.topology.names, shaft_names(assembly), lines,
-        tuple(sorted(met, key=lambda c: c.speed)), margin, speed_unit(assembly.line),
+        tuple(sorted(met, key=lambda c: c.speed)), margin, tuple(sorted(jumps, key=lambda jump: jump[0])),
+        bent(assembly), left_out("campbell_diagram", assembly.line), speed_unit(assembly.line),
     )  # fmt: skip
 
 
-def excitation_lines(assembly: Assembly) -> tuple[ExcitationLine, ...]:
-    """Everything that excites, equal lines together, ascending."""
+def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine, ...]:
+    """Everything that excites at ``speeds`` [rad/s], equal lines together, ascending."""
     topo, row, names = assembly.topology, assembly.packed.values, assembly.line.names
     found: dict[tuple[float, float], dict[str, None]] = {}
+    torques: dict[tuple[float, float], float] = {}
     for e in exciters(assembly):
-        if not e.held and row[e.amplitude]:
-            fixed = float(row[e.frequency]) if e.in_time else 0.0
-            found.setdefault((0.0 if e.in_time else float(e.order), fixed), {})[e.element] = None
+        if e.held or not row[e.amplitude]:
+            continue
+        largest = _largest(assembly, e, speeds) if e.station >= 0 else np.nan
+        if largest == 0:
+            continue
+        key = (0.0 if e.in_time else float(e.order), float(row[e.frequency]) if e.in_time else 0.0)
+        found.setdefault(key, {})[e.element] = None
+        if e.station >= 0:
+            torques[key] = torques.get(key, 0.0) + largest
     for j, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
         if law.uneven:
             for cycles in (m * float(rate) for rate in topo.joint_rates(j) for m in MULTIPLES):
@@ -235,7 +287,25 @@ def excitation_lines(assembly: Assembly) -> tuple[ExcitationLine, ...]:
     for mesh in topo.meshes:
         for rate in mesh.stiffness_rates:
             found.setdefault((float(rate), 0.0), {})["mesh stiffness"] = None
-    return tuple(ExcitationLine(k, f, tuple(causes)) for (k, f), causes in sorted(found.items()))
+    return tuple(
+        ExcitationLine(k, f, tuple(causes), torques.get((k, f), np.nan)) for (k, f), causes in sorted(found.items())
+    )
+
+
+def _largest(assembly: Assembly, exciter: Exciter, speeds: Array) -> float:
+    """Largest torque of a disk's harmonic over the speeds [N m]: 0 where its cylinders cancel it, NaN where a table
+    does not reach."""
+    disk = assembly.line.elements[assembly.line.index(exciter.element)]
+    assert isinstance(disk, Disk)
+    fired = len(disk.firing_angles or ())
+    if fired and abs(cylinders(disk, disk.excitation[exciter.number - 1])) <= CANCELLED * fired:
+        return 0.0
+    table = assembly.table(len(speeds))
+    table[:, 0] = speeds
+    try:
+        return float(np.abs(size(assembly, exciter, table)).max())
+    except InputError:
+        return np.nan
 
 
 def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
@@ -249,12 +319,39 @@ def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
     return kinetic / kinetic.sum(axis=0), potential / potential.sum(axis=0)
 
 
-def _crossings(speed: Array, mode: Array, ratio: Array, number: int, line: ExcitationLine) -> Iterator[Crossing]:
+def _crossings(
+    assembly: Assembly, speed: Array, mode: Array, ratio: Array, line: ExcitationLine
+) -> Iterator[tuple[float, float, float | None]]:
+    """Speed, frequency and damping ratio where a line meets a mode; without a ratio where the mode jumps over it."""
     off = line.order * speed + line.frequency - mode
-    for i in range(len(speed) - 1):
-        a, b = off[i], off[i + 1]
-        if a == 0 or a * b < 0:
-            share = 0.0 if a == 0 else a / (a - b)
-            at = float(speed[i] + share * (speed[i + 1] - speed[i]))
-            zeta = float(ratio[i] + share * (ratio[i + 1] - ratio[i]))
-            yield Crossing(at, line.order * at + line.frequency, number, line, zeta)
+    for i in range(len(speed)):
+        if off[i] == 0:
+            yield float(speed[i]), float(mode[i]), float(ratio[i])
+        if i + 1 == len(speed) or not off[i] * off[i + 1] < 0:
+            continue
+        if mode[i] == mode[i + 1]:
+            at = float(speed[i] + off[i] / (off[i] - off[i + 1]) * (speed[i + 1] - speed[i]))
+            yield at, line.order * at + line.frequency, float(ratio[i])
+            continue
+        yield _closed_in(assembly, (float(speed[i]), float(speed[i + 1])), float(mode[i]), line)
+
+
+def _closed_in(
+    assembly: Assembly, between: tuple[float, float], first: float, line: ExcitationLine
+) -> tuple[float, float, float | None]:
+    """The same between two speeds, by halving; ``first``: frequency of the mode at the lower one [rad/s]."""
+
+    def here(at: float) -> tuple[float, float, float]:
+        values, _ = loaded_modes(assembly, np.array([between[0], at]))
+        m = int(np.nanargmin(np.abs(values[0].imag - first)))
+        found = values[1, m]
+        return line.order * at + line.frequency - found.imag, found.imag, -found.real / abs(found)
+
+    low, high = between
+    below = line.order * low + line.frequency < first
+    while high - low > CLOSE * high:
+        middle = (low + high) / 2
+        off, frequency, ratio = here(middle)
+        low, high = (middle, high) if (off < 0) == below else (low, middle)
+    off, frequency, ratio = here(high)
+    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(line.order, 1.0) else None

@@ -21,6 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import require_steady_base
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -118,6 +119,7 @@ def certify_stability(
         raise InputError("must be a whole number, 1 or more", key="most_boxes", value=most_boxes)
     assembly = line if isinstance(line, Assembly) else assemble(line)
     _require_provable(assembly)
+    require_steady_base(assembly, assembly.table(1, 1.0))
     spreads = read_tolerances(assembly, tolerances)
     _require_rising(assembly, spreads)
     space = _Space(assembly, spreads, (float(speeds[0]), float(speeds[1])))
