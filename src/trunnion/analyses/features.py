@@ -128,8 +128,7 @@ _UNPROVABLE = {
 }  # fmt: skip
 _UNPROVABLE |= dict.fromkeys(
     ("tube inertia", "bending stiffness"),
-    "half of a tube's inertia hangs behind the joint in front of it and varies with the angle, which the proof does not "
-    "cover",
+    "half of a tube's inertia hangs behind the joint in front of it and varies with the angle, which no bound covers",
 )
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
