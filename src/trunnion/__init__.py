@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum
     from trunnion.analyses.chaos.poincare_map import poincare_map
     from trunnion.analyses.charts.stability_chart import load_chart, stability_chart
-    from trunnion.analyses.charts.stable_limit import stable_limit
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
         kinetostatics,
         phase_forks,
     )
+    from trunnion.analyses.limits.stable_limit import stable_limit
     from trunnion.analyses.linear.bending import bending_speeds
     from trunnion.analyses.linear.campbell_diagram import campbell_diagram
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
@@ -168,7 +168,7 @@ _HOME = {
     "stability": "trunnion.analyses.linear.stability",
     "stability_chart": "trunnion.analyses.charts.stability_chart",
     "load_chart": "trunnion.analyses.charts.stability_chart",
-    "stable_limit": "trunnion.analyses.charts.stable_limit",
+    "stable_limit": "trunnion.analyses.limits.stable_limit",
     "sensitivity": "trunnion.analyses.sensitivity.sensitivity",
     "tolerance_study": "trunnion.analyses.tolerance.study",
     "certify_stability": "trunnion.analyses.tolerance.certify",

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.analyses.orders.response import response_of_table
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.equations.coefficients import assemble
 
 
 def two_masses(**shaft: Any) -> tn.Driveline:
@@ -265,6 +267,50 @@ def test_differs_from_the_nonlinear_motion_by_the_square(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(8, 108))
 def test_differs_by_the_square_on_a_hundred_lines(seed: int) -> None:
     check_square(seed)
+
+
+def bent_line(**changes: float) -> tn.Driveline:
+    engine = tn.Disk(inertia=0.2, name="hub", excitation=[{"order": 1.5, "amplitude": 20.0, "phase": 0.3}])
+    return tn.Driveline([
+        tn.ConstantSpeed(), tn.Shaft(stiffness=8e3, damping=2.0, name="front"), engine,
+        tn.HookeJoint(angle=changes.pop("angle", 0.3), name="joint"),
+        tn.Shaft(stiffness=changes.pop("stiffness", 5e3), damping=1.0, name="rear"),
+        tn.Disk(inertia=0.3, load_torque=changes.pop("load_torque", 30.0), name="load"),
+    ])  # fmt: skip
+
+
+def test_cases_of_a_table_are_those_lines_by_themselves() -> None:
+    """Angle (from straight on), stiffness and load differ from case to case, each at its own speed."""
+    cases = [(0.0, 5e3, 30.0, 80.0), (0.2, 4e3, 0.0, 95.0), (0.7, 9e3, 60.0, 140.0), (0.2, 4e3, 10.0, 60.0)]
+    assembly = assemble(bent_line())
+    table = assembly.table(len(cases))
+    for k, path in enumerate(("joint.angle", "rear.stiffness", "load.load_torque", "speed")):
+        assembly.packed.resolve(path).put(table, [case[k] for case in cases])
+    together = response_of_table(assembly, table)
+    assert np.isnan(together.vibratory_stress).all()
+    for i, (angle, stiffness, load, speed) in enumerate(cases):
+        alone = tn.order_response(bent_line(angle=angle, stiffness=stiffness, load_torque=load), [speed])
+        for name in ("peak_torque", "vibratory_torque", "vibratory_twist", "heat", "speed_fluctuation", "acceleration"):
+            assert getattr(together, name)[i] == pytest.approx(getattr(alone, name)[0], rel=1e-9, abs=1e-12), name
+
+
+def test_a_table_refuses_what_cannot_be_solved_together() -> None:
+    in_time = tn.Disk(inertia=0.2, excitation=[{"frequency": 50.0, "amplitude": 20.0}], name="hub")
+    assembly = assemble(tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=1.0), in_time]))
+    table = assembly.table(2)
+    assembly.packed.resolve("hub.excitation 1 frequency").put(table, [50.0, 60.0])
+    table[:, 0] = 100.0
+    with pytest.raises(tn.InputError, match="is a frequency of excitation"):
+        response_of_table(assembly, table)
+    share = {"drive_share": 1.0}
+    free = assemble(tn.Driveline([
+        tn.Disk(inertia=0.2, **share), tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=0.1),
+        tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=0.2),
+    ]))  # fmt: skip
+    table = free.table(2)
+    table[:, 0] = 100.0
+    with pytest.raises(tn.InputError, match="starts free and is bent"):
+        response_of_table(free, table)
 
 
 def test_the_drawing_shows_the_limits_of_the_description() -> None:

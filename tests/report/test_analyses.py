@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.charts.stable_limit import LimitKind
+from trunnion.analyses.limits.result import LimitKind
 from trunnion.analyses.linear.bending import tube_critical_speed
 from trunnion.plots.speed_frequency import crossings
 
@@ -66,7 +66,7 @@ def test_limit_knows_edges_of_the_published_tongue() -> None:
 def test_limit_says_when_nothing_was_found() -> None:
     limit = tn.stable_limit(LINE, "HookeJoint 1.angle", [1.3, 1.35], high=0.3)
     assert set(limit.kind) == {LimitKind.BEYOND} and limit.critical_speed is None
-    assert np.all(limit.limit == 0.3) and "end of the scan" in str(limit)
+    assert np.all(limit.limit == 0.3) and "end of the range" in str(limit)
 
 
 def test_limit_counts_separate_intervals() -> None:

@@ -234,7 +234,8 @@ def drawn(result: Any) -> str:
 
 def limit(result: Any) -> Plain:
     """Largest stable value over speed."""
-    return {"speed": result.speed, "limit": result.limit, "text": str(result)}
+    others = [(o.name, np.where(o.reached <= result.high, o.reached, np.nan)) for o in result.others]
+    return {"speed": result.speed, "limit": result.limit, "others": others, "text": str(result)}
 
 
 def ranked(result: Any) -> Plain:

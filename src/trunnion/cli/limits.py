@@ -90,7 +90,7 @@ def _points(found: Tongues) -> Any:
 
 
 def _tongues_text(found: Tongues, unit: str) -> str:
-    from trunnion.plots.quantity_axes import quantity_axis
+    from trunnion.results.quantity_axes import quantity_axis
 
     across, up = quantity_axis(found.x_label, found.x_unit, unit), quantity_axis(found.y_label, found.y_unit, unit)
     what = f"over {across.quantity} × {up.quantity}"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from trunnion.analyses.charts.stable_limit import StableLimit
+    from trunnion.analyses.limits.result import StableLimit
     from trunnion.analyses.linear.speed_sweep import SpeedSweep
     from trunnion.analyses.orders.result import OrderResponse
     from trunnion.equations.coefficients import Assembly
@@ -133,21 +133,26 @@ def stable_limit(
             "--parameter",
             "-p",
             metavar="PARAMETER:LOW:HIGH:STEPS",
-            help="What is raised until the line is unstable, or PARAMETER alone for angles: 0 to the file's range.",
+            help="What is raised until the line is unstable, or PARAMETER alone for angles: 0 to the file's range. "
+            "STEPS are those at which the file's limits are compared.",
         ),
     ] = "HookeJoint *.angle",
     speeds: Speeds = None,
+    margin: Annotated[
+        float | None,
+        typer.Option("--margin", help="Also every speed between, the range widened by this share; 0.1 for 10 %."),
+    ] = None,
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
     as_json: Json = False,
 ) -> None:
-    """The largest value of a parameter up to which the line is stable, over speed.
+    """The largest value of a parameter up to which the line is stable, over speed, and which limit binds before.
 
     Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
     """  # fmt: skip
-    from trunnion.analyses.charts.stable_limit import SCAN
-    from trunnion.analyses.charts.stable_limit import stable_limit as compute
+    from trunnion.analyses.limits.other_limits import SCAN
+    from trunnion.analyses.limits.stable_limit import stable_limit as compute
     from trunnion.equations.coefficients import assemble
 
     line = read_line(file, load_case)
@@ -160,7 +165,7 @@ def stable_limit(
     check_places(to)
     assert isinstance(label, str) and isinstance(low, float) and isinstance(high, float) and isinstance(points, int)
     with output.progress("stable limit") as advance:
-        result = compute(assembly, label, at, low=low, high=high, scan=points - 1, progress=advance)
+        result = compute(assembly, label, at, low=low, high=high, margin=margin, scan=points - 1, progress=advance)
     written = write_results(
         to, file_stem(file), "stable-limit", result.data, lambda: result.plot(unit=unit, operating=line.operation),
         _in_unit(result.data, unit),
@@ -168,7 +173,7 @@ def stable_limit(
     if as_json:
         output.write_json("stable-limit", _limit_json(result, unit, written))
         return
-    print_result(_limit_text(result, unit), written)
+    print_result(result.describe(unit), written)
 
 
 def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
@@ -304,43 +309,27 @@ def _sweep_json(result: SpeedSweep, unit: str, written: Sequence[Path]) -> dict[
 
 
 def _limit_json(result: StableLimit, unit: str, written: Sequence[Path]) -> dict[str, Any]:
-    from trunnion.analyses.charts.stable_limit import LimitKind
+    from trunnion.analyses.limits.result import LimitKind
     from trunnion.results.speeds import speed_factor
 
-    at = result.critical_speed
+    at, factor = result.critical_speed, speed_factor(unit)
     return {
         **_span(result.speed, unit),
+        "sentence": result.sentence_in(unit),
         "parameter": result.parameter,
         "unit": result.unit,
         "smallest": result.smallest,
-        "critical_speed": None if at is None else at * speed_factor(unit),
-        "speed": result.speed * speed_factor(unit),
+        "critical_speed": None if at is None else at * factor,
+        "speed": result.speed * factor,
         "limit": result.limit,
         "kind": [LimitKind(int(kind)).name.lower() for kind in result.kind],
         "intervals": result.intervals,
-        "scan": {"low": result.low, "high": result.high, "step": result.step, "accuracy": result.accuracy},
+        "unstable": [ranges.tolist() for ranges in result.unstable],
+        "usable": result.usable,
+        "binding": list(result.binding),
+        "others": [{"name": o.name, "allowed": o.allowed, "unit": o.unit, "reached": o.reached} for o in result.others],
+        "whole": None if result.whole is None else result.whole.to_dict(),
+        "search": {"low": result.low, "high": result.high, "complete": result.complete, "words": result.search},
         "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
         "written": [str(path) for path in written],
     }
-
-
-def _limit_text(result: StableLimit, unit: str) -> str:
-    from trunnion.plots.quantity_axes import quantity_axis
-    from trunnion.results.speeds import show_speed, speed_factor
-
-    shown, factor = quantity_axis(result.parameter, result.unit, unit), speed_factor(unit)
-    span = (
-        f"{len(result.speed)} speeds from {result.speed.min() * factor:.6g} to {result.speed.max() * factor:.6g} {unit}"
-    )
-    at, several = result.critical_speed, int((result.intervals > 1).sum())
-    ends = shown.said(result.limit.take([result.limit.argmin(), result.limit.argmax()]))
-    steps = round((result.high - result.low) / result.step)
-    lines = [
-        f"no instability at {span} up to {shown.value(result.high)}, the end of the scan"
-        if at is None
-        else f"stable at all {span} up to {shown.value(result.smallest)}, set at {show_speed(at, unit)}",
-        f"  limit over speed: {ends}; first crossing of a scan in {steps} steps",
-    ]
-    if several:
-        lines.append(f"  at {several} speeds the line is stable again above the limit, and unstable once more")
-    return "\n".join([*lines, *(f"  {finding}" for finding in result.findings)])

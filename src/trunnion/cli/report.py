@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.cli import output
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.quantity_axes import quantity_axis
+from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 

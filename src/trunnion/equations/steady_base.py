@@ -45,9 +45,9 @@ def refuse_own_motion(assembly: Assembly, remedy: str, *, bends: bool = False) -
         )
 
 
-def bent(assembly: Assembly) -> bool:
-    """Whether any joint of the line is bent, so that it turns unevenly."""
-    return any(law.uneven for law in joint_laws(assembly, assembly.table(1)))
+def bent(assembly: Assembly, table: Array | None = None) -> bool:
+    """Whether any joint is bent, so that the line turns unevenly: as described, or at any row of ``table``."""
+    return any(law.uneven for law in joint_laws(assembly, assembly.table(1) if table is None else table))
 
 
 def require_balance(assembly: Assembly, table: Array) -> None:

@@ -14,12 +14,12 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
-from trunnion.plots.quantity_axes import QuantityAxis, quantity_axis
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain
 from trunnion.plots.tongues import draw as draw_tongues
 from trunnion.plots.tongues import hidden_key
 from trunnion.results.chart import StabilityChart
+from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 

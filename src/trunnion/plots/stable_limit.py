@@ -1,19 +1,27 @@
-"""The largest stable value of a parameter over speed: stable below the line, not known to be above it."""
+"""The largest stable value of a parameter over speed, the unstable ranges above it, and the limits beside it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from trunnion.analyses.charts.stable_limit import LimitKind, StableLimit
+from trunnion.analyses.limits.result import LimitKind, StableLimit
 from trunnion.driveline.operation import Operation
-from trunnion.plots.quantity_axes import quantity_axis
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+Array = NDArray[np.float64]
+UNSTABLE, EDGE = "#b9a7ad", "#4a1526"
+BESIDE = ("#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+"""Colours of Okabe and Ito's palette that neither verdicts nor marks use."""
+DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 
 
 def draw(
@@ -24,7 +32,7 @@ def draw(
     operating: Operation | None = None,
     values: dict[str, float] | None = None,
 ) -> Axes:
-    """Draw ``limit`` over speed.
+    """Draw ``limit`` over speed: unstable ranges, the largest stable value, and where other limits are reached.
 
     Parameters
     ----------
@@ -34,24 +42,53 @@ def draw(
     """
     axes = axes or new_axes(7.2, 3.6)
     up = quantity_axis(limit.parameter, limit.unit, unit)
-    order = np.argsort(limit.speed)
-    x, y = limit.speed[order] * speed_factor(unit), limit.limit[order] * up.factor
+    x, y = limit.speed * speed_factor(unit), limit.limit * up.factor
     top = limit.high * up.factor
-    axes.fill_between(x, y, top, color="#b9a7ad", lw=0, zorder=1)
-    axes.plot(x, y, color="#4a1526", lw=1.4, zorder=3)
-    ends = limit.kind[order] == LimitKind.BEYOND
-    if ends.any() and not ends.all():
-        axes.plot(x, np.where(ends, y, np.nan), color="white", lw=1.6, zorder=4)
+    ends = limit.kind == LimitKind.BEYOND
+    edges = _edges(x)
+    _unstable(axes, limit, edges, up.factor)
+    axes.plot(x, np.where(ends, np.nan, y), color=EDGE, lw=1.4, marker="." if len(x) == 1 else None, zorder=3)
+    shown = _others(axes, limit, x, up.factor)
     _values(axes, values or {}, up.factor, limit)
     if operating and operating.speed:
         axes.axvline(operating.speed * speed_factor(unit), color=ACCENT, ls=(0, (5, 3)), lw=1.5, zorder=5)
-    axes.set_xlim(x[0], x[-1])
+    axes.set_xlim(edges[0] if len(x) == 1 else x[0], edges[-1] if len(x) == 1 else x[-1])
     axes.set_ylim(limit.low * up.factor, top)
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
     axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
     plain(axes)
-    _key(axes, bool(ends.all()), bool(operating and operating.speed))
+    _key(axes, bool(ends.all()), bool(operating and operating.speed), shown)
     return axes
+
+
+def _edges(x: Array) -> Array:
+    """Where the column of each speed ends: half-way to its neighbours."""
+    if len(x) == 1:
+        return x[0] * np.array([0.99, 1.01])
+    middle = (x[:-1] + x[1:]) / 2
+    return np.concatenate([[2 * x[0] - middle[0]], middle, [2 * x[-1] - middle[-1]]])
+
+
+def _unstable(axes: Axes, limit: StableLimit, edges: Array, factor: float) -> None:
+    """Every unstable range of every speed, as wide as its column."""
+    from matplotlib.collections import PolyCollection
+
+    corners = [
+        [(edges[i], a), (edges[i + 1], a), (edges[i + 1], b), (edges[i], b)]
+        for i, ranges in enumerate(limit.unstable)
+        for a, b in (ranges * factor).tolist()
+    ]
+    axes.add_collection(PolyCollection(corners, facecolor=UNSTABLE, edgecolor=UNSTABLE, lw=0.3, zorder=1))
+
+
+def _others(axes: Axes, limit: StableLimit, x: Array, factor: float) -> list[Line2D]:
+    """Where limits of the description are reached first."""
+    shown = []
+    for k, other in enumerate(o for o in limit.others if np.any(o.reached <= limit.high)):
+        y = np.where(other.reached <= limit.high, other.reached * factor, np.nan)
+        look: dict[str, Any] = {"color": BESIDE[k % len(BESIDE)], "ls": DASHES[k // len(BESIDE) % len(DASHES)]}
+        shown += axes.plot(x, y, lw=1.5, marker="." if len(x) == 1 else None, zorder=4, label=other.name, **look)
+    return shown
 
 
 def _values(axes: Axes, values: dict[str, float], factor: float, limit: StableLimit) -> None:
@@ -75,15 +112,19 @@ def _values(axes: Axes, values: dict[str, float], factor: float, limit: StableLi
         )  # fmt: skip
 
 
-def _key(axes: Axes, all_stable: bool, operating: bool) -> None:
+def _key(axes: Axes, all_stable: bool, operating: bool, others: list[Line2D]) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     handles: list[Line2D | Patch] = [Patch(facecolor="white", edgecolor=INK, label="stable")]
     if all_stable:
-        handles[0].set_label("stable up to the end of the scan")
+        handles[0].set_label("stable up to the end of the range")
     else:
-        handles.append(Patch(facecolor="#b9a7ad", edgecolor=INK, label="at and above the first instability"))
+        handles.append(Patch(facecolor=UNSTABLE, edgecolor=INK, label="unstable"))
+        handles.append(Line2D([], [], color=EDGE, lw=1.4, label="largest stable value"))
+    handles += others
     if operating:
         handles.append(Line2D([], [], color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"))
-    axes.figure.figure.legend(handles=handles, loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
+    axes.figure.figure.legend(
+        handles=handles, loc="outside lower left", ncols=2 if others else 3, fontsize=SMALL, frameon=False
+    )

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.windows import StableWindows
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.quantity_axes import quantity_axis
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.quantity_axes import quantity_axis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

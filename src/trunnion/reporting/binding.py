@@ -67,7 +67,7 @@ def _spring(seen: Overview, check: Check | None, response: OrderResponse) -> tup
     """The spring that the binding check is about, else the most loaded one, and its limits of torque [N m]."""
     case = _case(seen, check)
     stated = [one for one in seen.line.limits_by_element if one.key in OF_TORQUE.values()]
-    places = {one.element: spring_of(case, one.element) for one in stated}
+    places = {one.element: spring_of(case.assembly, one.element) for one in stated}
     if check is not None and check.element in places:
         column = places[check.element]
     else:

@@ -11,9 +11,10 @@ from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.assessment.remedies.remedies import remedies
 from trunnion.analyses.assessment.remedies.result import Remedies
 from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.charts.stable_limit import LimitKind, StableLimit, limit_of_chart
 from trunnion.analyses.kinetostatics import kinetostatics
 from trunnion.analyses.kinetostatics.result import Kinetostatics
+from trunnion.analyses.limits.result import LimitKind, StableLimit
+from trunnion.analyses.limits.stable_limit import limit_of_chart
 from trunnion.analyses.linear.bending import BendingSpeed, bending_findings, bending_speeds
 from trunnion.analyses.linear.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
@@ -128,10 +129,9 @@ def _limit(seen: Overview, named: ResonanceSpeeds) -> StableLimit | None:
 def _limit_findings(limit: StableLimit, seen: Overview) -> list[Finding]:
     """The chart's own finding says where instability begins; this one gives the angle to design by."""
     end = f"{np.rad2deg(limit.high):.3g}°"
-    if np.all(limit.kind == LimitKind.BEYOND):
-        return []
     at = limit.critical_speed
-    assert at is not None
+    if at is None:
+        return []
     where = _rounded(at, seen.unit)
     if np.any(limit.kind == LimitKind.AT_ONCE):
         start = f"{np.rad2deg(limit.low):.3g}°"
@@ -143,7 +143,7 @@ def _limit_findings(limit: StableLimit, seen: Overview) -> list[Finding]:
         Finding(
             Gravity.CAUTION if beyond else Gravity.NOTE,
             f"At the resonance speeds too, which may lie between the chart's points, the line is stable up to "
-            f"{value:.3g}° in all joints (scanned to {end}); the limit is set at {where}.",
+            f"{value:.3g}° in all joints (searched to {end}); the limit is set at {where}.",
         )
     ]
 

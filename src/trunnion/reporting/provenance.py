@@ -40,11 +40,7 @@ def provenance(contents: Contents, source: Path | None, made: datetime) -> list[
                  f"{chart.spot_check.worst_ratio:.2g} of the estimated error; built as: {chart.way}")
             )  # fmt: skip
     if contents.limit is not None:
-        limit = contents.limit
-        rows.append(
-            ("limit angle", f"scanned in steps of {np.rad2deg(limit.step):.2g}°, first crossing bisected to "
-             f"{np.rad2deg(limit.accuracy):.0e}°; regions narrower than a step can be missed")
-        )  # fmt: skip
+        rows.append(("limit angle", contents.limit.search))
     return rows
 
 

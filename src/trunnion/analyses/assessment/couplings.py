@@ -12,6 +12,7 @@ maker's catalogue.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +20,15 @@ from numpy.typing import NDArray
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.own_limits import spring_of
 from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.shafts import Coupling
+from trunnion.equations.coefficients import Assembly
 
+Array = NDArray[np.float64]
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 FREE_FREQUENCY = 10.0
 """Frequency [Hz] up to which S_f is 1."""
-_FORMULA = {
+RATINGS = {
     "nominal_torque": "T_N S_t ≤ T_KN",
     "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
     "vibratory_torque": "T_W S_t S_f ≤ T_KW, S_f = √(f/10 Hz), at least 1",
@@ -42,7 +46,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
     for name, element in zip(subject.line.names, subject.line.elements, strict=True):
         if not isinstance(element, Coupling):
             continue
-        for key, formula in _FORMULA.items():
+        for key, formula in RATINGS.items():
             rating = getattr(element, key)
             title, rule = f"{key.replace('_', ' ')} of {name}", Rule(formula, SOURCE, "known")
             if rating is None:
@@ -56,24 +60,10 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
 def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rule: Rule) -> Check:
     response = case.response
     assert response is not None
-    c = spring_of(case, name)
-    factor = {one.key: one.value for one in subject.line.limits_by_element if one.element == name}
-    temperature, starting = factor.get("temperature_factor", 1.0), factor.get("starting_factor", 1.0)
-    by_order = np.abs(response.torque[:, :, c])
-    said, unit = f"S_t = {temperature:g}", "N*m"
-    if key == "nominal_torque":
-        values = np.abs(response.mean_torque[:, c]) * temperature
-    elif key == "maximum_torque":
-        values = response.peak_torque[:, c] * temperature * starting
-        said += f", S_z = {starting:g}"
-    elif key == "vibratory_torque":
-        factors = _factors(response.order, response.frequency, response.speed, by_order)
-        values = response.vibratory_torque[:, c] * temperature * factors
-    else:
-        values, unit = response.heat[:, c] * temperature, "W"
+    found = rated_values(case.assembly, response, name, key)
+    values, by_order, unit = found.values, found.by_order, found.unit
     at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
-    if key == "vibratory_torque":
-        said += f", S_f = {factors[at]:.4g}"
+    said = found.said + (f", S_f = {found.frequency_factor[at]:.4g}" if key == "vibratory_torque" else "")
     value = float(values[at]) if np.isfinite(values[at]) else np.inf
     margin, required = below(value, rating), subject.required(name)
     why = cause(case, at, by_order[at]) if key != "nominal_torque" else None
@@ -86,9 +76,36 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
     )  # fmt: skip
 
 
-def _factors(
-    order: NDArray[np.float64], extra: NDArray[np.float64], speed: NDArray[np.float64], size: NDArray[np.float64]
-) -> NDArray[np.float64]:
+@dataclass(frozen=True)
+class Rated:
+    """What a rating is compared with, (speed,) in ``unit``; amplitudes by order (speed, order); S_f (speed,)."""
+
+    values: Array
+    by_order: Array
+    unit: str
+    said: str
+    frequency_factor: Array
+
+
+def rated_values(assembly: Assembly, response: OrderResponse, name: str, key: str) -> Rated:
+    """What the rating ``key`` of coupling ``name`` is compared with, service factors included."""
+    c = spring_of(assembly, name)
+    factor = {one.key: one.value for one in assembly.line.limits_by_element if one.element == name}
+    temperature, starting = factor.get("temperature_factor", 1.0), factor.get("starting_factor", 1.0)
+    by_order, said = np.abs(response.torque[:, :, c]), f"S_t = {temperature:g}"
+    none = np.ones(len(response.speed))
+    if key == "nominal_torque":
+        return Rated(np.abs(response.mean_torque[:, c]) * temperature, by_order, "N*m", said, none)
+    if key == "maximum_torque":
+        values = response.peak_torque[:, c] * temperature * starting
+        return Rated(values, by_order, "N*m", f"{said}, S_z = {starting:g}", none)
+    if key == "vibratory_torque":
+        factors = _factors(response.order, response.frequency, response.speed, by_order)
+        return Rated(response.vibratory_torque[:, c] * temperature * factors, by_order, "N*m", said, factors)
+    return Rated(response.heat[:, c] * temperature, by_order, "W", said, none)
+
+
+def _factors(order: Array, extra: Array, speed: Array, size: Array) -> Array:
     """S_f at every speed, of the order that leads there."""
     if not len(order):
         return np.ones(len(speed))

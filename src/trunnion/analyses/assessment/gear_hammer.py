@@ -31,7 +31,7 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
         if isinstance(case.answer, str):
             yield Check(title, Status.NOT_JUDGED, RULE, f"no linear response: {case.answer}")
             continue
-        c = spring_of(case, name)
+        c = spring_of(case.assembly, name)
         swing, mean = case.answer.vibratory_torque[:, c], np.abs(case.answer.mean_torque[:, c])
         swing = np.where(np.isfinite(swing), swing, np.inf)
         if np.all(mean <= NOTHING * swing):

@@ -21,7 +21,7 @@ from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.aligned import relative_ratio
-from trunnion.equations.coefficients import shaft_stiffness
+from trunnion.equations.coefficients import Assembly, shaft_stiffness
 
 Array = NDArray[np.float64]
 WHOLE = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
@@ -64,18 +64,23 @@ def unlimited(subject: Subject, case: Case) -> list[str]:
     return [name for name in springs if name not in limited | rated]
 
 
-def spring_of(case: Case, element: str) -> int:
+def spring_of(assembly: Assembly, element: str) -> int:
     """The spring that an element is part of."""
-    place = case.assembly.line.index(element)
-    return next(c for c, ends in enumerate(case.assembly.topology.compliances) if place in ends.shafts)
+    place = assembly.line.index(element)
+    return next(c for c, ends in enumerate(assembly.topology.compliances) if place in ends.shafts)
+
+
+def name_of(limit: OneLimit) -> str:
+    """ "max torque of Shaft 2"."""
+    return f"{limit.key.replace('_', ' ')} of {limit.element}"
 
 
 def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
-    name = f"{limit.key.replace('_', ' ')} of {limit.element}"
+    name = name_of(limit)
     rule = JUDGED[limit.key]
     if isinstance(case.answer, str):
         return Check(name, Status.NOT_JUDGED, rule, f"no linear response: {case.answer}")
-    found = _values(case, case.answer, limit)
+    found = limited_values(case.assembly, case.answer, limit, case.assembly.table(1))
     if isinstance(found, str):
         return Check(name, Status.NOT_APPLICABLE, rule, found)
     values, by_order = found
@@ -127,24 +132,27 @@ def _crossing(speeds: Array, over: Array) -> float:
     return float(speeds[0] + (speeds[1] - speeds[0]) * over[0] / (over[0] - over[1]))
 
 
-def _values(case: Case, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
-    """What is limited, (speed,), and amplitudes by order (speed, order); or why there is none."""
+def limited_values(
+    assembly: Assembly, response: OrderResponse, limit: OneLimit, table: Array
+) -> tuple[Array, Array] | str:
+    """What is limited, (speed,), and amplitudes by order (speed, order); or why there is none.
+
+    ``table`` (1 or speed, column): the packed numbers that ``response`` was computed with.
+    """
     if limit.key in ("max_speed_fluctuation", "max_acceleration"):
-        return _of_disk(case, response, limit)
-    c = spring_of(case, limit.element)
+        return _of_disk(assembly, response, limit)
+    c = spring_of(assembly, limit.element)
     torque = np.abs(response.torque[:, :, c])
     if limit.key in ("vibratory_torque", "transient_vibratory_torque"):
         return response.vibratory_torque[:, c], torque
     if limit.key == "max_torque":
         return response.peak_torque[:, c], torque
-    element = case.assembly.line.elements[case.assembly.line.index(limit.element)]
     if limit.key == "max_stress":
-        assert isinstance(element, Shaft)
-        factor = stress_factor(element)
-        return response.peak_torque[:, c] * factor, torque * factor
+        factor = _stress_factors(assembly, table, limit.element)
+        return response.peak_torque[:, c] * factor, torque * factor[:, None]
     places = response.spectrum.channels
     low, high = extremes(response.spectrum, response.spectrum.amplitude[..., places.twist], response.mean_twist)
-    twist = np.maximum(np.abs(low), np.abs(high))[:, c] * _share(case, limit.element, c)
+    twist = np.maximum(np.abs(low), np.abs(high))[:, c] * _share(assembly, table, limit.element, c)
     return twist, np.abs(response.twist[:, :, c])
 
 
@@ -155,16 +163,25 @@ def stress_factor(shaft: Shaft) -> float:
     return 16 * outer / (np.pi * (outer**4 - inner**4))
 
 
-def _share(case: Case, element: str, compliance: int) -> float:
-    """Share of the twist of shafts in series that falls on one of them: the softest twists most."""
-    table, line = case.assembly.table(1), case.assembly.line
-    shafts = case.assembly.topology.compliances[compliance].shafts
-    soft = {line.names[i]: 1 / float(shaft_stiffness(case.assembly, table, i)[0]) for i in shafts}
-    return soft[element] / sum(soft.values())
+def _stress_factors(assembly: Assembly, table: Array, element: str) -> Array:
+    """The same (row,) at the rows of ``table``."""
+    place = assembly.line.index(element)
+    outer = table[:, assembly.packed.column(place, "outer_diameter")]
+    bore = assembly.packed.column(place, "inner_diameter")
+    inner = table[:, bore] if bore >= 0 else np.zeros(len(table))
+    return np.asarray(16 * outer / (np.pi * (outer**4 - inner**4)))
 
 
-def _of_disk(case: Case, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
-    topo, place = case.assembly.topology, case.assembly.line.index(limit.element)
+def _share(assembly: Assembly, table: Array, element: str, compliance: int) -> Array:
+    """Share (row,) of the twist of shafts in series that falls on one of them: the softest twists most."""
+    names = assembly.line.names
+    shafts = assembly.topology.compliances[compliance].shafts
+    soft = {names[i]: 1 / shaft_stiffness(assembly, table, i) for i in shafts}
+    return np.asarray(soft[element] / sum(soft.values()))
+
+
+def _of_disk(assembly: Assembly, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
+    topo, place = assembly.topology, assembly.line.index(limit.element)
     station = next(s for s, element in topo.disks if element == place)
     group = topo.group_of(station)
     i = topo.coordinate[group]

@@ -63,7 +63,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
     assert isinstance(shaft, Shaft) and shaft.outer_diameter and shaft.tensile_strength
     alloyed = shaft.material in ALLOYED and not feature.startswith("propeller")
     strength, diameter = min(shaft.tensile_strength / 1e6, 800 if alloyed else 600), shaft.outer_diameter * 1e3
-    factor, c = SHIP_SHAFTS[feature], spring_of(case, name)
+    factor, c = SHIP_SHAFTS[feature], spring_of(case.assembly, name)
     ratio = case.speeds / subject.speed
     inside = ratio <= HIGHEST + 1e-9
     if not np.any(inside):

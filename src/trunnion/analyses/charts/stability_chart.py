@@ -259,7 +259,7 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
     elif chart.line is None:
         own = PatchesAlone.of(chart.function, chart.period)
     else:
-        own = _family_of_line(chart, chart.line)
+        own = family_of_chart(chart)
     if own is None:
         return chart
     way = way_named(chart.way)
@@ -271,8 +271,10 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
     )
 
 
-def _family_of_line(chart: StabilityChart, line: Driveline) -> LineFamily:
-    assembly = assemble(line)
+def family_of_chart(chart: StabilityChart) -> LineFamily:
+    """The family behind a chart of a driveline."""
+    assert chart.line is not None
+    assembly = assemble(chart.line)
     ends = [
         (label, float(values.min()), float(values.max()), 2 if len(values) > 1 else 1)
         for label, values in ((chart.x_parameter, chart.x), (chart.y_parameter, chart.y))

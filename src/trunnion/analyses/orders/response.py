@@ -12,6 +12,7 @@ order, as all that linear theory leaves out.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -30,6 +31,7 @@ from trunnion.equations.exciters import Exciter, exciters
 from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
 TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
@@ -80,6 +82,22 @@ def order_response(
     spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=statically_twisted)
     return _result(assembly, spectrum, judged, wanted)
+
+
+def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
+    """The response of one case a row of packed numbers ``table`` (case, column), each at its own speed.
+
+    Stresses are NaN, as diameters may differ from row to row, and verdicts are not judged.
+
+    Raises
+    ------
+    InputError : see ``order_spectrum``.
+    """
+    require_steady_base(assembly, table)
+    spectrum = order_spectrum(assembly, table[:, 0], table=table)
+    failed = np.full(len(table), Verdict.FAILED, dtype=np.int8)
+    found = _result(assembly, spectrum, lambda: failed, None)
+    return replace(found, stress_factor=np.full_like(found.stress_factor, np.nan))
 
 
 def without_excitation(assembly: Assembly, *, errors_counted: bool = False) -> tuple[Finding, ...]:

@@ -132,7 +132,8 @@ class OrderResponse(Result):
         spectrum = self.spectrum
         v = np.abs(spectrum.angular_frequency)[..., None]
         q = np.abs(spectrum.amplitude[..., spectrum.channels.twist]) ** 2
-        return np.asarray(((spectrum.damping * v**2 + spectrum.loss * v) * q).sum(axis=1) / 2)
+        damping, loss = spectrum.damping[:, None], spectrum.loss[:, None]
+        return np.asarray(((damping * v**2 + loss * v) * q).sum(axis=1) / 2)
 
     @cached_property
     def rotation_amplitude(self) -> Array:

@@ -31,6 +31,7 @@ from trunnion.equations.exciters import (
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import Topology, require_period
+from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 
@@ -52,7 +53,8 @@ class OrderSpectrum:
 
     order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
     (speed, order, channel) of the deviation from the base motion, base (speed, order, inertia) [rad] of the base
-    motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept.
+    motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
+    damping and loss (1 or speed, spring) [N m s/rad, N m/rad].
     """
 
     speed: Array
@@ -104,21 +106,24 @@ def order_spectrum(
     assembly: Assembly,
     speed: Array,
     *,
+    table: Array | None = None,
     statically_twisted: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> OrderSpectrum:
     """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
 
+    ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case.
+
     Raises
     ------
-    InputError : a line with too long a period.
+    InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     shaken = exciters(assembly)
-    case = _Case(assembly, shaken, statically_twisted)
+    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table))
     parts: list[tuple[_Sum, Array]] = []
     done = 0
     while done < len(speed):
-        chunk = speed[done : done + case.batch]
+        chunk = case.numbers[done : done + case.batch]
         parts.append(case.solved(chunk))
         done += len(chunk)
         if len(parts) == 1:
@@ -145,9 +150,29 @@ def order_spectrum(
         mean=np.concatenate([total.mean for total, _ in parts]),
         cut_off=np.concatenate([cut_off for _, cut_off in parts]),
         channels=channels,
-        damping=case.coefficients(speed[:1]).damping[0],
-        loss=case.coefficients(speed[:1]).loss[0],
+        damping=case.springs.damping,
+        loss=case.springs.loss,
     )
+
+
+def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, table: Array | None) -> Array:
+    """The packed numbers (speed, column) to solve; checked where they are given."""
+    if table is None:
+        numbers = assembly.table(len(speed))
+    else:
+        numbers = table.copy()
+        if assembly.topology.free and bent(assembly, table):
+            remedy = "ask order_response of each line by itself"
+            raise InputError("starts free and is bent: its cases are not solved together", element="driveline",
+                             remedy=remedy)  # fmt: skip
+        for exciter in shaken:
+            if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
+                raise InputError(
+                    "is a frequency of excitation, which is no parameter of the orders",
+                    key=assembly.packed.labels[exciter.frequency], remedy="ask order_response of each line by itself",
+                )  # fmt: skip
+    numbers[:, 0] = speed
+    return numbers
 
 
 def _require_room(assembly: Assembly, first: _Sum, speeds: int) -> None:
@@ -162,12 +187,16 @@ def _require_room(assembly: Assembly, first: _Sum, speeds: int) -> None:
 class _Case:
     """What solving takes, apart from the speeds."""
 
-    def __init__(self, assembly: Assembly, shaken: tuple[Exciter, ...], statically_twisted: bool) -> None:
-        self.assembly, self.topo, self.shaken = assembly, assembly.topology, shaken
+    def __init__(
+        self, assembly: Assembly, shaken: tuple[Exciter, ...], statically_twisted: bool, numbers: Array
+    ) -> None:
+        self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
         self.twisted = statically_twisted
-        one = self.coefficients(np.array([1.0]))
-        self.row = assembly.table(1)[0]
-        self.varies = bent(assembly) or bool(one.waves)
+        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
+        one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
+        # Largest of each number: an excitation counts where any case has it.
+        self.row = numbers[np.abs(numbers).argmax(axis=0), np.arange(numbers.shape[1])]
+        self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         self.own = OwnOrders(assembly, self.turns) if self.topo.free and bent(assembly) else None
@@ -180,13 +209,8 @@ class _Case:
         else:
             self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
 
-    def coefficients(self, speed: Array) -> LineCoefficients:
-        return self.assembly.coefficients(self._table(speed), statically_twisted=self.twisted, any_frequency=True)
-
-    def _table(self, speed: Array) -> Array:
-        table = self.assembly.table(len(speed))
-        table[:, 0] = speed
-        return table
+    def coefficients(self, table: Array) -> LineCoefficients:
+        return self.assembly.coefficients(table, statically_twisted=self.twisted, any_frequency=True)
 
     def _plan(self, reach: int) -> tuple[list[Group], dict[int, int], int]:
         """Groups, the offsets of their harmonics, and samples over the period that resolve them."""
@@ -203,23 +227,23 @@ class _Case:
         most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
         return max(1, MOST_NUMBERS // max(most**2, 4 * times * n**2))
 
-    def solved(self, speed: Array) -> tuple[_Sum, Array]:
+    def solved(self, table: Array) -> tuple[_Sum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
-            return self._about_own_motion(self.own.at(float(speed[0])), float(speed[0]))
+            return self._about_own_motion(self.own.at(float(table[0, 0])), table[:1])
         if not self.varies:
-            return self._straight(speed), np.zeros(len(speed))
+            return self._straight(table), np.zeros(len(table))
         while True:
-            found, last = self._bent(speed, self.reach)
+            found, last = self._bent(table, self.reach)
             if self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
                 return found, last
             self.reach = min(MOST, self.reach + max(1, self.reach // 2))
 
-    def _straight(self, speed: Array) -> _Sum:
-        topo, table, co = self.topo, self._table(speed), self.coefficients(speed)
+    def _straight(self, table: Array) -> _Sum:
+        topo, speed, co = self.topo, table[:, 0], self.coefficients(table)
         matrices = line_matrices(topo, co, np.zeros(1))
         loss = _loss_matrix(self.assembly, co)
-        base = self._base(speed, co, np.zeros(1))
+        base = self._base(table, co, np.zeros(1))
         total = _Sum(len(speed), channels_of(topo).count, topo.size)
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
         if groups:
@@ -240,14 +264,18 @@ class _Case:
         self._add_static(total, co)
         return total
 
-    def _bent(self, speed: Array, reach: int) -> tuple[_Sum, Array]:
-        topo, cycles = self.topo, 1 / self.turns
-        every = self.coefficients(speed)
-        nodes = Nodes(speed, None) if self.loss_in_time else nodes_of(speed, every)
-        table, co = self._table(nodes.speed), self.coefficients(nodes.speed)
+    def _bent(self, cases: Array, reach: int) -> tuple[_Sum, Array]:
+        topo, cycles, speed = self.topo, 1 / self.turns, cases[:, 0]
+        every = self.coefficients(cases)
+        nodes = Nodes(speed, None) if self.loss_in_time or not self.alike else nodes_of(speed, every)
+        table, co = cases, every
+        if nodes.weights is not None:
+            table = np.repeat(cases[:1], len(nodes.speed), axis=0)
+            table[:, 0] = nodes.speed
+            co = self.coefficients(table)
         groups, layers, times = self._plan(reach)
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
-        matrices, base = line_matrices(topo, co, tau), self._base(nodes.speed, co, tau)
+        matrices, base = line_matrices(topo, co, tau), self._base(table, co, tau)
         step = float(cycles) * nodes.speed
         blocks = HillBlocks(topo, matrices, co.loss, step, nodes)
         alike = slice(0, 1) if nodes.weights is not None else slice(None)  # ratios do not depend on the speed
@@ -275,9 +303,9 @@ class _Case:
         largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
-    def _about_own_motion(self, own: OwnBase, speed: float) -> tuple[_Sum, Array]:
+    def _about_own_motion(self, own: OwnBase, table: Array) -> tuple[_Sum, Array]:
         """One speed of a bent line that starts free."""
-        topo, cycles, table = self.topo, 1 / self.turns, self._table(np.array([speed]))
+        topo, cycles, speed = self.topo, 1 / self.turns, float(table[0, 0])
         places, co = channels_of(topo), own.coefficients
         total, last = _Sum(1, places.count, topo.size), 0.0
         add_own(own, cycles, total.add)
@@ -306,8 +334,8 @@ class _Case:
         largest = max((float(np.abs(a[:, places.torque]).max()) for a in total.amplitude.values()), default=0.0)
         return total, np.array([last / largest if largest else 0.0])
 
-    def _base(self, speed: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
-        plain = self.assembly.coefficients(self._table(speed), statically_twisted=False, any_frequency=True)
+    def _base(self, table: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
+        plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
         return base_of_excitation(self.topo, co, plain, tau)
 
     def _sources(

@@ -73,6 +73,11 @@ class Region:
         """Values of the parameter along v."""
         return self.family.from_patch(np.asarray(v, dtype=float), False)
 
+    def in_x(self, low: Array, high: Array) -> Array:
+        """Intervals in u as rising intervals (intervals, 2) of the parameter along u."""
+        pairs = np.sort(np.stack([self.x(low), self.x(high)], axis=-1), axis=-1).reshape(-1, 2)
+        return pairs[np.argsort(pairs[:, 0])]
+
     def judged(self, u: Array, v: Array) -> Pixels:
         """Points integrated by themselves: radius, its error, critical multiplier, verdict, each (points,)."""
         x, y = self.x(u), self.y(v)
@@ -164,7 +169,33 @@ def patched(
     """Patch a family over the box that the values ``x`` and ``y`` span, however few points a picture of it would
     have."""
     u, v = family.to_patch(x, True), family.to_patch(y, False)
-    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+    box = _box(u, v)
     sampler = family.sampler(box, 1_000_000, tolerance / 4, threads)
     built = patches.build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=-1, tick=tell)
     return Region(family, built, box, threads)
+
+
+def unpatched(family: ChartFamily, x: Array, y: Array, threads: int) -> Region:
+    """The same box without patches: every row is integrated piece by piece."""
+    box = _box(family.to_patch(x, True), family.to_patch(y, False))
+    return Region(family, PatchedFunction((), (box,)), box, threads)
+
+
+def _box(u: Array, v: Array) -> Box:
+    return Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+
+
+def turned(family: ChartFamily, function: PatchedFunction, threads: int) -> Region:
+    """The region of a chart whose rows are the chart's columns; ``family`` has the chart's axes exchanged."""
+    patches_ = tuple(
+        Patch(_turned(p.box), np.ascontiguousarray(p.coefficients.swapaxes(1, 2)), p.error.swapaxes(1, 2))
+        for p in function.patches
+    )
+    direct = tuple(_turned(box) for box in function.direct)
+    every = [p.box for p in patches_] + list(direct)
+    box = Box(min(b.u0 for b in every), max(b.u1 for b in every), min(b.v0 for b in every), max(b.v1 for b in every))
+    return Region(family, PatchedFunction(patches_, direct), box, threads)
+
+
+def _turned(box: Box) -> Box:
+    return Box(box.v0, box.v1, box.u0, box.u1)

@@ -55,7 +55,8 @@ class Row:
     """Unstable intervals of the row at ``v``, rising: ``low``, ``high``, a point ``inside`` each, all in u; ``kind``
     there.
 
-    ``clipped`` (intervals, 2): whether an end is the end of the box.
+    ``clipped`` (intervals, 2): whether an end is the end of the box; ``failed``: somewhere on the row the motion could
+    not be computed.
     """
 
     v: float
@@ -64,6 +65,7 @@ class Row:
     inside: Array
     kind: NDArray[np.int8]
     clipped: NDArray[np.bool_]
+    failed: bool = False
 
     def __len__(self) -> int:
         return len(self.low)
@@ -238,7 +240,7 @@ def _edges(
         rows.append(
             Row(
                 float(v[r]), np.array(low), np.array(high), np.array(inside), np.array(kind, dtype=np.int8),
-                np.array(clipped, dtype=bool).reshape(-1, 2),
+                np.array(clipped, dtype=bool).reshape(-1, 2), bool(np.isnan(radius[own]).any()),
             )
         )  # fmt: skip
     return rows

@@ -139,15 +139,9 @@ def _finder(region: Region) -> Callable[[float], Array]:
     def find(y: float) -> Array:
         v = float(region.family.to_patch(np.array(y), False))
         row = unstable_intervals(region, np.array([v]))[0]
-        return _in_x(region, row.low, row.high)
+        return region.in_x(row.low, row.high)
 
     return find
-
-
-def _in_x(region: Region, low: Array, high: Array) -> Array:
-    """Intervals in u as rising intervals (intervals, 2) in x."""
-    pairs = np.sort(np.stack([region.x(low), region.x(high)], axis=-1), axis=-1).reshape(-1, 2)
-    return pairs[np.argsort(pairs[:, 0])]
 
 
 @dataclass

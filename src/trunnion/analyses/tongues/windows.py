@@ -18,6 +18,7 @@ from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.tongues import ROWS, tongues
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -121,7 +122,7 @@ class StableWindows(Result):
 
 def stable_windows(
     line: Driveline | Assembly,
-    parameter: str,
+    parameter: str | Parameter,
     low: float,
     high: float,
     speeds: tuple[float, float],
@@ -155,7 +156,7 @@ def stable_windows(
     )  # fmt: skip
     windows, ends = _free_of(found)
     return StableWindows(
-        parameter, found.y_unit, windows, ends, (float(speeds[0]), float(speeds[1])), float(margin),
+        found.y_label, found.y_unit, windows, ends, (float(speeds[0]), float(speeds[1])), float(margin),
         *found.y_range, found.search, speed_unit(assembly.line), found,
     )  # fmt: skip
 

@@ -25,7 +25,8 @@ class LimitsView(View):
     name = "limits"
     title = "Limits"
     about = (
-        "The largest value of a parameter, from low to high, up to which the line is stable, speed by speed; the "
+        "The largest value of a parameter, from low to high, up to which the line is stable, speed by speed, and where "
+        "limits of the description are reached before; the "
         "numbers that move the binding check most, ranked; which angle, off by a little, costs most uniformity."
     )
     defaults = {"what": STABLE, "parameter": "", "low": 0.0, "high": 0.0, "speeds": 31, "error": 1.0}
@@ -72,7 +73,8 @@ class LimitsView(View):
             high = 45 * DEGREE if path.endswith(".angle") else 4 * now if now > 0 else low + size
         speeds = Call("np.linspace", (*speed_range(line), bounded(self.settings["speeds"], 2)))
         call = Call("tn.stable_limit", (LINE, path, speeds), {"low": low, "high": high})
-        return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit")]
+        columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
+        return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit", columns=columns)]
 
     def side(self) -> Any:
         """A picture and a text."""
@@ -108,10 +110,11 @@ class _Side(Side):
         path = str(self.view.settings["parameter"])
         x = data["speed"] * factor
         curves = [("stable below", x, data["limit"] / size)]
+        curves += [(f"{name} reached", x, reached / size) for name, reached in data["others"]]
         curves.append(("the line now", x, np.full(len(x), pack(line).value(path) / size)))
         self.curves.set(
             curves,
-            dashes=["solid", "dashed"],
+            dashes=["solid"] * (len(curves) - 1) + ["dashed"],
             x=f"input speed [{speed}]",
             y=f"{path} [{unit}]",
             title=f"largest stable {path}",

@@ -1,4 +1,4 @@
-"""How a chart's axes read: quantity, unit for the eye, and the factor from SI to it."""
+"""How a parameter reads, on axes and in sentences: quantity, unit for the eye, and the factor from SI to it."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ class QuantityAxis:
 
     def value(self, number: float) -> str:
         """``input speed 1500 rpm``, from SI."""
-        return f"{self.quantity} {self._shown(number)}"
+        return f"{self.quantity} {self.number(number)}"
 
     def said(self, values: NDArray[np.float64]) -> str:
         """``input speed from 300 rpm to 2400 rpm``, from SI."""
-        return f"{self.quantity} from {self._shown(float(values[0]))} to {self._shown(float(values[-1]))}"
+        return f"{self.quantity} from {self.number(float(values[0]))} to {self.number(float(values[-1]))}"
 
-    def _shown(self, number: float) -> str:
+    def number(self, number: float) -> str:
+        """``1500 rpm``, from SI."""
         gap = "" if self.unit in ("", "°") else " "
         return f"{number * self.factor:.6g}{gap}{self.unit}"
 

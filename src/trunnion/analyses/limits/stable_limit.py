@@ -1,0 +1,185 @@
+"""The largest value of a parameter up to which a line is stable, over speed, and what else binds.
+
+Along the parameter, at one speed, stability changes only where a boundary function vanishes; ``tongues.rows`` finds all
+of these zeros for lines of up to three unknowns, so that every unstable range is known however narrow, and with them
+the stable ranges above. Longer lines are sampled. Edges are solved for with integrations of their own at 1e-13.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trunnion.analyses.charts.building import family_for, way_named
+from trunnion.analyses.charts.stability_chart import Task, family_of_chart
+from trunnion.analyses.features import left_out
+from trunnion.analyses.limits.other_limits import SCAN, OtherLimits, other_limits
+from trunnion.analyses.limits.result import LimitKind, StableLimit
+from trunnion.analyses.tongues.boundaries import MOST
+from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
+from trunnion.analyses.tongues.rows import Row, unstable_intervals
+from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
+from trunnion.analyses.tongues.windows import StableWindows, stable_windows
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.parameters import Parameter
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.results.chart import StabilityChart, require_pixels
+from trunnion.results.finding import Finding, Gravity
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+HIGHEST = float(np.deg2rad(60.0))
+ASIDE = 1e-3
+"""Share by which a box about a single speed reaches to either side."""
+AT_ONCE = 500
+"""Speeds searched together: bounded memory, and steps of progress."""
+
+
+def stable_limit(
+    line: Driveline | Assembly,
+    parameter: str | Parameter,
+    speeds: ArrayLike,
+    *,
+    low: float = 0.0,
+    high: float = HIGHEST,
+    margin: float | None = None,
+    scan: int = SCAN,
+    tolerance: float = PATCH_TOLERANCE,
+    progress: Progress | None = None,
+) -> StableLimit:
+    """The largest stable value of ``parameter`` at each of ``speeds`` [rad/s], the stable ranges above, and what binds.
+
+    Parameters
+    ----------
+    parameter : as for a chart: "HookeJoint 1.angle", "HookeJoint *.angle", "factor of Shaft *.stiffness".
+    speeds : one or more input speeds [rad/s].
+    low, high : range that is searched, SI units; by default 0 to 60° for angles.
+    margin : asks for the stable ranges of every speed between the lowest and the highest too, widened by this share at
+        either end (``whole`` in the result; see ``stable_windows``).
+    scan : steps of the grid on which the limits of the description are compared.
+    tolerance : of the patches that tell where to look; edges are solved for by themselves.
+
+    Undecided points (the spectral radius is 1 to within its error) and marginal ones (undamped lines) do not
+    count as unstable.
+
+    Raises
+    ------
+    InputError : as ``stability_chart``; no speed, or one that is not positive.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> found = tn.stable_limit(tn.catalogue("two-shaft-cardan"), "HookeJoint 1.angle", [1.601913], high=0.5)
+    >>> print(found.sentence)
+    Stable at 1.60191 rad/s up to angle of HookeJoint 1 17.1887°, set at 1.60191 rad/s.
+    """
+    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if speed.ndim != 1 or not len(speed) or not np.all(np.isfinite(speed)) or not np.all(speed > 0):
+        raise InputError("must be positive numbers", key="speeds", remedy="tn.rpm(np.linspace(300, 3000, 200))")
+    if isinstance(scan, bool) or not isinstance(scan, int | np.integer) or scan < 2:
+        raise InputError("must be a whole number of steps, 2 or more", key="scan", value=scan)
+    require_pixels(len(speed), int(scan) + 1)
+    assembly, tell = line if isinstance(line, Assembly) else assemble(line), progress or (lambda share: None)
+    ends = float(speed.min()), float(speed.max())
+    if ends[0] == ends[1]:
+        ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)
+    task = task_of(assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit")
+    workers = os.cpu_count() or 1
+    region = _region(task, len(speed), tolerance, workers, lambda s: tell(0.6 * s))
+    found = _Stability.of(region, np.unique(np.clip(speed, task.y.values[0], task.y.values[-1])))
+    tell(0.7)
+    span = float(task.x.values[0]), float(task.x.values[-1])
+    others = other_limits(assembly, task.x.columns, found.speed, *span, int(scan), lambda s: tell(0.7 + 0.3 * s))
+    whole = None
+    if margin is not None:
+        whole = stable_windows(assembly, parameter, low, high, (ends[0], ends[1]), margin=margin)
+    tell(1.0)
+    return _result(assembly, task, region, found, others, whole)
+
+
+def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool = False) -> StableLimit:
+    """The limit of a chart's y parameter, by the patches of the chart; other limits are not compared.
+
+    Parameters
+    ----------
+    chart : of a driveline with the speed along x, freshly computed or read by ``load_chart``.
+    speeds : inside the chart's x axis [rad/s]; those outside are moved to its nearest end.
+    own : add the chart's own speeds.
+    """
+    if chart.x_label != "speed" or chart.line is None or chart.function is None or min(len(chart.x), len(chart.y)) < 2:
+        raise InputError("needs a chart of a driveline with the speed along x", element="chart")
+    own_family, workers = family_of_chart(chart), os.cpu_count() or 1
+    turned_about = replace(own_family, x=own_family.y, y=own_family.x)
+    family = family_for(way_named(chart.way), turned_about)
+    task = Task(family, turned_about.x, turned_about.y, None, chart.line, ())
+    if chart.function.patches:
+        region = turned(family, chart.function, workers)
+    else:
+        region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: None)
+    asked = np.clip(np.asarray(speeds, dtype=float), chart.x.min(), chart.x.max())
+    found = _Stability.of(region, np.unique(np.concatenate([asked, chart.x] if own else [asked])))
+    return _result(assemble(chart.line), task, region, found, OtherLimits((), ""), None)
+
+
+def _region(task: Task, speeds: int, tolerance: float, workers: int, tell: Progress) -> Region:
+    """The box to search; few rows of a long line cost less than one patch of its matrices."""
+    if 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
+        return unpatched(task.family, task.x.values, task.y.values, workers)
+    return patched(task.family, task.x.values, task.y.values, tolerance, workers, tell)
+
+
+@dataclass(frozen=True)
+class _Stability:
+    """Unstable ranges of the parameter at every speed, and whether any of it could not be computed."""
+
+    speed: Array
+    unstable: tuple[Array, ...]
+    at_once: NDArray[np.bool_]
+    failed: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, region: Region, speed: Array) -> _Stability:
+        rows: list[Row] = []
+        for start in range(0, len(speed), AT_ONCE):
+            v = region.family.to_patch(speed[start : start + AT_ONCE], False)
+            rows += unstable_intervals(region, v)
+        at_once = np.array([bool(len(row) and row.clipped[0, 0]) for row in rows])
+        return cls(
+            speed, tuple(region.in_x(row.low, row.high) for row in rows), at_once, np.array([r.failed for r in rows])
+        )
+
+
+def _result(
+    assembly: Assembly, task: Task, region: Region, found: _Stability, others: OtherLimits, whole: StableWindows | None
+) -> StableLimit:
+    low, high = float(task.x.values[0]), float(task.x.values[-1])
+    some = np.array([len(ranges) > 0 for ranges in found.unstable])
+    kind = np.where(~some, LimitKind.BEYOND, np.where(found.at_once, LimitKind.AT_ONCE, LimitKind.CROSSING))
+    kind = np.where(found.failed, LimitKind.UNKNOWN, kind).astype(np.int8)
+    limit = np.array([float(ranges[0, 0]) if len(ranges) else high for ranges in found.unstable])
+    limit[found.failed] = np.nan
+    said = left_out("stable_limit", assembly.line)
+    known = {finding.sentence for finding in said}
+    notes = tuple(Finding(Gravity.NOTE, f"{r[0].upper()}{r[1:]}") for r in task.remarks if r not in known)
+    return StableLimit(
+        task.x.label, task.x.unit, found.speed, limit, kind, found.unstable, low, high,
+        region.by_coefficients and not region.uncovered, _search_words(region),
+        others.limits, others.search, whole, (*said, *notes), speed_unit(assembly.line),
+    )  # fmt: skip
+
+
+def _search_words(region: Region) -> str:
+    if not region.by_coefficients:
+        few = "more than three unknowns have no boundary functions that could be searched completely"
+        return f"stability sampled along the parameter, edges solved for: {few}, so narrow ranges may be missing"
+    if region.uncovered:
+        return (
+            f"every zero of the boundary functions, but {region.uncovered} parts of the box resisted and were sampled"
+        )
+    return "every zero of the boundary functions along the parameter was found at each speed, edges solved for"
