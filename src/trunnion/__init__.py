@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum
     from trunnion.analyses.chaos.poincare_map import poincare_map
     from trunnion.analyses.charts.stability_chart import load_chart, stability_chart
+    from trunnion.analyses.comparison.compare import compare
     from trunnion.analyses.kinetostatics import (
         CrossFriction,
         assembly_sensitivity,
@@ -169,6 +170,7 @@ _HOME = {
     "stability_chart": "trunnion.analyses.charts.stability_chart",
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.limits.stable_limit",
+    "compare": "trunnion.analyses.comparison.compare",
     "sensitivity": "trunnion.analyses.sensitivity.sensitivity",
     "tolerance_study": "trunnion.analyses.tolerance.study",
     "certify_stability": "trunnion.analyses.tolerance.certify",

@@ -7,7 +7,9 @@ import pytest
 import trunnion as tn
 from trunnion.app.address import pack, unpack
 from trunnion.app.calls import LINE, Call, script
-from trunnion.app.document import Document, changes
+from trunnion.app.document import Document
+from trunnion.app.variants import difference
+from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.errors import InputError
 
@@ -83,8 +85,8 @@ def test_elements_are_added_moved_and_removed() -> None:
 
 def test_changes_are_named_with_units() -> None:
     line = tn.loads(starter("two-shaft"))
-    rows = changes(line, line.replace("HookeJoint 1", angle="5 deg"))
-    assert rows == [("HookeJoint 1, angle", "12 deg", "5 deg")]
+    shown = difference(dumps(line), line.replace("HookeJoint 1", angle="5 deg"))
+    assert "<td>HookeJoint 1, angle</td><td>12 deg</td><td>5 deg</td>" in shown
 
 
 def test_an_address_holds_the_line() -> None:

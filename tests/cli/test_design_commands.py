@@ -20,7 +20,24 @@ def test_sensitivity(run, here):
     assert shown["parameter"] == ["HookeJoint 1.angle", "Shaft 1.stiffness"] and len(shown["derivative"][0]) == 2
 
 
+def test_compare(run, here):
+    from trunnion.driveline.starter import starter
+
+    (here / "one.toml").write_text(starter("two-shaft"), encoding="utf-8")
+    (here / "other.toml").write_text(starter("two-shaft").replace("12 deg", "5 deg"), encoding="utf-8")
+    done = run("compare", "one.toml", "other.toml", "-o", "c.png", "-o", "c.nc", "-o", "c.csv")
+    assert done.exit_code == 0 and done.stdout.startswith("one → other: 1 change: ")
+    assert "HookeJoint 1, angle: 12 deg → 5 deg" in done.stdout and (here / "c.png").exists()
+    assert (here / "c.csv").read_text(encoding="utf-8").startswith("quantity,kind,")
+    shown = json.loads(run("compare", "one.toml", "other.toml", "--json").stdout)
+    assert shown["names"] == ["one", "other"] and shown["value_after"] == ["5 deg"]
+    assert run("compare", "one.toml", "one.toml").stdout.strip().endswith("the two descriptions are alike")
+
+
 REFUSED = [
+    (("compare", "two-shaft-cardan"), "AFTER"),
+    (("compare", "two-shaft-cardan", "nowhere.toml"), "nowhere.toml"),
+    (("compare", "two-shaft-cardan", "three-shaft-cardan", "--speed", "2:1"), "is no rising range"),
     (("sensitivity", "two-shaft-cardan", "--of", "orders"), "is nothing to differentiate"),
     (("sensitivity", "two-shaft-cardan", "-p", "Shaft 9.stiffness"), "is not a parameter"),
     (("sensitivity", "two-shaft-cardan", "-s", "-1"), "must be positive"),

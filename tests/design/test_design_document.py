@@ -20,3 +20,4 @@ def test_examples_run_in_order(monkeypatch: Any) -> None:
         for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
             exec(block, names)
     assert "joint 2.angle" in printed.getvalue()
+    assert "joint 2, angle: 5 deg → 6 deg" in printed.getvalue()

@@ -24,6 +24,10 @@ REFUSED = [
     (lambda: tn.sensitivity(LINE, 1.0, load_case="hill"), "load_case = 'hill'", ""),
     (lambda: tn.sensitivity(LINE, 1.0, of="growth").ranked("growth"), "is not a quantity of", "growth rate"),
     (lambda: tn.sensitivity(LINE, 1.0, tips=tips_of(LINE)), "tips: must have the speed along one axis", "tn.tongues"),
+    (lambda: tn.compare(LINE, "truck.toml"), "b = 'str': is not a driveline", "tn.load"),
+    (lambda: tn.compare(LINE, LINE, (2.0, 1.0)), "speeds = (2.0, 1.0): must be a lowest and a highest", "tn.rpm"),
+    (lambda: tn.compare(LINE, LINE, (1.0, 2.0), load_case="hill"), "load_case = 'hill'", ""),
+    (lambda: tn.compare(LINE, LINE).plot(), "comparison: has nothing to draw", "change a value"),
     (
         lambda: tn.sensitivity(tn.catalogue("three-shaft-cardan"), 1.0, of=[], tips=tips_of(LINE)),
         "tips: are not of this line", "of the same line",

@@ -14,10 +14,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.files import FORMAT, dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, Kind
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
@@ -211,7 +212,7 @@ class Document:
 
     def _whole(self, left: list[InputError]) -> Group:
         fields = [
-            Field((key,), _label(key), _shown(self.data[key], kind), message=_said(left, ("", "driveline"), key))
+            Field((key,), label_of(key), text_of(self.data[key], kind), message=_said(left, ("", "driveline"), key))
             for key, kind in _WHOLE.items()
             if key in self.data
         ]
@@ -222,13 +223,15 @@ class Document:
         unit = table.get("speed_unit", "rpm")
         example = {"rpm": "1500 rpm", "Hz": "25 Hz"}.get(unit, "157 rad/s")
         said = {k: _said(left, ("operation",), k) for k in ("speed", "speed_range", "angle_range", "speed_unit")}
-        fields = [Field(("operation", "speed"), "speed", _shown(table.get("speed", ""), SPEED), example, said["speed"])]
+        fields = [
+            Field(("operation", "speed"), "speed", text_of(table.get("speed", ""), SPEED), example, said["speed"])
+        ]
         for key, kind, hint in (("speed_range", SPEED, example), ("angle_range", ANGLE, "15 deg")):
             ends = table.get(key, ["", ""])
             ends = [*ends, "", ""][:2] if isinstance(ends, list) else ["", ""]
             words = ("lowest", "highest") if kind is SPEED else ("smallest", "largest")
             for i, word in enumerate(words):
-                text = _shown(ends[i], kind)
+                text = text_of(ends[i], kind)
                 name = f"{word} {'speed' if kind is SPEED else 'angle'}"
                 fields.append(Field(("operation", key, i), name, text, hint, said[key] if i == 0 else ""))
         units = Field(
@@ -236,7 +239,7 @@ class Document:
         )
         fields.append(units)
         cases = [
-            Field(("operation", "load_case", i), f"load case {i + 1}", _shown(case, None))
+            Field(("operation", "load_case", i), f"load case {i + 1}", text_of(case, None))
             for i, case in enumerate(table.get("load_case", []))
         ]
         rest = [e for e in left if e.element == "operation" or e.element.startswith("load case")]
@@ -257,9 +260,9 @@ class Document:
         ]
         for key in keys:
             quantity = model.quantity_of(key) if model and key in known else None
-            text = _shown(table.get(key, ""), quantity)
+            text = text_of(table.get(key, ""), quantity)
             hint = quantity.example if quantity else ""
-            fields.append(Field(("element", place, key), _label(key), text, hint, _said(left, owners, key)))
+            fields.append(Field(("element", place, key), label_of(key), text, hint, _said(left, owners, key)))
         if "after" in table or any(_owns(e, owners) and e.key == "after" for e in left):
             message = _said(left, owners, "after")
             fields.append(Field(("element", place, "after"), "after", str(table.get("after", "")), "", message))
@@ -278,7 +281,7 @@ class Document:
             kind = LIMIT_KINDS.get(key)
             message = _said(left, owners, key)
             hint = kind.example if kind else ""
-            fields.append(Field(("limit", place, key), _label(key), _shown(value, kind), hint, message))
+            fields.append(Field(("limit", place, key), label_of(key), text_of(value, kind), hint, message))
         rest = [e for e in left if _owns(e, owners)]
         for error in rest:
             left.remove(error)
@@ -306,39 +309,6 @@ def empty() -> str:
     return f'format = {FORMAT}\n\n[[element]]\ntype = "ConstantSpeed"\n'
 
 
-def changes(before: Document | Driveline, after: Driveline) -> list[tuple[str, str, str]]:
-    """What two lines differ in: (place, before, after) as texts."""
-    old = before.line if isinstance(before, Document) else before
-    rows = []
-    one, two = (tomllib.loads(dumps(line)) for line in (old, after))
-    a, b = _flat(one, old), _flat(two, after)
-    for key in dict.fromkeys([*a, *b]):
-        if a.get(key, "") != b.get(key, ""):
-            rows.append((key, a.get(key, "none"), b.get(key, "none")))
-    return rows
-
-
-def _flat(data: dict[str, Any], line: Driveline) -> dict[str, str]:
-    found = {}
-    for key, value in data.items():
-        if key == "element":
-            for name, table in zip(line.names, value, strict=True):
-                model = KINDS[table["type"]]
-                for k, v in table.items():
-                    quantity = model.quantity_of(k) if k in model.model_fields else None
-                    found[f"{name}, {_label(k)}"] = _shown(v, quantity)
-        elif key == "operation":
-            found |= {f"operation, {_label(k)}": _shown(v, None) for k, v in value.items()}
-        elif key == "limit":
-            for table in value:
-                found |= {
-                    f"limit of {table['of']}, {_label(k)}": _shown(v, LIMIT_KINDS.get(k)) for k, v in table.items()
-                }
-        elif key != "format":
-            found[_label(key)] = _shown(value, None)
-    return found
-
-
 def _names(tables: list[Any]) -> list[str]:
     seen: dict[str, int] = {}
     names = []
@@ -363,10 +333,6 @@ def _said(left: list[InputError], owners: tuple[Any, ...], key: str) -> str:
     return "; ".join(f"{e.problem}{'; ' + e.remedy if e.remedy else ''}" for e in mine)
 
 
-def _label(key: str) -> str:
-    return key.replace("_", " ")
-
-
 def _read(text: str) -> Any:
     """What was typed, as a file would hold it: a number, a list or table in TOML, or a text."""
     text = text.strip()
@@ -376,28 +342,3 @@ def _read(text: str) -> Any:
         except (tomllib.TOMLDecodeError, RecursionError, ValueError):
             return text
     return text
-
-
-def _shown(value: Any, kind: Kind | None) -> str:
-    """A value as text in a field, numbers with their unit."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int | float):
-        return f"{value!r} {kind.unit}" if kind and kind is not RATIO else repr(value)
-    if isinstance(value, str):
-        return value
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_inline, value)) + "]"
-    return str(value)
-
-
-def _inline(value: Any) -> str:
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return _shown(value, None)
-
-
-def _key(key: str) -> str:
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _inline(key)

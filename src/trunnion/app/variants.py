@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import panel as pn
 
-from trunnion.app.document import changes
+from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
 from trunnion.driveline.parameters import SPEED, pack
@@ -154,8 +154,8 @@ def difference(kept: str | None, line: Driveline) -> str:
     if not rows:
         return "<p>The two variants are alike so far: change a value.</p>"
     cells = "".join(
-        f"<tr><td>{html.escape(place)}</td><td>{html.escape(a)}</td><td>{html.escape(b)}</td></tr>"
-        for place, a, b in rows[:30]
+        f"<tr><td>{html.escape(one.place)}</td><td>{html.escape(one.before)}</td><td>{html.escape(one.after)}</td></tr>"
+        for one in rows[:30]
     )
     more = f"<p>and {len(rows) - 30} more</p>" if len(rows) > 30 else ""
     return f"<table class='plain'><tr><th>what changed</th><th>kept</th><th>now</th></tr>{cells}</table>{more}"

@@ -21,6 +21,7 @@ from trunnion.cli.options import (
     read_axis,
     read_line,
     read_speed,
+    read_speed_ends,
     read_unit,
 )
 from trunnion.cli.places import check_places, print_result, write_results
@@ -177,13 +178,7 @@ def read_speed_range(text: str | None, assembly: Assembly, unit: str) -> tuple[f
     """``LOW:HIGH`` in rad/s, or the file's range."""
     from trunnion.reporting.answer import speed_range
 
-    if text is None:
-        return speed_range(assembly)
-    ends = text.split(":")
-    read = [read_speed(end, unit) for end in ends]
-    if len(read) != 2 or read[0] is None or read[1] is None or not read[0] < read[1]:
-        raise InputError("is no rising range", key="--speed", value=text, remedy='write "300rpm:2400rpm", say')
-    return read[0], read[1]
+    return read_speed_ends(text, unit) or speed_range(assembly)
 
 
 def _say_windows(

@@ -97,6 +97,16 @@ def read_speed(text: str | None, unit: str, key: str = "--speed") -> float | Non
     return speed
 
 
+def read_speed_ends(text: str | None, unit: str) -> tuple[float, float] | None:
+    """``LOW:HIGH`` in rad/s; None where nothing is written."""
+    if text is None:
+        return None
+    read = [read_speed(end, unit) for end in text.split(":")]
+    if len(read) != 2 or read[0] is None or read[1] is None or not read[0] < read[1]:
+        raise InputError("is no rising range", key="--speed", value=text, remedy='write "300rpm:2400rpm", say')
+    return read[0], read[1]
+
+
 def read_time(text: str | None, key: str) -> float | None:
     """``"20 ms"``, or a bare number of seconds, as a positive time in seconds."""
     if text is None:

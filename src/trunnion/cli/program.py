@@ -21,6 +21,7 @@ from trunnion.cli import describe, study
 from trunnion.cli.app import app as serve_app
 from trunnion.cli.assess import assess, campbell_diagram
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
+from trunnion.cli.compare import compare
 from trunnion.cli.crash import crash_line
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import minimum_damping, stable_windows, tongues
@@ -187,6 +188,7 @@ app.command("stable-limit")(stable_limit)
 app.command("tongues")(tongues)
 app.command("stable-windows")(stable_windows)
 app.command("minimum-damping")(minimum_damping)
+app.command("compare")(compare)
 app.command("sensitivity")(sensitivity)
 app.command("certify-stability")(certify_stability)
 app.command("tolerance-study")(tolerance_study)

@@ -9,6 +9,7 @@ DRAWINGS = {
     "StabilityChart.plot": "trunnion.plots.stability_chart:draw",
     "StableLimit.plot": "trunnion.plots.stable_limit:draw",
     "StableWindows.plot": "trunnion.plots.tongues:draw_windows",
+    "Comparison.plot": "trunnion.plots.comparison:draw",
     "Sensitivities.plot": "trunnion.plots.sensitivity:draw",
     "ToleranceStudy.plot": "trunnion.plots.tolerance:draw",
     "Tongues.plot": "trunnion.plots.tongues:draw",

@@ -1,0 +1,1 @@
+"""Two lines side by side: what changed, and what it did."""

@@ -1,0 +1,179 @@
+"""What changed between two descriptions, and what it did."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
+from trunnion.analyses.assessment.check import Status
+from trunnion.analyses.assessment.result import Assessment
+from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.analyses.comparison.result import Comparison, Difference
+from trunnion.analyses.linear.along import straight_decay
+from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.driveline.changes import changes
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.finding import Finding, Gravity, by_gravity
+
+Array = NDArray[np.float64]
+Values = dict[str, tuple[str, float, str, float]]
+"""By name: kind, value, unit, input speed."""
+
+
+def compare(
+    a: Driveline,
+    b: Driveline,
+    speeds: tuple[float, float] | None = None,
+    *,
+    load_case: str | None = None,
+    unit: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Comparison:
+    """What differs between two descriptions, and what that does to frequencies, stability, torques and checks.
+
+    Elements are matched by their names, modes by their numbers.
+
+    Parameters
+    ----------
+    a, b : before and after.
+    speeds : lowest and highest input speed [rad/s] of both; default the range of each description, or of the other one
+        where it has none.
+    load_case : name of a load case of both; by default they are judged as stated and under each of their own.
+    unit : of speeds in print; default the one of ``a``.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : a range that is reversed; no such load case; what is no driveline.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
+    >>> print(tn.compare(line, line.replace("Shaft 1", stiffness=1.21e4)))
+    before → after: 1 change; no speeds are stated at which both could be judged
+      Shaft 1, stiffness: 10 kN*m/rad → 12.1 kN*m/rad
+      natural frequency of mode 1: 17.7941 Hz → 19.5735 Hz (+10 %)
+      damping ratio of mode 1: 0.01118 → 0.01016 (-9.09 %)
+    """
+    for name, line in (("a", a), ("b", b)):
+        if not isinstance(line, Driveline):
+            raise InputError("is not a driveline", key=name, value=type(line).__name__, remedy='tn.load("truck.toml")')
+    spans = _spans(a, b, speeds)
+    found: list[Values] = []
+    judged: list[Assessment | None] = []
+    said: list[Finding] = []
+    for k, (line, span) in enumerate(zip((a, b), spans, strict=True)):
+        values = dict(_modes(line if load_case is None else line.with_load(load_case), said))
+        if span is not None:
+            subject = subject_of(line, span, load_case, unit)
+            judged.append(judgement(subject, checks_of(subject)))
+            values |= dict(_over_range(subject)) | dict(_margins(judged[-1]))
+        else:
+            judged.append(None)
+        found.append(values)
+        if progress:
+            progress((k + 1) / 2)
+    names = (a.name or "before", b.name or "after")
+    return Comparison(
+        names=names if names[0] != names[1] else ("before", "after"),
+        changes=changes(a, b),
+        differences=tuple(_differences(*found)),
+        assessments=(judged[0], judged[1]),
+        unit=unit or speed_unit(a),
+        findings=by_gravity({finding.sentence: finding for finding in said}.values()),
+    )
+
+
+def _spans(
+    a: Driveline, b: Driveline, speeds: tuple[float, float] | None
+) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
+    """Range of both; None where neither has one."""
+    if speeds is not None:
+        return speeds, speeds
+    first, second = _own(a), _own(b)
+    return first or second, second or first
+
+
+def _own(line: Driveline) -> tuple[float, float] | None:
+    operation = line.operation
+    if operation is None:
+        return None
+    if operation.speed_range:
+        return float(operation.speed_range[0]), float(operation.speed_range[1])
+    return (float(operation.speed), float(operation.speed)) if operation.speed is not None else None
+
+
+def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
+    try:
+        found = natural_frequencies(line)
+    except InputError as error:
+        said.append(Finding(Gravity.CAUTION, str(error).splitlines()[0]))
+        return
+    for m in range(int(found.rigid_body), len(found.frequency)):
+        yield f"natural frequency of mode {m + 1}", ("frequency", float(found.frequency[m]), "rad/s", np.nan)
+    for m in range(int(found.rigid_body), len(found.frequency)):
+        if found.damping_ratio[m]:
+            yield f"damping ratio of mode {m + 1}", ("damping ratio", float(found.damping_ratio[m]), "1", np.nan)
+
+
+def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
+    """The largest growth rate, and the largest torques by all orders, under the load case that binds."""
+    growths = [one for case in subject.cases if (one := _growth(case)) is not None]
+    if growths:
+        rate, speed = max(growths)
+        yield "largest growth rate", ("growth rate", rate, "1/s", speed)
+    cases = [case for case in subject.cases if case.response is not None]
+    if not cases:
+        return
+    for c, spring in enumerate(shaft_names(cases[0].assembly)):
+        for word in ("peak", "vibratory"):
+            most = max((_largest(case, word, c) for case in cases), key=lambda found: found[0])
+            yield f"{word} torque of {spring}", ("torque", most[0], "N*m", most[1])
+
+
+def _largest(case: Case, word: str, spring: int) -> tuple[float, float]:
+    response = case.response
+    assert response is not None
+    values = (response.peak_torque if word == "peak" else response.vibratory_torque)[:, spring]
+    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
+    return (float(values[at]) if np.isfinite(values[at]) else np.inf), float(case.speeds[at])
+
+
+def _growth(case: Case) -> tuple[float, float] | None:
+    """Largest growth rate over the range and its speed; of a line that nothing varies, its slowest decay."""
+    try:
+        if not case.parametric:
+            speeds = case.speeds
+            rates = np.array([-straight_decay(case.assembly, float(speed)) for speed in speeds])
+        else:
+            speeds, rates = case.along.speed, case.along.growth_rate
+    except (InputError, ComputationError):
+        return None
+    if not np.any(np.isfinite(rates)):
+        return None
+    at = int(np.nanargmax(rates))
+    everywhere = np.ptp(rates) <= 1e-9 * abs(rates[at])
+    return float(rates[at]), np.nan if everywhere else float(speeds[at])
+
+
+def _margins(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
+    for check in judged.checks if judged else ():
+        if check.status in (Status.SATISFIED, Status.EXCEEDED):
+            yield f"margin of {check.name}", ("margin", float(check.margin), "1", float(check.speed))
+
+
+def _differences(before: Values, after: Values) -> Iterator[Difference]:
+    order = ("margin", "growth rate", "torque", "frequency", "damping ratio")
+    names = dict.fromkeys([*before, *after])
+    kinds = {name: (before.get(name) or after[name])[0] for name in names}
+    for name in sorted(names, key=lambda one: order.index(kinds[one])):
+        kind, _, unit, _ = before.get(name) or after[name]
+        first, second = (one.get(name, ("", np.nan, "", np.nan)) for one in (before, after))
+        yield Difference(name, kind, first[1], second[1], unit, first[3], second[3])

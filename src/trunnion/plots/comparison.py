@@ -1,0 +1,66 @@
+"""Two lines side by side: every margin before and after, or what changed of frequencies and torques."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.analyses.comparison.result import Comparison, Difference
+from trunnion.errors import InputError
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SHOWN = 12
+"""Rows at most."""
+WORST, BEST = -100.0, 100.0
+"""Margins [%] beyond these stand at the edge."""
+
+
+def draw(found: Comparison, axes: Axes | None = None, *, most: int = SHOWN) -> Axes:
+    """Margins of checks that differ, before as rings and after as dots; relative changes where nothing was judged."""
+    margins = [one for one in found.of_kind("margin") if one.matters]
+    if margins:
+        margins.sort(key=lambda one: np.nanmin([one.before, one.after]))
+        return _margins(found, margins[:most], axes)
+    moved = [one for one in found.differences if one.matters and np.isfinite(one.relative)]
+    if not moved:
+        raise InputError("has nothing to draw: nothing differs", element="comparison", remedy="change a value")
+    return _changes(found, moved[:most], axes)
+
+
+def _margins(found: Comparison, rows: list[Difference], axes: Axes | None) -> Axes:
+    axes = axes if axes is not None else new_axes(7.6, 1.7 + 0.36 * len(rows))
+    for place, one in enumerate(rows):
+        ends = np.clip([100 * one.before, 100 * one.after], WORST, BEST)
+        better = not ends[1] < ends[0]
+        axes.plot(ends, [place, place], color=ACCENT if better else "#d55e00", lw=2.2, zorder=2)
+        before, after = found.names if not place else (None, None)
+        axes.plot(ends[:1], [place], "o", mfc="white", mec=INK, ms=7, zorder=3, label=before)
+        axes.plot(ends[1:], [place], "o", color=INK, ms=7, zorder=3, label=after)
+    axes.axvline(0.0, color=INK, lw=1.0)
+    axes.set_xlabel("margin [%]", fontsize=TEXT, color=INK)
+    return _finished(axes, [one.name.removeprefix("margin of ") for one in rows])
+
+
+def _changes(found: Comparison, rows: list[Difference], axes: Axes | None) -> Axes:
+    axes = axes if axes is not None else new_axes(7.6, 1.5 + 0.34 * len(rows))
+    axes.barh(range(len(rows)), [100 * one.relative for one in rows], color=ACCENT, height=0.62, label=found.names[1])
+    axes.axvline(0.0, color=INK, lw=1.0)
+    axes.set_xlabel(f"change from {found.names[0]} [%]", fontsize=TEXT, color=INK)
+    return _finished(axes, [one.name for one in rows])
+
+
+def _finished(axes: Axes, names: list[str]) -> Axes:
+    axes.set_yticks(range(len(names)), names, fontsize=SMALL)
+    axes.invert_yaxis()
+    axes.grid(axis="x", color="#dddddd", lw=0.6)
+    axes.set_axisbelow(True)
+    plain(axes)
+    axes.tick_params(axis="y", labelsize=SMALL)
+    legend = axes.legend(fontsize=SMALL, frameon=False, loc="best")
+    for text in legend.get_texts():
+        text.set_color(FAINT)
+    return axes
