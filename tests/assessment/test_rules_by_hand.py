@@ -219,3 +219,57 @@ def test_no_range_is_barred_near_the_rated_speed():
     assert passing.status is Status.EXCEEDED and "no barred range at λ ≥ 0.8" in passing.because
     ratio = passing.speed / tn.rpm(150)
     assert ratio >= 0.8 and passing.limit == pytest.approx(760 / 18 * 0.67231 * (3 - 2 * ratio**2) * 1e6, rel=1e-4)
+
+
+def test_numbers_stand_beside_each_other_in_one_unit():
+    tube = tn.Shaft(outer_diameter="60 mm", length="0.5 m", material="steel", loss_factor=0.02, name="shaft")
+    parts = [
+        tn.Disk(inertia=0.2, drive_share=1.0, excitation=[{"order": 2, "amplitude": 100.0}]),
+        tube,
+        tn.Disk(inertia=0.8, load_torque=500.0),
+    ]
+    line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_stress="120 MPa", max_torque="20 kN*m")])
+    found = tn.assess(line, (50.0, 50.0))
+    assert "MPa against 120 MPa at" in found.check("max stress of shaft").because
+    assert "N*m against 20000 N*m at" in found.check("max torque of shaft").because.replace("2e+04", "20000")
+    assert "times the least" in str(found.table("rpm"))  # of separation, which must be reached
+
+
+def test_joints_that_cancel_leave_nothing():
+    """Rounding of two equal joints is not shown as a tenth of a nanoradian."""
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1e5, damping=20.0), tn.Disk(inertia=0.02), tn.HookeJoint(angle="5 deg"),
+        tn.Shaft(stiffness=1e5, damping=20.0), tn.Disk(inertia=0.02), tn.HookeJoint(angle="5 deg"),
+        tn.Shaft(stiffness=1e5, damping=20.0), tn.Disk(inertia=0.1),
+    ]  # fmt: skip
+    found = tn.assess(tn.Driveline(parts), (100.0, 100.0))
+    assert found.check("uniformity").because.startswith("U = 0 against 0.0027, as one joint of 0 deg")
+    assert found.check("acceleration behind the joints").because.startswith("0 rad/s^2 against 300 rad/s^2")
+
+
+def test_the_mean_twist_of_a_soft_coupling_is_no_swing_of_a_joint():
+    """A free line linear about its own motion: a coupling twisted by 0.25 rad on average in front of a joint."""
+    parts = [
+        tn.Disk(inertia=0.3, drive_share=1.0, excitation=[{"order": 2, "amplitude": 1.0}]),
+        tn.Shaft(stiffness=1e3, damping=5.0),
+        tn.Disk(inertia=0.05),
+        tn.HookeJoint(angle="2 deg"),
+        tn.Shaft(stiffness=2e4, damping=5.0),
+        tn.Disk(inertia=1.0, load_torque=250.0),
+    ]
+    found = tn.order_response(tn.Driveline(parts), [150.0])
+    assert abs(found.mean_twist[0, 0]) == pytest.approx(0.25, rel=0.02)
+    assert found.joint_rotation[0] < 0.01 and bool(found.linear[0])
+
+
+def test_findings_of_one_load_case_carry_its_name():
+    parts = [
+        tn.Disk(
+            inertia=0.2, drive_share=1.0, excitation=[{"order": 2, "torques": [0.0, 900.0], "amplitudes": [5.0, 500.0]}]
+        ),
+        tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"),
+        tn.Disk(inertia=0.8, name="load", load_torque=10.0),
+    ]
+    operation = tn.Operation(speed=125.0, load_cases=(tn.LoadCase(name="full", loads={"load": 800.0}),))
+    found = tn.assess(tn.Driveline(parts, operation=operation))
+    assert any("Load case full: Orders act at the nominal angle" in str(f) for f in found.findings)

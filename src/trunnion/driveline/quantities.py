@@ -243,6 +243,18 @@ def shown(value: float, kind: Kind, unit: str | None = None, digits: int = 6) ->
     return f"{value / size:.{digits}g}" + ("" if kind is RATIO else f" {symbol}")
 
 
+def against(value: float, limit: float, kind: Kind, digits: int = 4) -> str:
+    """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
+    small = min(abs(value), abs(limit))
+    symbol, size = _pick(small if small > SAME_UNIT * abs(limit) else limit, kind, None)
+    left, right = (f"{x / size:.{digits}g}" + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
+    return f"{left} against {right}"
+
+
+SAME_UNIT = 1e-3
+"""Share of a limit from which a value is shown in the unit that suits it, and the limit with it."""
+
+
 def _pick(value: float, kind: Kind, unit: str | None) -> tuple[str, float]:
     for symbol, size, smallest in (*kind.shown, *(SPEED.shown + FREQUENCY.shown if unit else ())):
         if symbol == unit or (unit is None and abs(value) >= smallest):

@@ -124,6 +124,18 @@ def _turn(subject: Subject) -> Kinetostatics | None:
 
 
 def _findings(cases: tuple[Case, ...], unit: str) -> tuple[Finding, ...]:
-    """What the responses say of themselves, once."""
-    said = {f.sentence: f for case in cases if case.response for f in case.response.findings_in(unit)}
-    return by_gravity(said.values())
+    """What the responses say of themselves, once; what only one load case says, with its name."""
+    said: dict[str, tuple[Finding, list[str]]] = {}
+    for case in cases:
+        for finding in case.response.findings_in(unit) if case.response else ():
+            said.setdefault(finding.sentence, (finding, []))[1].append(case.name)
+    everywhere = sum(case.response is not None for case in cases)
+    return by_gravity(
+        finding if len(names) == everywhere or names == [""] else _of_case(finding, names)
+        for finding, names in said.values()
+    )
+
+
+def _of_case(finding: Finding, names: list[str]) -> Finding:
+    where = " and ".join(f"load case {name}" if name else "as stated" for name in names)
+    return Finding(finding.gravity, f"{where[0].upper()}{where[1:]}: {finding.sentence}")

@@ -83,9 +83,11 @@ def judged(margin: float, required: float = 0.0) -> Status:
 
 
 def percent(margin: float) -> str:
-    """ "12 % free", "exceeded by 50 %"."""
+    """ "12 % free", "exceeded by 50 %"; of what must be reached, "5.5 times the least"."""
     if not isfinite(margin):
         return "exceeded without bound" if margin < 0 else ""
+    if margin > 1:
+        return f"{1 + margin:.3g} times the least"
     share = f"{float(f'{abs(100 * margin):.3g}'):.10g} %"
     return f"{share} free" if margin >= 0 else f"exceeded by {share}"
 

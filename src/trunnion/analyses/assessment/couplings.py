@@ -21,6 +21,7 @@ from trunnion.analyses.assessment.check import Check, Rule, Status, below, judge
 from trunnion.analyses.assessment.own_limits import spring_of
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.driveline.quantities import POWER, TORQUE, against
 from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
 
@@ -67,7 +68,12 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
     value = float(values[at]) if np.isfinite(values[at]) else np.inf
     margin, required = below(value, rating), subject.required(name)
     why = cause(case, at, by_order[at]) if key != "nominal_torque" else None
-    because = f"{value:.4g} {unit} against {rating:.4g} {unit} at {subject.shown(case.speeds[at])}, {percent(margin)}"
+    numbers = (
+        against(value, rating, TORQUE if unit == "N*m" else POWER)
+        if np.isfinite(value)
+        else f"no steady state (undamped resonance) against {rating:.4g} {unit}"
+    )
+    because = f"{numbers} at {subject.shown(case.speeds[at])}, {percent(margin)}"
     return Check(
         f"rating: {key.replace('_', ' ')} of {name}", judged(margin, required), rule,
         because + (f", {why}" if why else "") + case.suffix, margin, required, value, rating, unit,

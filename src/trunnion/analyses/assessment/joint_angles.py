@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, above, below, judged, percent
 from trunnion.analyses.assessment.subject import Subject
+from trunnion.analyses.assessment.uniformity import ROUNDING
 from trunnion.analyses.kinetostatics import Kinetostatics
 from trunnion.analyses.kinetostatics.measures import largest
 from trunnion.driveline.driveline import hooke_joints
@@ -104,6 +105,7 @@ def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) ->
 
 
 def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit: float) -> Check:
+    value = value if value > ROUNDING * subject.high**2 else 0.0
     margin = below(value, limit)
     because = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}, {percent(margin)}"
     return Check(title, judged(margin), rule, because, margin, 0.0, value, limit, "rad/s^2", subject.high,

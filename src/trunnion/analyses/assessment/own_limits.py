@@ -18,7 +18,7 @@ from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.orders.totals import extremes
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
-from trunnion.driveline.quantities import shown
+from trunnion.driveline.quantities import against, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
@@ -89,10 +89,12 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
     value = float(values[at]) if np.isfinite(values[at]) else np.inf
     margin = below(value, limit.value)
     said = cause(case, at, by_order[at])
-    how = shown(value, kind, digits=4) if np.isfinite(value) else "no steady state (undamped resonance)"
-    because = f"{how} against {shown(limit.value, kind, digits=4)} at {subject.shown(case.speeds[at])}, " + percent(
-        margin
+    how = (
+        against(value, limit.value, kind)
+        if np.isfinite(value)
+        else f"no steady state (undamped resonance) against {shown(limit.value, kind, digits=4)}"
     )
+    because = f"{how} at {subject.shown(case.speeds[at])}, {percent(margin)}"
     because += (f", {said}" if said else "") + case.suffix
     allowed = limit.value * (1 - limit.margin)
     barred = bands(case.speeds, values, np.full(len(values), allowed)) if limit.key == "vibratory_torque" else ()

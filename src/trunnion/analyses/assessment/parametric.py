@@ -73,7 +73,8 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         )  # fmt: skip
     else:
         words = sorted({str(Verdict(int(v))) for v in verdict if v != Verdict.STABLE})
-        because = f"{' and '.join(words)} at some speeds: state the damping of the shafts{case.suffix}"
+        remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
+        because = f"{' and '.join(words)} at some speeds: {remedy}{case.suffix}"
         yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=inputs, load_case=case.name)
 
 

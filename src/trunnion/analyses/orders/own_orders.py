@@ -100,7 +100,9 @@ class OwnOrders:
         first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         seen[:, places.deviation] = observed.rotation[:, first]
         before = [topo.stations[joint].before for joint in topo.joints]
-        seen[:, places.joint_input] = (observed.rotation - rigid)[:, before]
+        # Equations are linear about the own motion: where the load twists a joint's input to on average is no swing.
+        swing = observed.rotation - rigid
+        seen[:, places.joint_input] = (swing - swing.mean(axis=0))[:, before]
         return OwnBase(
             tau=tau,
             relative=relative,
