@@ -19,6 +19,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -243,6 +244,22 @@ def main() -> None:
         if line is two and (other := heyoka_seconds(line, result, 400)) is not None:
             scaled = other[0] * n**2 / threads
             print(f"{'':6}heyoka in batches: {scaled:.0f} s, {scaled / took:.0f} times the chart, apart {other[1]:.1e}")
+
+    truck = tn.load(Path(__file__).parents[1] / "examples" / "truck.toml")
+    ranges = (tn.rpm(300), tn.rpm(2400)), (0.0, tn.deg(15))
+    for across, up in ((40, 30), (200, 150)):
+        spent, every = [], []
+        for _ in range(repeats + 1):
+            begin, wall = time.process_time(), time.perf_counter()
+            result = tn.stability_chart(
+                truck, ("speed", *ranges[0], across), ("HookeJoint *.angle", *ranges[1], up),
+                tolerance=TOLERANCE, threads=threads,
+            )  # fmt: skip
+            spent.append(time.process_time() - begin)
+            every.append(time.perf_counter() - wall)
+        middle, clock = np.median(spent[1:]), np.median(every[1:])
+        nodes = result.function.evaluations
+        print(f"truck, {across} × {up}: {middle:.2f} s of processor time, {clock:.2f} s by the clock, {nodes} matrices")
 
     n = 1000 // less
     for name, speed, angle in (

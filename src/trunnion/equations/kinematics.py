@@ -41,8 +41,8 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
     """
     cases = len(coefficients.speed)
     tau = np.broadcast_to(tau, (cases, np.shape(tau)[-1]))
-    shape = (*tau.shape, len(topo.stations))
-    a, w, w1, r, r1, r2 = (np.zeros(shape) for _ in range(6))
+    # Each station lies in one piece over time, which is how it is filled.
+    a, w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(6))
     laws = list(coefficients.joints)
     for s, station in enumerate(topo.stations):
         b = station.before

@@ -65,11 +65,13 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     motion = base_motion(topo, coefficients, tau, ratio_values(topo))
     cases, times, n = (*motion.angle.shape[:2], topo.size)
     speed = coefficients.speed[:, None]
-    mass, damping, stiffness = (np.zeros((cases, times, n, n)) for _ in range(3))
+    # Each entry lies in one piece over time, which is how it is filled.
+    mass, damping, stiffness = (np.zeros((n, n, cases, times)).transpose(2, 3, 0, 1) for _ in range(3))
     forcing = np.zeros((cases, times, n))
     slope_seen = np.zeros((cases, times, len(topo.compliances)))
     ratio_seen, wave = np.zeros_like(slope_seen), stiffness_waves(topo, coefficients, tau)
-    for s in range(len(topo.stations)):
+    acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
+    for s in np.flatnonzero(np.any([part.any(axis=0) for part in acting], axis=0)).tolist():
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]
         if i < 0:

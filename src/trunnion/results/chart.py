@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Resample = Callable[[Array, Array], tuple[Array, Array, Complex, NDArray[np.int8]]]
-FORMAT = "trunnion stability chart 3"
+FORMAT = "trunnion stability chart 4"
 
 
 BYTES_A_PIXEL = 64

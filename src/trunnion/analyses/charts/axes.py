@@ -38,6 +38,11 @@ class Axis:
         return bool(np.any(self.columns.index == 0))
 
     @property
+    def one_sided(self) -> bool:
+        """Whether no two values differ in sign."""
+        return bool(self.values[0] >= 0 or self.values[-1] <= 0)
+
+    @property
     def label(self) -> str:
         """Path or label of the parameter."""
         return self.columns.label
@@ -88,13 +93,23 @@ SHARES = np.mod(np.sqrt(5) / 2 * np.arange(7), 1.0)
 """Places along an axis that share no period: equal steps would miss what repeats, as fork angles do."""
 
 
-def moves_nothing(stability: Callable[[Array, Array], Array], x: Axis, y: Axis, of_x: bool) -> bool:
+def moves_nothing(
+    stability: Callable[[Array, Array], Array],
+    x: Axis,
+    y: Axis,
+    of_x: bool,
+    differ: Callable[[Array, Array], bool] = lambda x, y: False,
+) -> bool:
     """Whether an axis does not change the stability at all, compared at several places and values of the other.
 
     stability : (x, y) → quantities (points, …) that decide it, known to some 1e-12.
+    differ : (x, y) of two points → whether a cheap look already tells them apart.
     """
     own, other = (x.values, y.values) if of_x else (y.values, x.values)
     if len(own) == 1:
+        return False
+    ends, middle = own[[0, -1]], np.full(2, other.min() + 0.41 * np.ptp(other))
+    if differ(ends, middle) if of_x else differ(middle, ends):
         return False
     samples = own.min() + SHARES * np.ptp(own)
     for share in (0.41, 0.13, 0.87):

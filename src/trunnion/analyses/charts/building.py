@@ -29,6 +29,8 @@ Progress = Callable[[float], None]
 
 SPOTS = 24
 """Random pixels at which a chart checks itself."""
+FEW = 2000
+"""Pixels for each of which hundreds of steps of dense matrices may be spent to decide them."""
 DIRECT_BYTES = 512 * 2**20
 """Memory for matrices of points that are integrated by themselves together."""
 UNEVEN = 0.4713
@@ -146,6 +148,8 @@ def _patched(
     box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
     if not way.patched or box.u0 == box.u1 or box.v0 == box.v1:
         return PatchedFunction((), (box,))
+    if not way.smaller and (few := family.leading(box, len(u) * len(v), tolerance / 4, threads, tell)) is not None:
+        return few
     sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads, slabs=not way.smaller)
     boxes = [part for whole in sampler.boxes for part in (_quarters(whole) if way.smaller else [whole])]
     return patches.build(sampler.evaluate, boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
@@ -229,6 +233,21 @@ def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: f
     if family.set_aside or not 0 < len(rows) <= family.affordable:
         return
     found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
+    better = found.error < pixels.error[rows, columns]
+    here = rows[better], columns[better]
+    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
+    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
+    _decide_stiff(family, pixels, x, y)
+
+
+def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> None:
+    """Once more for what is left, by the multipliers themselves of steps that are halved until they stay.
+
+    What fast modes leave in the matrix makes its error far larger than theirs.
+    """
+    rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
+    if not 0 < len(rows) <= FEW or (found := family.settled(x[columns], y[rows])) is None:
+        return
     better = found.error < pixels.error[rows, columns]
     here = rows[better], columns[better]
     pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]

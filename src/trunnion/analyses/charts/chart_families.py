@@ -7,6 +7,7 @@ functions, so a speed axis is patched in 1/Ω.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Protocol
@@ -15,7 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.axes import Axis
+from trunnion.analyses.charts.chart_pixels import Pixels
+from trunnion.analyses.charts.few_nodes import leading_patches
+from trunnion.analyses.charts.leading_group import told_apart
+from trunnion.analyses.charts.prices import without_groups
 from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.first_order import LineRates
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
@@ -28,8 +34,11 @@ from trunnion.numerics.chain.chain_monodromy import (
 )
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices
-from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid
+from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
+from trunnion.numerics.compiled import SMALL
+from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
 from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
+from trunnion.results.verdict import verdicts
 
 Array = NDArray[np.float64]
 
@@ -59,6 +68,17 @@ class ChartFamily(Protocol):
 
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """How to sample grids in the patch variables when building the patches of ``box``; by slabs where they pay."""
+
+    def leading(
+        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """Patches of the largest multipliers alone, where those stand apart and cost less; else None."""
+
+    def differ(self, x: Array, y: Array) -> bool:
+        """Whether a cheap look tells the stability of two points (x, y) apart; False also where it would be dear."""
+
+    def settled(self, x: Array, y: Array) -> Pixels | None:
+        """Pixels at points (x, y) from steps that are halved until the multipliers stay; None where there is no way."""
 
     def over_whole_periods(self) -> ChartFamily:
         """The same family integrated over whole periods, whatever symmetry it may have."""
@@ -133,11 +153,18 @@ class LineFamily:
         ends = self._coefficients(self.x.values[:1], self.y.values[:1])
         return chain_program(self.assembly.topology, ends, self._by_speed)
 
+    def rates(self, x: Array, y: Array) -> LineRates:
+        """The equations at points (x, y), each a case."""
+        return LineRates.of(self.assembly, self._table(x, y), self.statically_twisted)
+
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
+        return self.assembly.coefficients(self._table(x, y), statically_twisted=self.statically_twisted)
+
+    def _table(self, x: Array, y: Array) -> Array:
         table = self.assembly.table(len(x), self.speed)
         self.x.columns.put(table, x)
         self.y.columns.put(table, y)
-        return self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+        return table
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
@@ -196,6 +223,33 @@ class LineFamily:
         # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
         return Sampler(evaluate, -1, self._first_boxes(box, swiftest))
 
+    def leading(
+        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """See ``ChartFamily``."""
+        if self.set_aside or self.size > LARGEST_DENSE:
+            return None
+        lanes = self._patch_lanes(*spread(box, 6))
+        half = self.half_windows and symmetry_phase(self.program, lanes, self.period) is not None
+        phase = lanes.frequency * np.sqrt(self.size) * self.period / (2 if half else 1)
+        elsewhere = without_groups(self.size, pixels, float(phase.mean()), float(phase.max()), FEWEST_PIXELS)
+        return leading_patches(self, box, pixels, tolerance, threads, elsewhere, tell)
+
+    def differ(self, x: Array, y: Array) -> bool:
+        """See ``ChartFamily``."""
+        return SMALL < self.size <= LARGEST_DENSE and told_apart(self.rates(x, y))
+
+    def settled(self, x: Array, y: Array) -> Pixels | None:
+        """See ``ChartFamily``."""
+        if self.set_aside or not SMALL < self.size <= LARGEST_DENSE:
+            return None
+        rates = self.rates(x, y)
+        found = exponential_monodromies(
+            rates, len(x), 2 * self.size, self.period, tolerance=1e-10, least_steps=rates.steps
+        )
+        code = verdicts(found.radius, found.error, np.abs(rates.trace) < 1e-12 * self.size)
+        return Pixels(found.radius, found.error, found.critical, code)
+
     def _window(self, program: ChainProgram, lanes: ChainLanes) -> Window:
         """The window that suits all ``lanes``: half a period where every joint is even about one phase in each."""
         begin = symmetry_phase(program, lanes, self.period) if self.half_windows else None
@@ -235,13 +289,15 @@ class LineFamily:
         """1/Ω for a speed axis, the rapidity asinh(tan β) for a joint angle, the value itself otherwise.
 
         In β the singularities of η close in on 90° like cos β; in the rapidity cos β = 1/cosh v and they stay
-        π/2 away from the real axis, so one patch reaches from 0° to the steepest angles.
+        π/2 away from the real axis, so one patch reaches from 0° to the steepest angles. Joints are even in their
+        angle: on one side of 0° the square of the rapidity needs half as many nodes.
         """
         axis = self.x if of_x else self.y
         if axis.is_speed:
             return np.asarray(1 / np.asarray(value))
         if axis.is_joint_angle:
-            return np.asarray(np.arcsinh(np.tan(value)))
+            rapidity = np.asarray(np.arcsinh(np.tan(value)))
+            return rapidity * np.abs(rapidity) if axis.one_sided else rapidity
         return np.asarray(value, dtype=float)
 
     def from_patch(self, value: Array, of_x: bool) -> Array:
@@ -250,12 +306,15 @@ class LineFamily:
         if axis.is_speed:
             return np.asarray(1 / np.asarray(value))
         if axis.is_joint_angle:
-            return np.asarray(np.arctan(np.sinh(value)))
+            rapidity = np.sign(value) * np.sqrt(np.abs(value)) if axis.one_sided else np.asarray(value)
+            return np.asarray(np.arctan(np.sinh(rapidity)))
         return np.asarray(value, dtype=float)
 
 
 AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
 """How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
+LARGEST_DENSE = 12
+"""Unknowns up to which products of dense matrices cost less than the chain kernel."""
 FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 

@@ -29,9 +29,9 @@ class Pixels:
 def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:
     """Pixels from quantities (q, points) and their bounds (q, points), ``set_aside`` multipliers exactly 1 left out.
 
-    See ``chart_families.quantities`` for what the quantities are.
+    See ``chart_families.quantities`` for what the quantities are, and ``leading_group`` for those of stiff lines.
     """
-    m, trace = 2 * size, values[-1]
+    m, trace = _multipliers_in(values, size), values[-1]
     if m == set_aside:
         # One inertia that turns freely neither grows nor decays.
         one = np.where(np.isfinite(values[0]), 1.0, np.nan)
@@ -54,7 +54,7 @@ def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
 
 def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_aside: int) -> Pixels:
     """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
-    m, shape = 2 * size, (len(v), len(u))
+    m, shape = _multipliers_in(along, size), (len(v), len(u))
     if m > LARGEST or set_aside:
         values, bounds = patch.rows(along, v), patch.error_grid(u, v)
         found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, set_aside)
@@ -72,9 +72,19 @@ def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_as
     return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
 
 
+def _multipliers_in(quantities: Array, size: int) -> int:
+    """How many multipliers the quantities tell: all, or the largest of a stiff line by their coefficients alone."""
+    return min(len(quantities) - 1, 2 * size)
+
+
+def tells_all(quantities: Array, size: int) -> bool:
+    """Whether the quantities tell every multiplier."""
+    return _multipliers_in(quantities, size) == 2 * size
+
+
 def multipliers_of(values: Array, size: int, set_aside: int) -> Complex:
     """All multipliers of one point from its quantities, by falling modulus."""
-    m = 2 * size
+    m = _multipliers_in(values, size)
     if m > LARGEST:
         found = np.linalg.eigvals(values[:-1].reshape(m, m)).astype(complex)
     elif set_aside:

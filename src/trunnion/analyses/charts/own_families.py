@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import Sampler, grid_by_grid, quantities
+from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.dense_monodromy import propagate
@@ -89,6 +90,20 @@ class OwnFamily:
         """See ``ChartFamily``."""
         return grid_by_grid(self, box, tolerance, threads)
 
+    def leading(
+        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """Its equations are not known in lanes."""
+        return None
+
+    def differ(self, x: Array, y: Array) -> bool:
+        """Nothing is cheaper than its matrices."""
+        return False
+
+    def settled(self, x: Array, y: Array) -> Pixels | None:
+        """There is no other way than ``matrices``."""
+        return None
+
     def over_whole_periods(self) -> OwnFamily:
         """Own families are always integrated over whole periods."""
         return self
@@ -144,6 +159,20 @@ class PatchesAlone:
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """See ``ChartFamily``."""
         return grid_by_grid(self, box, tolerance, threads)
+
+    def leading(
+        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """Its equations are not known in lanes."""
+        return None
+
+    def differ(self, x: Array, y: Array) -> bool:
+        """Nothing is cheaper than its matrices."""
+        return False
+
+    def settled(self, x: Array, y: Array) -> Pixels | None:
+        """There is no other way than ``matrices``."""
+        return None
 
     def over_whole_periods(self) -> PatchesAlone:
         """Own families are always integrated over whole periods."""

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
 from trunnion.analyses.charts.building import build, decide, family_for, fill, way_named
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
@@ -187,7 +187,11 @@ def _idle(family: ChartFamily, x: Axis, y: Axis, what: str) -> list[str]:
     def decisive(x: Array, y: Array) -> Array:
         return family.evaluate(x, y, 1e-12, 1)[0]
 
-    return [f"{own.label} changes nothing in this {what}" for own in (x, y) if moves_nothing(decisive, x, y, own is x)]
+    return [
+        f"{own.label} changes nothing in this {what}"
+        for own in (x, y)
+        if moves_nothing(decisive, x, y, own is x, family.differ)
+    ]
 
 
 def _middle(x: Array, y: Array) -> tuple[float, float]:
@@ -209,14 +213,16 @@ def _pointwise(
 ) -> Callable[[float, float], ChartPoint]:
     def at(x: float, y: float) -> ChartPoint:
         u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
-        patch = function.find(u, v)
+        where, patch = (np.array([x]), np.array([y])), function.find(u, v)
         if patch is not None:
             values, bounds = (
                 part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid)
             )
         else:
-            values, bounds = (part.T.copy() for part in family.evaluate(np.array([x]), np.array([y]), tolerance / 4, 1))
+            values, bounds = (part.T.copy() for part in family.evaluate(*where, tolerance / 4, 1))
         found = judge(values, bounds, family.size, family.set_aside)
+        # Patches of a stiff line tell its largest multipliers alone.
+        every = values if tells_all(values, family.size) else family.evaluate(*where, tolerance / 4, 1)[0].T
         grid = Pixels(found.radius[None], found.error[None], found.critical[None], found.verdict[None])
         decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
         found = Pixels(grid.radius[0], grid.error[0], grid.critical[0], grid.verdict[0])
@@ -226,7 +232,7 @@ def _pointwise(
             spectral_radius=float(found.radius[0]),
             error_estimate=float(found.error[0]),
             verdict=Verdict(int(found.verdict[0])),
-            multipliers=multipliers_of(values[:, 0], family.size, family.set_aside),
+            multipliers=multipliers_of(every[:, 0], family.size, family.set_aside),
             interpolated=patch is not None,
         )
 

@@ -1,6 +1,7 @@
 """Floquet stability at many speeds at once: what the verdicts along a running range stand on.
 
-All speeds share the work. Up to ``LARGEST`` unknowns the monodromy matrices come from exponentials in plain NumPy, so
+All speeds share the work. Up to ``LARGEST_DENSE`` unknowns the monodromy matrices come from exponentials in plain
+NumPy, so
 that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain kernel. Bent
 lines that start free are taken about their own periodic motions.
 """
@@ -12,28 +13,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.charts.chart_families import quantities
+from trunnion.analyses.charts.chart_families import LARGEST_DENSE, quantities
 from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
 from trunnion.analyses.linear.own_motions import own_motions
 from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.first_order import LineRates, fastest_cycles, first_order, period_of, steps_that_see
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
-from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
+from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import bent, require_balance
-from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
-from trunnion.numerics.chain.exponential_monodromy import FIRST_STEPS, exponential_monodromies
+from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import without
 from trunnion.results.verdict import Verdict, verdicts
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-LARGEST = 12
-"""Unknowns up to which products of dense matrices cost less than the chain kernel."""
 TOLERANCE = 1e-7
-STEPS_PER_CYCLE = 4
 UNDAMPED = 1e-12
-FEWEST_SAMPLES = 64
 
 
 class NoSharedMotion(InputError):
@@ -72,8 +69,8 @@ def stability_along(assembly: Assembly, speeds: ArrayLike, *, statically_twisted
     table = assembly.table(len(speed))
     table[:, 0] = speed
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
-    small = assembly.topology.size <= LARGEST
-    return _by_exponentials(assembly, table, co, statically_twisted) if small else _by_kernel(assembly, co)
+    small = assembly.topology.size <= LARGEST_DENSE
+    return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
 
 
 def straight_decay(assembly: Assembly, speed: float) -> float:
@@ -88,51 +85,22 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     root = np.sqrt(np.einsum("ctii->ci", m.mass))
     stiffness = np.einsum("ctii->ci", m.stiffness)
     unit = np.sqrt(np.maximum(np.abs(stiffness / root**2).mean(axis=1), 1e-300)) / speed
-    slopes = _first_order(m, co.speed, root, unit)[0, 0]
+    slopes = first_order(m, co.speed, root, unit)[0, 0]
     aside = rigid_motions(topo, co) * np.concatenate([root[0], root[0] / unit[0]])[:, None]
     left = without(slopes, aside)[0] if aside.shape[1] else slopes
     return float(-np.linalg.eigvals(left).real.max(initial=-np.inf) * speed)
 
 
-def _by_exponentials(assembly: Assembly, table: Array, co: LineCoefficients, twisted: bool) -> StabilityAlong:
-    topo, cases = assembly.topology, len(co.speed)
-    period = _period(assembly)
-    cycles = _cycles(assembly, period)
-    times = max(FEWEST_SAMPLES, 16 * int(np.ceil(cycles)))
-    probe = line_matrices(topo, co, period * np.arange(times) / times)
-    root = np.sqrt(np.einsum("ctii->cti", probe.mass).mean(axis=1))
-    stiffness = np.einsum("ctii->cti", probe.stiffness).mean(axis=1) / root**2
-    unit = np.sqrt(np.maximum(np.abs(stiffness).mean(axis=1), 1e-300)) / co.speed
-
-    def rates(which: NDArray[np.intp], tau: Array) -> Array:
-        some = assembly.coefficients(table[which], statically_twisted=twisted)
-        return _first_order(line_matrices(topo, some, tau), some.speed, root[which], unit[which])
-
-    aside = rigid_motions(topo, co)
-    rest = None
-    if aside.shape[1]:
-        scaled = aside * np.concatenate([root, root / unit[:, None]], axis=1)[:, :, None]
-        rest = np.linalg.qr(scaled, mode="complete")[0][:, :, aside.shape[1] :]
+def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> StabilityAlong:
+    rates = LineRates.of(assembly, table, twisted)
+    rest = rates.rest()
     judged = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+    size = assembly.topology.size
     found = exponential_monodromies(
-        rates, cases, 2 * topo.size, period, least_steps=_steps(cycles), aside=judged
+        rates, len(table), 2 * size, rates.period, least_steps=rates.steps, aside=judged
     )  # fmt: skip
-    trace = np.einsum("ctii->ct", probe.damping / np.einsum("ctii->cti", probe.mass)[..., None]).mean(axis=1)
-    undamped = np.abs(trace * period / co.speed) < UNDAMPED * topo.size
-    code = verdicts(found.radius, found.error, undamped)
-    return StabilityAlong(co.speed, found.radius, found.error, found.critical, code, period)
-
-
-def _first_order(m: LineMatrices, speed: Array, root: Array, unit: Array) -> Array:
-    """A (case, time, 2n, 2n) of states (x√m, dx/dτ √m/ν) from matrices in time; mass matrices are diagonal."""
-    n = m.mass.shape[-1]
-    over = 1 / np.einsum("ctii->cti", m.mass)[..., None]
-    ratio = root[:, None, :, None] / root[:, None, None, :]
-    a = np.zeros((*m.mass.shape[:2], 2 * n, 2 * n))
-    a[..., :n, n:] = np.eye(n) * unit[:, None, None, None]
-    a[..., n:, :n] = m.stiffness * over * (ratio / (-(speed**2) * unit)[:, None, None, None])
-    a[..., n:, n:] = m.damping * over * (ratio / -speed[:, None, None, None])
-    return a
+    code = verdicts(found.radius, found.error, np.abs(rates.trace) < UNDAMPED * size)
+    return StabilityAlong(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
 
 
 def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
@@ -150,13 +118,13 @@ def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
     radius, error = np.full(len(speed), np.nan), np.full(len(speed), np.nan)
     critical = np.full(len(speed), np.nan, dtype=complex)
     if len(there):
-        cycles = _cycles(assembly, motions.period)
+        cycles = fastest_cycles(assembly, motions.period)
         found = exponential_monodromies(
             lambda which, tau: motions.rates(there[which], tau),
             len(there),
             2 * assembly.topology.size,
             motions.period,
-            least_steps=_steps(cycles),
+            least_steps=steps_that_see(cycles),
             aside=lambda which, z: motions.beside_neutral(there[which], z),
         )
         radius[there], error[there], critical[there] = found.radius, found.error, found.critical
@@ -166,7 +134,7 @@ def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
 
 def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
     topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
-    period = _period(assembly)
+    period = period_of(assembly)
     lanes = chain_lanes(topo, co, by_speed)
     program = chain_program(topo, co, by_speed)
     matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
@@ -176,17 +144,3 @@ def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
     else:
         found = judge_matrices(matrix, error, trace)
     return StabilityAlong(co.speed, found.radius, found.error, found.critical, found.verdict, period)
-
-
-def _period(assembly: Assembly) -> float:
-    return 2 * np.pi * float(require_period(assembly.line, assembly.topology))
-
-
-def _cycles(assembly: Assembly, period: float) -> float:
-    """Cycles of the fastest coefficient over a period."""
-    return max((float(rate) for rate in assembly.topology.rates), default=1.0) * period / (2 * np.pi)
-
-
-def _steps(cycles: float) -> int:
-    """Steps that cannot leap over ``cycles`` of the coefficients."""
-    return max(FIRST_STEPS, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1.0)))))

@@ -144,13 +144,36 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
         size[i] = math.sqrt(roots[i].real ** 2 + roots[i].imag ** 2)
         if size[i] > size[which]:
             which = i
+    critical[p, 0], critical[p, 1] = roots[which].real, roots[which].imag
+    if m == 2:
+        radius[p], error[p] = size[which], _pair_error(e[0], e[1], bounds[0, p], bounds[1, p], size[which])
+        return
     own = _bound(roots, size, which, bounds, p)
     upper = size[which] + own
     for i in range(m):
         if i != which and not _far_inside(size[i], size[which], bounds, p, m):
             upper = max(upper, size[i] + _bound(roots, size, i, bounds, p))
     radius[p], error[p] = size[which], upper - size[which]
-    critical[p, 0], critical[p, 1] = roots[which].real, roots[which].imag
+
+
+@njit(cache=True, nogil=True)
+def _pair_error(total, product, total_error, product_error, radius):  # type: ignore[no-untyped-def]
+    """How far the larger modulus of two roots can lie from ``radius``: its extremes over both intervals.
+
+    It rises with |total|, and falls with the product up to where the roots meet, beyond which it rises.
+    """
+    least, most = max(abs(total) - total_error, 0.0), abs(total) + total_error
+    low, high = product - product_error, product + product_error
+    upper = max(_larger_of_pair(most, low), _larger_of_pair(most, high))
+    lower = _larger_of_pair(least, min(max(least * least / 4, low), high))
+    return max(upper - radius, radius - lower) + 4e-16 * radius
+
+
+@njit(cache=True, nogil=True)
+def _larger_of_pair(total, product):  # type: ignore[no-untyped-def]
+    """The larger modulus of the roots of x² − total x + product, total ≥ 0."""
+    under = total * total / 4 - product
+    return total / 2 + math.sqrt(under) if under >= 0 else math.sqrt(product)
 
 
 @njit(cache=True, nogil=True)
@@ -189,8 +212,6 @@ def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
                 rest *= d
     # rest: product of all but the two smallest distances. One root, two or three move together as the
     # distances are large or small beside what the error can do.
-    if m == 2:
-        return 2 * (moved / first if first * first > moved else math.sqrt(moved))
     if rest == 0.0:
         return 2 * moved ** (1 / m)
     alone = moved / rest

@@ -75,10 +75,10 @@ def exponential_monodromies(
     critical, steps = np.full(cases, np.nan, dtype=complex), np.zeros(cases, dtype=np.intp)
     left, count = np.arange(cases), least_steps
     judged = aside or (lambda which, found: found)
-    coarse = _marched(rates, left, size, period, count)
+    coarse = marched(rates, left, size, period, count)
     while len(left) and count < MOST_STEPS:
         count *= 2
-        fine = _marched(rates, left, size, period, count)
+        fine = marched(rates, left, size, period, count)
         found, off, value = _radius(judged(left, fine), judged(left, coarse))
         done = np.asarray(off <= np.maximum(tolerance, SHARE * np.abs(1 - found)))
         matrix[left], steps[left] = fine, count
@@ -110,8 +110,8 @@ def _radius(fine: Array, coarse: Array) -> tuple[Array, Array, Complex]:
     return np.where(finite, radius, np.nan), error, critical
 
 
-def _marched(rates: Rates, which: NDArray[np.intp], size: int, period: float, steps: int) -> Array:
-    """Products of ``steps`` exponentials for the systems ``which``."""
+def marched(rates: Rates, which: NDArray[np.intp], size: int, period: float, steps: int) -> Array:
+    """Monodromy matrices of the systems ``which`` as products of ``steps`` exponentials."""
     out = np.empty((len(which), size, size))
     at_once = max(1, CHUNK // (3 * min(steps, 16) * size**2))
     for first in range(0, len(which), at_once):

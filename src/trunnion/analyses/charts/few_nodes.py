@@ -1,0 +1,195 @@
+"""Charts of stiff lines from few monodromy matrices over whole periods.
+
+Slabs follow every mode of a line, though most die within a period and have no part in its stability. Here the largest
+multipliers alone are interpolated, as one group (see ``leading_group``), on grids whose degree each direction chooses
+for itself; the matrices come from exponential steps, whose number the joints set and not the fastest mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.charts.leading_group import Settling, group_sizes, known, settle
+from trunnion.analyses.charts.prices import HALVINGS, pixel_price, step_price
+from trunnion.equations.first_order import LineRates
+from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
+from trunnion.numerics.patches.nested import FIRST_DEGREES, HIGHEST_DEGREE, Grid, Series
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+
+Array = NDArray[np.float64]
+DEEPEST = 3
+"""Halvings of a box in which no group stands apart or whose degrees would be too high."""
+LIKELY_STEPS = 64
+"""Steps of a period that most lines need."""
+SHARE = 0.7
+"""Of what the other ways cost, what may be spent before this one is given up."""
+PROBES = 16
+"""Input angles at which A is averaged for a forecast."""
+
+
+class Rated(Protocol):
+    """What is charted: ``rates`` are the equations at points (x, y)."""
+
+    def rates(self, x: Array, y: Array) -> LineRates:
+        """Equations of each point as a case."""
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """Patch variable → axis value."""
+
+
+def leading_patches(
+    family: Rated,
+    box: Box,
+    pixels: int,
+    tolerance: float,
+    threads: int,
+    price_elsewhere: float,
+    tell: Callable[[float], None],
+) -> PatchedFunction | None:
+    """Patches of the largest multipliers' e₁ … e_d over ``box``, each to ``tolerance`` of its size (1 at least).
+
+    None where that costs more than ``price_elsewhere`` [µs], or no group of multipliers stands apart.
+    """
+    corners = _rates(family, *_corners(box))
+    states = 2 * corners.root.shape[1]
+    spared = price_elsewhere - pixels * pixel_price(6)
+    if not _forecast(corners) * step_price(states) < spared:
+        return None
+    most_work = SHARE * spared / step_price(states)
+    todo, patches = [(box, 0)], list[Patch]()
+    nodes, work, whole = 0, 0.0, 0.0
+    while todo:
+        part, depth = todo.pop()
+        made = _OneBox(family, part, tolerance, threads, most_work - work)
+        patch = made.patch()
+        nodes, work = nodes + len(made.found.steps), work + made.found.work
+        if patch is not None:
+            patches.append(patch)
+            whole += 0.5**depth
+            tell(whole)
+        elif work > most_work or depth == DEEPEST:
+            return None
+        else:
+            todo += [(half, depth + 1) for half in part.halves(made.split_u, not made.split_u)]
+    return PatchedFunction(tuple(_alike(patches)), (), nodes)
+
+
+def _rates(family: Rated, u: Array, v: Array) -> LineRates:
+    return family.rates(family.from_patch(u, True), family.from_patch(v, False))
+
+
+def _corners(box: Box) -> tuple[Array, Array]:
+    return np.array([box.u0, box.u1, box.u0, box.u1]), np.array([box.v0, box.v0, box.v1, box.v1])
+
+
+def _forecast(corners: LineRates) -> float:
+    """Steps that a box will take, from the mean equations at its corners; infinite where no group stands apart."""
+    tau = corners.period * np.arange(PROBES) / PROBES
+    mean = corners(np.arange(4), tau).mean(axis=1)
+    if not np.isfinite(mean).all():
+        return np.inf
+    exponents = np.linalg.eigvals(mean) * corners.period
+    exponents = np.take_along_axis(exponents, np.argsort(-exponents.real, axis=1), axis=1)
+    sizes = group_sizes(np.exp(exponents))
+    if not sizes:
+        return np.inf
+    d = sizes[0]
+    phase = np.abs(exponents.imag[:, :d]).sum(axis=1)
+    along_u, along_v = (
+        first + 1 + float(np.abs(phase[list(one)] - phase[list(other)]).max()) / 2
+        for first, one, other in ((FIRST_DEGREES[0], (1, 3), (0, 2)), (FIRST_DEGREES[1], (2, 3), (0, 1)))
+    )
+    return along_u * along_v * LIKELY_STEPS * HALVINGS
+
+
+@dataclass
+class _Sampled:
+    """Equations of all points sampled so far, and the place of each node of the grid among them."""
+
+    rates: LineRates
+    place: NDArray[np.intp]
+
+
+class _OneBox:
+    """A patch over one box, by refining its grid; ``split_u``: where to halve it if there is none."""
+
+    def __init__(self, family: Rated, box: Box, tolerance: float, threads: int, most_work: float) -> None:
+        self.family, self.box, self.tolerance, self.most_work = family, box, tolerance, most_work
+        self.grid = Grid(box, *FIRST_DEGREES)
+        rates = _rates(family, *self.grid.nodes())
+        self.sampled = _Sampled(rates, np.arange(rates.table.shape[0]))
+        self.found = Settling(2 * rates.root.shape[1], rates.period, rates.steps, threads)
+        self.found.add(rates, len(self.sampled.place))
+        self.split_u = True
+
+    def patch(self) -> Patch | None:
+        """The patch, or None where it costs too much or would need too high a degree."""
+        while self._roughly():
+            sizes = group_sizes(self.found.fine)
+            if not sizes:
+                return None
+            d = min(sizes, key=lambda size: float(self._tails(size)[2].max()))
+            if not settle(self.found, lambda: self.sampled.rates, d, self.tolerance, self.most_work):
+                return None
+            series, error, tails = self._tails(d)
+            of_u, of_v = (tails > 1).tolist()
+            if not (of_u or of_v):
+                return series.patch(self.box, error) if d in group_sizes(self.found.fine) else None
+            if (of_u and self.grid.along_u == HIGHEST_DEGREE) or (of_v and self.grid.along_v == HIGHEST_DEGREE):
+                self.split_u = of_u and self.grid.along_u == HIGHEST_DEGREE
+                return None
+            if not self._refine(of_u, of_v):
+                return None
+        return None
+
+    def _tails(self, d: int) -> tuple[Series, Array, Array]:
+        """The series of d multipliers, the errors of its samples, and its tails along u and v over what is allowed."""
+        place = self.sampled.place
+        e, errors, _ = known(self.found, d)
+        trace = self.sampled.rates.trace[place]
+        values = np.column_stack([e[place], trace])
+        series = Series.of(self.grid, values)
+        error = np.append(errors.max(axis=0), 1e-12 * np.abs(trace).max())
+        allowed = np.maximum(self.tolerance * np.maximum(np.abs(values).max(axis=0), 1.0), error)
+        # The trace only tells whether a line is damped at all, so its own tail may be what it is.
+        return series, error, np.array([(t / allowed)[:-1].max() for t in (series.tail_u, series.tail_v)])
+
+    def _roughly(self) -> bool:
+        """Sharpen points until all tell groups apart; False where that costs too much."""
+        while len(rough := self.found.rough()):
+            if self.found.work > self.most_work or self.found.steps[rough].max() >= MOST_STEPS:
+                return False
+            self.found.sharpen(self.sampled.rates, rough)
+        return True
+
+    def _refine(self, of_u: bool, of_v: bool) -> bool:
+        """Sample the grid of twice the degree; False where that would cost too much."""
+        grid, old = self.grid.refined(of_u, of_v)
+        fresh = int(np.count_nonzero(~old))
+        if self.found.work * (1 + fresh / len(self.found.steps)) > self.most_work:
+            return False
+        u, v = grid.nodes()
+        rates = _rates(self.family, u[~old], v[~old])
+        place = np.empty(len(u), dtype=np.intp)
+        place[old] = self.sampled.place
+        place[~old] = len(self.found.steps) + np.arange(fresh)
+        self.found.add(rates, fresh)
+        self.grid, self.sampled = grid, _Sampled(self.sampled.rates.and_also(rates), place)
+        return True
+
+
+def _alike(patches: list[Patch]) -> list[Patch]:
+    """Patches with as many coefficients each, an even number: a further multiplier 0 is never the largest."""
+    most = max(len(p.error) - 1 for p in patches)
+    most += most % 2
+
+    def wider(part: Array) -> Array:
+        absent = np.zeros((most + 1 - len(part), *part.shape[1:]))
+        return np.concatenate([part[:-1], absent, part[-1:]])
+
+    return [replace(p, coefficients=wider(p.coefficients), error=wider(p.error)) for p in patches]
