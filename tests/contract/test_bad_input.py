@@ -18,6 +18,7 @@ from trunnion.driveline import (
     Operation,
     Ratio,
     Shaft,
+    Tolerance,
     dump,
     load,
     loads,
@@ -190,6 +191,48 @@ PYTHON = [
     ),
     (lambda: line(limits={"of": "Shaft 1"}), "driveline.limits = ", "tn.Limit("),
     (lambda: line(limits=[3]), "driveline.limit 1 = 3: is not a limit", "tn.Limit("),
+    (lambda: Tolerance(stiffness=0.1), "tolerance.of: is missing", 'of = "Shaft 1"'),
+    (lambda: Tolerance(3, stiffness=0.1), "tolerance.of = 3: is no name", 'of = "Shaft 1"'),
+    (lambda: Tolerance("Shaft 1"), "tolerance of Shaft 1.of = 'Shaft 1': lets nothing scatter", "stiffness"),
+    (lambda: Tolerance("Shaft 1", stifness=1), "tolerance of Shaft 1.stifness = 1: is no number that", '"stiffness"'),
+    (lambda: Tolerance("Shaft 1", stiffness=2), "tolerance of Shaft 1.stiffness = 2: must lie between 0 and 1", "5 %"),
+    (lambda: Tolerance("Shaft 1", stiffness="-5 %"), "tolerance of Shaft 1.stiffness = '-5 %': must lie", "5 %"),
+    (lambda: Tolerance("Shaft 1", stiffness="5 mm"), "tolerance of Shaft 1.stiffness = '5 mm': mm is not", "N*m/rad"),
+    (lambda: Tolerance("Shaft 1", stiffness="-1 N*m/rad"), "tolerance of Shaft 1.stiffness = '-1 N*m/rad': m", "5 %"),
+    (lambda: Tolerance("Shaft 1", stiffness=[1, 2, 3]), "tolerance of Shaft 1.stiffness = [1, 2, 3]: must have", "["),
+    (lambda: Tolerance("Shaft 1", stiffness=[2, 1]), "tolerance of Shaft 1.stiffness = [2, 1]: must rise", "["),
+    (lambda: Tolerance("Shaft 1", stiffness={"sigma": 1}), "tolerance of Shaft 1.stiffness = {'sigma': 1}: is no", "d"),
+    (
+        lambda: Tolerance("Shaft 1", stiffness={"deviation": 0.4}),
+        "tolerance of Shaft 1.stiffness = {'deviation': 0.4}: reaches zero",
+        "2 %",
+    ),
+    (lambda: line(tolerances=[Tolerance("shaf", stiffness=0.1)]), "tolerance.of = 'shaf': is not an el", "Shaft 1"),
+    (lambda: line(tolerances=[Tolerance("Clutch *", stiffness=0.1)]), "tolerance.of = 'Clutch *': has no", "Shaft *"),
+    (
+        lambda: line(tolerances=[Tolerance("Disk 1", stiffness=0.1)]),
+        "tolerance of Disk 1.stiffness = 0.1: is no number that Disk 1 states",
+        "inertia",
+    ),
+    (
+        lambda: line(tolerances=[Tolerance("Shaft 1", fork_offset="5 %")]),
+        "tolerance of Shaft 1.fork_offset = 0.05: is a share of nothing: Shaft 1 states zero",
+        "deg",
+    ),
+    (
+        lambda: line(tolerances=[Tolerance("Shaft 1", stiffness="20 kN*m/rad")]),
+        "tolerance of Shaft 1.stiffness = '20 kN*m/rad': lets Shaft 1 reach -10000 N*m/rad, which must be",
+        "narrow the tolerance",
+    ),
+    (
+        lambda: line(tolerances=[Tolerance("Disk 1", inertia=0.1), Tolerance("Disk 1", inertia=0.2)]),
+        "tolerance of Disk 1.inertia = 0.2: is stated twice",
+        "leave one",
+    ),
+    (lambda: line(tolerances={"of": "Shaft 1"}), "driveline.tolerances = ", "tn.Tolerance("),
+    (lambda: line(tolerances=[3]), "driveline.tolerance 1 = 3: is not a tolerance", "tn.Tolerance("),
+    (lambda: tn.tolerance_study(line(), speeds=10.0), "driveline.tolerances: are not stated", "[[tolerance]]"),
+    (lambda: tn.certify_stability(line(), speeds=(9.0, 10.0)), "driveline.tolerances: are not stated", "[[tolerance]]"),
     # questions about a line or a system
     (
         lambda: tn.System.from_function(
@@ -613,6 +656,13 @@ DISK = '[[element]]\ntype = "Disk"\ninertia = 1\n'
 FILES = [
     (HEAD + DISK + '[limit]\nof = "a"\n', "bad.toml: limit: is a single table", "[[limit]]"),
     ("limit = [3]\n" + HEAD + DISK, "bad.toml: limit 1 = 3: is not a table", "[[limit]]"),
+    (HEAD + DISK + '[tolerance]\nof = "a"\n', "bad.toml: tolerance: is a single table", "[[tolerance]]"),
+    ("tolerance = [3]\n" + HEAD + DISK, "bad.toml: tolerance 1 = 3: is not a table", "[[tolerance]]"),
+    (
+        HEAD + DISK + '[[tolerance]]\nof = "Disk 1"\ninertia = "5 kg"\n',
+        "bad.toml: tolerance of Disk 1.inertia = '5 kg': kg is not",
+        "kg*m^2",
+    ),
     (HEAD + DISK + "[[limit]]\nmax_torque = 3\n", "bad.toml: limit 1.of: is missing", "of ="),
     (
         HEAD + DISK + '[[limit]]\nof = "Disk 1"\nmax_acceleration = "300"\n',

@@ -24,6 +24,7 @@ from trunnion.driveline import (
     Operation,
     Ratio,
     Shaft,
+    Tolerance,
     dump,
     dumps,
     json_schema,
@@ -114,6 +115,13 @@ def drivelines(draw):
         rest["limits"] = [
             Limit(of=draw(st.sampled_from(sprung)), vibratory_torque=draw(positive), margin=margin),
             Limit(of="Shaft *", max_torque=draw(positive), max_twist=draw(positive)),
+        ]
+    stiff = [n for n, e in zip(line.names, elements, strict=True) if isinstance(e, Shaft) and e.stiffness]
+    if stiff and draw(st.booleans()):
+        share, size = draw(st.floats(1e-9, 0.3)), draw(st.floats(1e-9, 1e3))
+        rest["tolerances"] = [
+            Tolerance(stiff[0], stiffness=share, fork_offset=draw(st.sampled_from(["0.5 deg", f"{size} rad"]))),
+            Tolerance("Shaft *", stiffness={"deviation": share}, fork_offset=[-size, size]),
         ]
     return Driveline(elements, **rest)
 

@@ -36,6 +36,38 @@ def test_worst_corner_is_the_worst_of_all_corners() -> None:
     assert study.worst.growth_rate >= max(corners) - 1e-9
 
 
+STATED = [
+    tn.Tolerance("Shaft *", stiffness="2 %"),
+    tn.Tolerance("Shaft 2", stiffness=[0.9, 1.2], fork_offset="2 deg"),
+    tn.Tolerance("Disk 1", inertia={"deviation": "1 %"}),
+    tn.Tolerance("HookeJoint 1", angle={"deviation": "0.4 deg"}),
+]
+
+
+def test_tolerances_of_the_description_are_those_given_by_hand() -> None:
+    """Each shaft scatters by itself; what an element states goes before its kind's."""
+    line = tn.loads(tn.dumps(tn.Driveline(LINE.elements, damping_ratio=LINE.damping_ratio, tolerances=STATED)))
+    given = {
+        "Shaft 1.stiffness": 0.02,
+        "Shaft 2.stiffness": ("range", 0.9, 1.2),
+        "Shaft 2.fork_offset": ("range", -tn.deg(2.0), tn.deg(2.0)),
+        "Disk 1.inertia": ("normal", 0.01),
+        "HookeJoint 1.angle": ("deviation", tn.deg(0.4)),
+    }
+    stated = tn.tolerance_study(line, speeds=1.64, samples=256)
+    by_hand = tn.tolerance_study(line, {key: given[key] for key in stated.parameters}, 1.64, samples=256)
+    assert stated.parameters == tuple(line.tolerances_by_path) and set(given) == set(stated.parameters)
+    assert np.allclose(stated.growth_rate, by_hand.growth_rate, rtol=1e-12, atol=1e-15)
+
+
+def test_tolerances_about_other_numbers_stop_no_axis() -> None:
+    """±0.5 about a stiffness of 1 reaches below zero about 0.4; a chart varies the stiffness all the same."""
+    wide = tn.Tolerance("Shaft 1", stiffness="0.5 N*m/rad")
+    line = tn.Driveline(LINE.elements, damping_ratio=LINE.damping_ratio, tolerances=[wide])
+    chart = tn.stability_chart(line, ("Shaft 1.stiffness", 0.4, 2.0, 4), ("speed", 1.0, 2.0, 4))
+    assert np.all(np.isfinite(chart.spectral_radius))
+
+
 def test_interval_of_what_never_happens() -> None:
     study = tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.01}, 1.0, samples=1024)
     assert study.probability == 1.0 and 0.99 < study.interval[0] < 1.0 and study.interval[1] == 1.0

@@ -20,11 +20,14 @@ EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
 def tolerance_study(
     file: File,
     tolerance: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
-            "--tolerance", "-t", metavar="PARAMETER=SHARE", help='As "Shaft 1.stiffness=10%" or "…=normal 3%".'
+            "--tolerance",
+            "-t",
+            metavar="PARAMETER=SHARE",
+            help='As "Shaft 1.stiffness=10%" or "…=normal 3%"; default those of the file.',
         ),
-    ],
+    ] = None,
     speeds: Annotated[
         list[str] | None, typer.Option("--speed", metavar="SPEED", help="Repeat it for more; default the file's.")
     ] = None,
@@ -44,7 +47,7 @@ def tolerance_study(
 
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
-    given = dict(_tolerance(text) for text in tolerance)
+    given = dict(_tolerance(text) for text in tolerance) if tolerance else None
     asked = [read_speed(text, unit) for text in speeds] if speeds else [None]
     at = [operating_speed(line, one) for one in asked]
     check_places(to)
@@ -73,8 +76,14 @@ def _tolerance(text: str) -> tuple[str, object]:
 def certify_stability(
     file: File,
     tolerance: Annotated[
-        list[str], typer.Option("--tolerance", "-t", metavar="PARAMETER=SHARE", help='As "Shaft 1.stiffness=1%".')
-    ],
+        list[str] | None,
+        typer.Option(
+            "--tolerance",
+            "-t",
+            metavar="PARAMETER=SHARE",
+            help='As "Shaft 1.stiffness=1%"; default those of the file.',
+        ),
+    ] = None,
     speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
     boxes: Annotated[int, typer.Option("--boxes", help="Boxes judged before the rest is left undecided.")] = 20_000,
     unit: Unit = None,
@@ -90,7 +99,7 @@ def certify_stability(
 
     line = read_line(file)
     unit = read_unit(line, unit)
-    given = dict(_tolerance(text) for text in tolerance)
+    given = dict(_tolerance(text) for text in tolerance) if tolerance else None
     assembly = assemble(line)
     span = read_speed_range(speeds, assembly, unit)
     if to and any(path.suffix != ".nc" for path in to):

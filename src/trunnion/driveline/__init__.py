@@ -18,6 +18,7 @@ from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.tolerances import Tolerance
 
 __all__ = [
     "STARTERS",
@@ -38,6 +39,7 @@ __all__ = [
     "Ratio",
     "Shaft",
     "StiffnessVariation",
+    "Tolerance",
     "TransmissionError",
     "Clutch",
     "Slider",

@@ -21,6 +21,7 @@ from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
+from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of, wrong_tolerances
 from trunnion.errors import InputError, InputRemark
 
 MOST_ELEMENTS = 2000
@@ -38,11 +39,12 @@ class Driveline(BaseModel):
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
+    tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
 
     Raises
     ------
-    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits of elements
-        that cannot have them.
+    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits or tolerances of
+        elements that cannot have them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -54,6 +56,7 @@ class Driveline(BaseModel):
     damping_ratio_frequency: Frequency | None = None
     operation: Operation | None = None
     limits: Limits = ()
+    tolerances: Tolerances = ()
 
     def __init__(
         self,
@@ -65,6 +68,7 @@ class Driveline(BaseModel):
         damping_ratio_frequency: float | str | None = None,
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
+        tolerances: Iterable[Tolerance] = (),
     ) -> None:
         data: dict[str, Any] = {
             "elements": _checked(elements),
@@ -74,6 +78,7 @@ class Driveline(BaseModel):
             "damping_ratio_frequency": damping_ratio_frequency,
             "operation": operation,
             "limits": limits,
+            "tolerances": tolerances,
         }
         try:
             super().__init__(**data)
@@ -99,6 +104,7 @@ class Driveline(BaseModel):
             wrong += _wrong_ends(self, self.parents)
         wrong += [*_wrong_damping(self), *_wrong_loads(self), *_wrong_drives(self)]
         wrong += wrong_limits(self.limits, self.names, self.elements)
+        wrong += wrong_tolerances(self.tolerances, self.names, self.elements)
         if wrong:
             raise InputError.together(wrong)
         return self
@@ -131,6 +137,11 @@ class Driveline(BaseModel):
     def limits_by_element(self) -> tuple[OneLimit, ...]:
         """Every limit that holds; one stated for an element goes before that of its kind."""
         return limits_of(self.limits, self.names, self.elements)
+
+    @cached_property
+    def tolerances_by_path(self) -> dict[str, tuple[object, ...]]:
+        """Tolerances by path ("Shaft 1.stiffness"), each as ``tolerance_study`` takes it."""
+        return tolerances_of(self.tolerances, self.names, self.elements)
 
     def with_load(self, case: str) -> Driveline:
         """The same line under the torques of one of its load cases; disks not named there keep theirs."""

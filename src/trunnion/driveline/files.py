@@ -25,7 +25,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from trunnion.driveline.ball_joints import RIPPLE_KINDS
 from trunnion.driveline.clutches import SLIDER_KINDS
@@ -39,9 +39,11 @@ from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
+from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, problems_of, short
 from trunnion.writing import written_whole
 
+Made = TypeVar("Made")
 FORMAT = 1
 LARGEST_FILE = 4_000_000
 """Bytes of a driveline file; examples have a few thousand."""
@@ -61,6 +63,7 @@ TOP_KEYS = (
     "damping_ratio_frequency",
     "operation",
     "limit",
+    "tolerance",
     "element",
 )
 
@@ -99,6 +102,8 @@ def dumps(line: Driveline) -> str:
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
     blocks += [_block("[[limit]]", _written_limit(limit)) for limit in line.limits]
+    for tolerance in line.tolerances:
+        blocks += _tolerance_blocks(tolerance)
     for element in line.elements:
         blocks += _element_blocks(element)
     return "\n".join(blocks)
@@ -200,7 +205,9 @@ def _driveline(table: dict[str, Any], source: str, folder: Path | None) -> Drive
     if "operation" in table:
         read("operation", table["operation"], _operation)
     if "limit" in table:
-        read("limits", table["limit"], _limits)
+        read("limits", table["limit"], lambda value: _each(value, "limit", Limit))
+    if "tolerance" in table:
+        read("tolerances", table["tolerance"], lambda value: _each(value, "tolerance", Tolerance))
     if wrong:
         wrong += problems_of([lambda: Driveline([Disk(inertia=1.0)], **rest)])  # its own keys
         raise InputError.together(wrong)
@@ -306,19 +313,20 @@ def _load_case(case: Any, place: int) -> LoadCase:
         raise about(error, label) from None
 
 
-def _limits(tables: Any) -> list[Limit]:
+def _each(tables: Any, what: str, make: Callable[..., Made]) -> list[Made]:
+    """Every ``[[what]]`` of a file."""
     if not isinstance(tables, list):
-        remedy = "write [[limit]] with double brackets"
-        raise InputError("is a single table", key="limit", remedy=remedy)
-    made: list[Limit] = []
+        remedy = f"write [[{what}]] with double brackets"
+        raise InputError("is a single table", key=what, remedy=remedy)
+    made: list[Made] = []
     wrong: list[InputError] = []
     for place, table in enumerate(tables, start=1):
-        label = f"limit {place}"
+        label = f"{what} {place}"
         if not isinstance(table, dict):
-            wrong.append(InputError("is not a table", element=label, value=table, remedy="write [[limit]]"))
+            wrong.append(InputError("is not a table", element=label, value=table, remedy=f"write [[{what}]]"))
             continue
         try:
-            made.append(Limit(**table))
+            made.append(make(**table))
         except InputError as error:
             wrong += (error if isinstance(table.get("of"), str) else about(error, label)).problems
     if wrong:
@@ -356,6 +364,13 @@ def _element_blocks(element: Element) -> list[str]:
         else:
             table[key] = value if kind is None else written(value, kind)
     return [_block("[[element]]", table), *blocks]
+
+
+def _tolerance_blocks(tolerance: Tolerance) -> list[str]:
+    stated = tolerance.written
+    normal = {key: value for key, value in stated.items() if isinstance(value, dict)}
+    plain = {key: value for key, value in stated.items() if key not in normal}
+    return [_block("[[tolerance]]", plain), *(_block(f"[tolerance.{key}]", value) for key, value in normal.items())]
 
 
 def _written(value: Any, kind: Kind | None) -> Any:

@@ -26,43 +26,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
+from trunnion.driveline.packed_numbers import SPEED as SPEED
+from trunnion.driveline.packed_numbers import UNITS as UNITS
 from trunnion.errors import InputError, InputRemark
-
-SPEED = "speed"
-UNITS = {
-    "speed": "rad/s",
-    "stiffness": "N*m/rad",
-    "damping": "N*m*s/rad",
-    "loss_factor": "1",
-    "relative_damping": "1",
-    "mass": "kg",
-    "loss_factor_frequency": "rad/s",
-    "outer_diameter": "m",
-    "inner_diameter": "m",
-    "length": "m",
-    "thickness": "m",
-    "shear_modulus": "Pa",
-    "density": "kg/m^3",
-    "fork_offset": "rad",
-    "inertia": "kg*m^2",
-    "load_torque": "N*m",
-    "viscous_load": "N*m*s/rad",
-    "quadratic_load": "N*m*s^2/rad^2",
-    "drive_share": "1",
-    "angle": "rad",
-    "plane": "rad",
-    "reference_angle": "rad",
-    "radius": "m",
-    "distance_ratio": "1",
-    "yoke_length": "m",
-    "mesh_stiffness": "N/m",
-    "mesh_damping": "N*s/m",
-    "backlash": "m",
-    "angular_backlash": "rad",
-    "stiffness_ratio": "1",
-    "damping_ratio": "1",
-    "damping_ratio_frequency": "rad/s",
-}
 
 
 @dataclass(frozen=True)
@@ -161,7 +127,11 @@ class PackedLine:
         fields = {line.names[i]: _fields(line.elements[i], numbers) for i, numbers in changed.items()}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputRemark)  # odd values are allowed along an axis
-            return line.replace_all(fields, **own)
+            try:
+                return line.replace_all(fields, **own)
+            except InputError:
+                # Tolerances about other numbers may reach where no line can be; the numbers themselves speak again.
+                return line.replace_all(fields, tolerances=(), **own)
 
     def _resolve_path(self, path: str) -> Columns:
         factor = path.startswith("factor of ")

@@ -14,7 +14,8 @@ from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
-from trunnion.driveline.quantities import FREQUENCY, RATIO, json_schema_of
+from trunnion.driveline.quantities import FREQUENCY, RATIO, Kind, json_schema_of
+from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
 _SOLID = ["outer_diameter", "thickness"]
@@ -89,6 +90,11 @@ def json_schema() -> dict[str, Any]:
                 "items": {"$ref": "#/$defs/Limit"},
                 "description": "what elements may bear, for assess",
             },
+            "tolerance": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/Tolerance"},
+                "description": "how far numbers scatter, for tolerance_study",
+            },
             "element": {
                 "type": "array",
                 "minItems": 1,
@@ -107,12 +113,34 @@ def json_schema() -> dict[str, Any]:
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Limit": _model(Limit),
+            "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),
             "Slider": _model(Slider),
         },
+    }
+
+
+def _tolerance() -> dict[str, Any]:
+    """One key a number that can scatter."""
+
+    def forms(kind: Kind) -> dict[str, Any]:
+        size = {"anyOf": [json_schema_of(RATIO), json_schema_of(kind)]}
+        ends = {"type": "array", "items": json_schema_of(kind), "minItems": 2, "maxItems": 2}
+        normal = {"type": "object", "properties": {"deviation": size}, "required": ["deviation"]}
+        return {"anyOf": [size, ends, {**normal, "additionalProperties": False}], "description": f"of its {kind.name}"}
+
+    return {
+        "type": "object",
+        "description": (Tolerance.__doc__ or "").strip().partition("\n")[0],
+        "properties": {
+            "of": {"type": "string", "description": 'name of the element, or "Shaft *" for all of a kind'},
+            **{key: forms(kind) for key, kind in SCATTERING.items()},
+        },
+        "required": ["of"],
+        "additionalProperties": False,
     }
 
 

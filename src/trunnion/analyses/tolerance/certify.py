@@ -93,8 +93,8 @@ class StabilityCertificate(Result):
 
 def certify_stability(
     line: Driveline | Assembly,
-    tolerances: Tolerances,
-    speeds: tuple[float, float],
+    tolerances: Tolerances | None = None,
+    speeds: tuple[float, float] | None = None,
     *,
     most_boxes: int = 20_000,
     progress: Callable[[float], None] | None = None,
@@ -105,14 +105,18 @@ def certify_stability(
     Parameters
     ----------
     line : up to three unknowns behind a ConstantSpeed, shafts, disks and Hooke's joints alone, without loads.
-    tolerances : as of ``tolerance_study``; of stiffness, damping, inertia, and the angle of a line's only joint. Normal
-        distributions count as three standard deviations either way.
+    tolerances : as of ``tolerance_study``, None for those of the description; of stiffness, damping, inertia, and the
+        angle of a line's only joint. Normal distributions count as three standard deviations either way.
+    speeds : lowest and highest [rad/s]; None for the range of the description.
     most_boxes : boxes judged before the rest is left undecided.
 
     Raises
     ------
     InputError : the line, or what scatters, is none of these.
     """
+    description = line.line if isinstance(line, Assembly) else line
+    if speeds is None and description.operation is not None:
+        speeds = description.operation.speed_range
     if not isinstance(speeds, tuple | list) or len(speeds) != 2 or not 0 < speeds[0] < speeds[1] < np.inf:
         raise InputError("must be two rising positive speeds", key="speeds", value=speeds, remedy="(100.0, 200.0)")
     if isinstance(most_boxes, bool) or not isinstance(most_boxes, int) or most_boxes < 1:

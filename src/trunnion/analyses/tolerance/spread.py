@@ -10,15 +10,14 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from trunnion.driveline.parameters import Columns
+from trunnion.driveline.tolerances import FARTHEST
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
 Tolerances = Mapping[str, object]
 """Path → what it scatters by; see ``read_tolerances``."""
-EXAMPLE = '{"Shaft 1.stiffness": 0.1} for ±10 %, ("range", low, high) or ("normal", 0.03)'
-FARTHEST = 3.0
-"""Standard deviations that stand for the ends of a normal distribution, which has none."""
+EXAMPLE = '{"Shaft 1.stiffness": 0.1} for ±10 %, ("range", low, high), ("normal", 0.03) or ("deviation", size)'
 
 
 @dataclass(frozen=True)
@@ -41,14 +40,19 @@ class Spread:
         return np.asarray(np.clip(self.nominal + self.deviation * ndtri(share), self.low, self.high))
 
 
-def read_tolerances(assembly: Assembly, tolerances: Tolerances) -> tuple[Spread, ...]:
-    """Spreads of a mapping of paths to a share (0.1: ±10 %, uniform), ("range", low, high) in SI units, or
-    ("normal", share).
+def read_tolerances(assembly: Assembly, tolerances: Tolerances | None) -> tuple[Spread, ...]:
+    """Spreads of a mapping of paths to a share (0.1: ±10 %, uniform), ("range", low, high) in SI units, ("normal",
+    share), or ("deviation", size in SI units); those that the line states where none are given.
 
     Raises
     ------
     InputError : nothing scatters; unknown parameters; values no line can have; a number moved twice.
     """
+    if tolerances is None:
+        tolerances = assembly.line.tolerances_by_path
+        if not tolerances:
+            remedy = 'write [[tolerance]] with of = "Shaft 1" and stiffness = "5 %", or give tolerances'
+            raise InputError("are not stated", element="driveline", key="tolerances", remedy=remedy)
     if not isinstance(tolerances, Mapping) or not tolerances:
         raise InputError("must name one parameter or more", key="tolerances", value=tolerances, remedy=EXAMPLE)
     spreads = tuple(_spread(assembly, path, given) for path, given in tolerances.items())
@@ -74,6 +78,9 @@ def _spread(assembly: Assembly, path: str, given: object) -> Spread:
     if kind == "range":
         low, high = numbers
         return Spread(columns.label, columns.unit, columns, nominal, low, high)
+    if kind == "deviation":
+        ends = nominal - FARTHEST * numbers[0], nominal + FARTHEST * numbers[0]
+        return Spread(columns.label, columns.unit, columns, nominal, *ends, numbers[0])
     if nominal == 0:
         raise InputError("is zero, so no share of it is a tolerance", key=path, remedy='("range", low, high)')
     reach = abs(nominal) * numbers[0]
@@ -91,6 +98,8 @@ def _read(path: str, given: object) -> tuple[str, tuple[float, ...]]:
         if all(isinstance(n, int | float) and np.isfinite(n) for n in numbers):
             if kind in ("share", "normal") and len(numbers) == 1 and 0 < numbers[0] < 1:
                 return str(kind), (float(numbers[0]),)
+            if kind == "deviation" and len(numbers) == 1 and numbers[0] > 0:
+                return "deviation", (float(numbers[0]),)
             if kind == "range" and len(numbers) == 2 and numbers[0] < numbers[1]:
                 return "range", (float(numbers[0]), float(numbers[1]))
     raise InputError("is no tolerance", key=path, value=given, remedy=EXAMPLE)

@@ -21,7 +21,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.many_lines import ManyLines
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.chart import require_pixels
@@ -131,8 +131,8 @@ QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 def tolerance_study(
     line: Driveline | Assembly,
-    tolerances: Tolerances,
-    speeds: ArrayLike,
+    tolerances: Tolerances | None = None,
+    speeds: ArrayLike | None = None,
     *,
     samples: int = 1 << 14,
     confidence: float = 0.95,
@@ -146,8 +146,9 @@ def tolerance_study(
     Parameters
     ----------
     tolerances : parameter path → 0.1 (uniform within ±10 %), ("range", low, high) in SI units, or ("normal", 0.03)
-        (standard deviation as a share, cut at three of them).
-    speeds : one speed or several; a range is as dense as these are.
+        (standard deviation as a share, cut at three of them), ("deviation", 0.01) in SI units; by default those that
+        the description states.
+    speeds : one speed or several, by default the operating speed of the description; a range is as dense as these are.
     samples : lines in all, rounded up to 16 powers of two.
     seed : of the scrambles; the same seed gives the same numbers.
 
@@ -155,7 +156,8 @@ def tolerance_study(
     ------
     InputError : see ``read_tolerances`` and ``stability_chart``; speeds that are not positive; fewer than 256 samples.
     """
-    at = np.atleast_1d(np.asarray(speeds, dtype=float))
+    description = line.line if isinstance(line, Assembly) else line
+    at = np.atleast_1d(np.asarray(operating_speed(description, None) if speeds is None else speeds, dtype=float))
     if at.ndim != 1 or not len(at) or not np.all(np.isfinite(at)) or not np.all(at > 0):
         raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
     if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 256:
