@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
-import re
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+from pages import ROOT, run_page
 
 
 def test_examples_run_in_order(monkeypatch: Any) -> None:
     monkeypatch.chdir(ROOT)
-    names: dict[str, Any] = {}
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
-            exec(block, names)
-    assert "joint 2.angle" in printed.getvalue()
-    assert "joint 2, angle: 5 deg → 6 deg" in printed.getvalue()
+    text, names = run_page("design")
+    assert "joint 2.angle" in text
+    assert "joint 2, angle: 5 deg → 6 deg" in text

@@ -1,26 +1,16 @@
 """The examples of docs/kinetostatics.md run, and its numbers are those of the package."""
 
-import contextlib
-import io
-import re
-from pathlib import Path
-
 import numpy as np
 import pytest
+from pages import ROOT, run_page
 
 import trunnion as tn
-
-ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "kinetostatics.md").read_text(encoding="utf-8")
 
 
 def test_examples_run_in_order(monkeypatch):
     monkeypatch.chdir(ROOT)
-    names, printed = {}, io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
-            exec(block, names)
-    assert "irregularity" in printed.getvalue()
+    text, names = run_page("kinetostatics")
+    assert "irregularity" in text
 
 
 def test_errata_of_s2():

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
-import re
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
-
-ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "nonlinear.md").read_text(encoding="utf-8")
+from pages import run_page
 
 
 @pytest.mark.slow
 def test_examples_run_in_order() -> None:
-    names: dict[str, Any] = {}
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
-            exec(block, names)
-    text = printed.getvalue()
+    text, names = run_page("nonlinear")
     assert "stable periodic motion" in text and "linear theory: growth rate" in text
     assert [p.kind for p in names["branch"].special] == ["period doubling", "period doubling"]
     assert names["orbit"].outcome.ok and names["strobe"].system.compiled

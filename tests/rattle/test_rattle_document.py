@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
-import re
-from pathlib import Path
 from typing import Any
 
 import pytest
-
-PAGE = (Path(__file__).parents[2] / "docs" / "rattle.md").read_text(encoding="utf-8")
+from pages import blocks, run_page
 
 
 def test_examples_run_in_order() -> None:
-    names: dict[str, Any] = {}
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
-            exec(block, names)
-    text = printed.getvalue()
+    text, names = run_page("rattle")
     assert "fold at 0.874372" in text and "2 attractors" in text
     assert abs(names["both"]["describing function"].peak[1] / names["both"]["exact"].peak[1] - 1) < 0.01
     assert (0.87, 0.88) in names["up"].jumps and (0.76, 0.75) in names["down"].jumps
@@ -37,7 +27,7 @@ def test_examples_run_in_order() -> None:
     same = names["pair"].but(harmonics=(), name=names["one"].name)
     assert names["one"].inertia == pytest.approx(same.inertia) and names["one"].slopes == pytest.approx(same.slopes)
     assert names["one"].mean_force == pytest.approx(same.mean_force) and names["one"].force == pytest.approx(same.force)
-    tables = "\n".join(re.findall(r"^```toml\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE))
+    tables = "\n".join(blocks("rattle", "toml"))
     disk = '[[element]]\ntype = "Disk"\ninertia = 0.1\n'
     assert names["tn"].loads(f"format = 1\n{disk}{tables}{disk}").elements[1].backlash == 1e-4
 

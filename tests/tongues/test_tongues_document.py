@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
-import re
 from pathlib import Path
 from typing import Any
 
-PAGE = (Path(__file__).parents[2] / "docs" / "tongues.md").read_text(encoding="utf-8")
+from pages import run_page
 
 
 def test_examples_run_in_order(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        for block in re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.DOTALL | re.MULTILINE):
-            exec(block, names)
-    assert names["widest"].name == "subharmonic ω₂" and "searched completely" in printed.getvalue()
+    text, names = run_page("tongues")
+    assert names["widest"].name == "subharmonic ω₂" and "searched completely" in text
     assert (tmp_path / "tongues.csv").exists()
