@@ -13,6 +13,7 @@ import trunnion as tn
 from trunnion.analyses.charts import chart_families
 from trunnion.analyses.charts.axes import axis
 from trunnion.analyses.charts.chart_pixels import judge_matrices
+from trunnion.analyses.limits.stable_limit import LimitKind, limit_of_chart
 from trunnion.equations.coefficients import assemble
 from trunnion.results.chart import ChartPoint, StabilityChart
 from trunnion.results.verdict import Verdict
@@ -107,6 +108,8 @@ def test_every_pixel_against_integration(seed: int, monkeypatch: pytest.MonkeyPa
     off = np.abs(found.radius - chart.spectral_radius.ravel())
     assert np.all(off <= chart.error_estimate.ravel() + found.error)
     assert np.median(off) < 1e-8
+    unstable = np.any(chart.verdict == Verdict.UNSTABLE, axis=0)
+    assert np.array_equal(limit_of_chart(chart, own=True).kind == LimitKind.BEYOND, ~unstable)
     assert chart.count(Verdict.UNDECIDED) == 0
 
 

@@ -32,6 +32,8 @@ from trunnion.results.verdict import Verdict
 ALL_ANGLES = "HookeJoint *.angle"
 FINE, COARSE = (200, 150), (56, 32)
 """Speeds × angles of a chart with borders of stability in it, and of one that shows the decay alone."""
+TOLERANCE = 1e-7
+"""Of the chart: far below what a picture shows; pixels too near a border to be decided so are judged more sharply."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +144,7 @@ def charted(
     low, high = seen.speed_range
     across, up = points or (FINE if _has_borders(seen) else COARSE)
     axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
-    chart = stability_chart(seen.answer.assembly, *axes, progress=progress)
+    chart = stability_chart(seen.answer.assembly, *axes, tolerance=TOLERANCE, progress=progress)
     return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
 
 

@@ -57,7 +57,9 @@ class Region:
 
     @property
     def by_coefficients(self) -> bool:
-        """Whether the patches hold characteristic coefficients (up to three unknowns) or entries of matrices."""
+        """Whether the patches hold coefficients (of a stiff line those of its largest multipliers), or matrices."""
+        if self.function.patches:
+            return all(len(patch.error) - 1 <= MOST for patch in self.function.patches)
         return 2 * self.family.size <= MOST
 
     @property
