@@ -137,3 +137,48 @@ def test_refusals(run, message: str) -> None:
     with pytest.raises(tn.InputError) as caught:
         run()
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+DISK = tn.Disk(inertia=0.5, name="disk", excitation=[{"order": 2, "amplitude": 10.0}])
+OSCILLATOR = tn.Driveline(
+    [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"), DISK],
+    limits=[tn.Limit(of="shaft", vibratory_torque=20.0, max_torque=30.0), tn.Limit(of="disk", max_acceleration=1e4)],
+    tolerances=[tn.Tolerance("shaft", stiffness="20 %"), tn.Tolerance("disk", inertia="1 %")],
+)
+
+
+def torque(stiffness: np.ndarray, inertia: np.ndarray, speed: float) -> np.ndarray:
+    held = stiffness + 2j * (2 * speed)
+    return 10.0 * np.abs(held / (held - inertia * (2 * speed) ** 2))
+
+
+def test_probability_of_checks_is_an_area() -> None:
+    """One shaft below its resonance: its vibratory torque in closed form over the two tolerances."""
+    speed = 48.0
+    study = tn.tolerance_study(OSCILLATOR, speeds=speed, checks=256, samples=256)
+    checks = study.checks
+    assert checks is not None and checks.lines == 256 and not checks.chosen_by_cost
+    k, j = np.meshgrid(np.linspace(8e3, 12e3, 801), np.linspace(0.495, 0.505, 81))
+    inside = torque(k, j, speed)
+    share = dict(zip(checks.check, zip(checks.probability, checks.interval, strict=True), strict=True))
+    for name, allowed in (("vibratory torque of shaft", 20.0), ("max torque of shaft", 30.0)):
+        truth = float((inside <= allowed).mean())
+        probability, (low, high) = share[name]
+        assert 0 < truth <= 1 and low - 5e-3 <= truth <= high + 5e-3 and probability == pytest.approx(truth, abs=0.02)
+    assert share["max acceleration of disk"][0] == 1.0
+    assert checks.together == pytest.approx(float((inside <= 20.0).mean()), abs=0.02)
+    assert checks.worst is not None and checks.worst.check == "vibratory torque of shaft"
+    assert checks.worst.values["shaft.stiffness"] == pytest.approx(8e3) and checks.worst.spare < 0
+    assert checks.worst.values["disk.inertia"] == pytest.approx(0.505)
+    worst = torque(np.array(8e3), np.array(0.505), speed)
+    assert checks.worst.spare == pytest.approx(1 - worst / 20.0, rel=1e-6)
+    assert checks.ranking[0][0] == "shaft.stiffness"
+    assert "every check holds with probability" in str(study) and "checks_together" in study.data.attrs
+
+
+def test_lines_are_chosen_by_cost_and_the_result_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    from trunnion.analyses.tolerance import checks as module
+
+    monkeypatch.setattr(module, "SECONDS", 1e-3)
+    found = tn.tolerance_study(OSCILLATOR, speeds=48.0, checks=True, samples=256).checks
+    assert found is not None and found.chosen_by_cost and found.lines == 64 and "0.001 s allow" in str(found)

@@ -31,6 +31,9 @@ def tolerance_study(
     speeds: Annotated[
         list[str] | None, typer.Option("--speed", metavar="SPEED", help="Repeat it for more; default the file's.")
     ] = None,
+    checks: Annotated[
+        int, typer.Option("--checks", help="Lines judged by every check too; -1 for as many as half a minute allows.")
+    ] = 0,
     samples: Annotated[int, typer.Option("--samples", help="Lines in all.")] = 1 << 14,
     seed: Annotated[int, typer.Option("--seed", help="Of the random scrambles.", min=0)] = 0,
     unit: Unit = None,
@@ -52,7 +55,8 @@ def tolerance_study(
     at = [operating_speed(line, one) for one in asked]
     check_places(to)
     with output.progress("tolerance study") as advance:
-        found = study(line, given, at, samples=samples, seed=seed, progress=advance)
+        counted = True if checks < 0 else checks
+        found = study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
     written = write_results(to, file_stem(file), "tolerance-study", found.data, lambda: found.plot())
     if as_json:
         output.write_json("tolerance-study", {**found.to_dict(), "written": written_paths(written)})

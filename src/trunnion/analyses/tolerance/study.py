@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import beta, qmc
-from scipy.stats import t as student
 
 from trunnion.analyses.features import left_out
+from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import ManyLines
+from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-SCRAMBLES = 16
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
 CLIMBS = 6
@@ -64,7 +63,7 @@ class ToleranceStudy(Result):
     radius is 1 to within its error, which count as unstable in ``probability``; stable_share (speeds,) at each speed;
     growth_rate (speeds, samples) of every sample [1/s]; worst: by gradient from the fastest sample; ranking:
     parameters by the share of the scatter of the growth rate, at the speed where it is fastest, that each explains
-    alone.
+    alone; checks: the same for the checks of ``assess``, where they were asked for.
     """
 
     parameters: tuple[str, ...]
@@ -82,6 +81,7 @@ class ToleranceStudy(Result):
     ranking: tuple[tuple[str, float], ...]
     unit: str
     findings: tuple[Finding, ...] = ()
+    checks: CheckStudy | None = None
 
     def declared(self) -> Iterator[Held]:
         """Tolerances with their ranking, shares over speed, the worst line."""
@@ -103,6 +103,8 @@ class ToleranceStudy(Result):
         yield remark("worst_speed", self.worst.speed)
         yield remark("worst_growth_rate", self.worst.growth_rate)
         yield remark("worst_verdict", str(self.worst.verdict))
+        if self.checks is not None:
+            yield from self.checks.declared()
 
     def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
         """The growth rate's distribution, and the parameters by rank; see ``plots.tolerance.draw``."""
@@ -123,6 +125,7 @@ class ToleranceStudy(Result):
             + ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items()),
             "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
         ]
+        lines += [str(self.checks)] if self.checks is not None else []
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 
@@ -134,6 +137,7 @@ def tolerance_study(
     tolerances: Tolerances | None = None,
     speeds: ArrayLike | None = None,
     *,
+    checks: bool | int = False,
     samples: int = 1 << 14,
     confidence: float = 0.95,
     seed: int = 0,
@@ -149,6 +153,8 @@ def tolerance_study(
         (standard deviation as a share, cut at three of them), ("deviation", 0.01) in SI units; by default those that
         the description states.
     speeds : one speed or several, by default the operating speed of the description; a range is as dense as these are.
+    checks : also judges lines by ``assess``, from the lowest to the highest of the speeds: True for as many as half a
+        minute allows, or how many (rounded up to 16 powers of two, 64 to 4096).
     samples : lines in all, rounded up to 16 powers of two.
     seed : of the scrambles; the same seed gives the same numbers.
 
@@ -162,6 +168,8 @@ def tolerance_study(
         raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
     if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 256:
         raise InputError("must be a whole number, 256 or more", key="samples", value=samples)
+    if not isinstance(checks, bool | int | np.integer) or checks < 0:
+        raise InputError("must be True, False or a number of lines", key="checks", value=checks)
     if not 0.5 <= confidence < 1:
         raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
     assembly = line if isinstance(line, Assembly) else assemble(line)
@@ -172,7 +180,7 @@ def tolerance_study(
         assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip
-    shares = _sobol(len(spreads), each, seed)
+    shares = sobol(len(spreads), each, seed)
     growth, stable, undecided = (
         np.empty((len(at), len(shares))),
         np.ones(len(shares), bool),
@@ -189,6 +197,10 @@ def tolerance_study(
         undecided |= found.verdict == Verdict.UNDECIDED
         if progress:
             progress((k + 1) / (len(at) + 1))
+    judged = None
+    if checks:
+        count, tell = None if checks is True else int(checks), progress or (lambda share: None)
+        judged = study_checks(assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, tell)
     probability = float(stable.mean())
     fastest = int(np.nanargmax(growth.max(axis=1)))
     return ToleranceStudy(
@@ -198,7 +210,7 @@ def tolerance_study(
         at,
         len(shares),
         probability,
-        _interval(stable.reshape(SCRAMBLES, each), confidence),
+        interval(stable.reshape(SCRAMBLES, each), confidence),
         confidence,
         float(undecided.mean()),
         at_each,
@@ -207,27 +219,8 @@ def tolerance_study(
         _ranking(spreads, shares, growth[fastest]),
         speed_unit(assembly.line),
         left_out("tolerance_study", assembly.line),
+        judged,
     )
-
-
-def _sobol(parameters: int, each: int, seed: int) -> Array:
-    """Shares (scrambles · each, parameters), one scrambled sequence after another."""
-    generators = (np.random.default_rng([seed, k]) for k in range(SCRAMBLES))
-    return np.concatenate([qmc.Sobol(parameters, scramble=True, seed=g).random(each) for g in generators])
-
-
-def _interval(stable: NDArray[np.bool_], confidence: float) -> tuple[float, float]:
-    """Of the share of True: from the scatter of the rows' means, or where there is none from the count."""
-    means, count = stable.mean(axis=1), stable.size
-    middle = float(means.mean())
-    half = float(student.ppf(0.5 + confidence / 2, len(means) - 1) * means.std(ddof=1) / np.sqrt(len(means)))
-    # A scatter below what one line more or less would make says nothing.
-    if half < 1 / count:
-        yes, tail = int(stable.sum()), (1 - confidence) / 2
-        low = 0.0 if yes == 0 else float(beta.ppf(tail, yes, count - yes + 1))
-        high = 1.0 if yes == count else float(beta.ppf(1 - tail, yes + 1, count - yes))
-        return low, high
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth: Array, speeds: Array) -> Worst:

@@ -1,0 +1,235 @@
+"""How probable it is that every check of ``assess`` holds within the tolerances, which fail, and at which corner.
+
+Each line is judged by ``assess`` itself, which takes tenths of a second: so the lines are few. Their number is asked
+for, or as many as ``SECONDS`` allow by the time that one takes; the result says which. Worst corner and ranking follow
+the gradient of the check with the least margin to spare in any line, fitted to all lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.assess import checks_of, subject_of
+from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
+from trunnion.analyses.tolerance.spread import Spread, tables
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
+
+Array = NDArray[np.float64]
+SECONDS = 30.0
+FEWEST, MOST = 4, 256
+"""Lines in each of the scrambles."""
+POINTS = 41
+"""Speeds of the even part of the grid, besides those about the peaks."""
+PARTS = (1.0, 0.5)
+"""How far towards the corner that the gradient points to lines are judged."""
+
+
+@dataclass(frozen=True)
+class WorstLine:
+    """The line with the least margin to spare that was judged: values by parameter, the check and what it says."""
+
+    values: dict[str, float]
+    check: str
+    spare: float
+    because: str
+
+
+@dataclass(frozen=True, repr=False)
+class CheckStudy(Result):
+    """Probability that the checks of ``assess`` hold within tolerances.
+
+    check: names; probability (check,) and interval (check, 2) of ``confidence`` that each is not exceeded; judged
+    (check,): share of lines in which it could be judged; together and together_interval: that none is exceeded,
+    ``guideline`` (check,) ones left aside; lines: how many were judged, each at ``points`` speeds and about the peaks,
+    in ``seconds`` each; failed: how many could not be computed, which count as exceeding; worst: see ``WorstLine``;
+    ranking: parameters by the share of the scatter of the worst check's margin that a linear fit gives to each.
+    """
+
+    check: tuple[str, ...]
+    probability: Array
+    interval: Array
+    judged: Array
+    guideline: NDArray[np.bool_]
+    together: float
+    together_interval: tuple[float, float]
+    confidence: float
+    lines: int
+    failed: int
+    chosen_by_cost: bool
+    seconds: float
+    points: int
+    worst: WorstLine | None
+    ranking: tuple[tuple[str, float], ...]
+
+    def declared(self) -> Iterator[Held]:
+        """Probabilities by check, the worst line."""
+        yield axis("check", list(self.check))
+        yield over("check", "probability", self.probability, "1")
+        yield over("check", "probability_low", self.interval[:, 0], "1")
+        yield over("check", "probability_high", self.interval[:, 1], "1")
+        yield over("check", "judged", self.judged, "1", "share of lines in which the check could be judged")
+        yield over("check", "guideline", self.guideline.astype(np.int8))
+        yield axis("check_parameter", [name for name, _ in self.ranking])
+        yield over("check_parameter", "explained_of_check", np.array([share for _, share in self.ranking]), "1")
+        yield remark("checks_together", self.together)
+        yield remark("checks_together_interval", list(self.together_interval))
+        yield remark("checks_lines", self.lines)
+        yield remark("checks_failed", self.failed)
+        if self.worst is not None:
+            yield remark("checks_worst", self.worst.check)
+            yield remark("checks_worst_spare", self.worst.spare)
+
+    def __str__(self) -> str:
+        low, high = self.together_interval
+        why = f", as many as {SECONDS:g} s allow at {self.seconds:.2g} s each" if self.chosen_by_cost else ""
+        rows = [
+            f"every check holds with probability {self.together:.4g}, {100 * self.confidence:g} % interval "
+            f"[{low:.4g}, {high:.4g}], from {self.lines} lines judged at {self.points} speeds and about the peaks{why}"
+        ]
+        for k in np.argsort(self.probability, kind="stable").tolist():
+            if self.probability[k] < 1:
+                aside = " (a guideline, left aside)" if self.guideline[k] else ""
+                rows.append(
+                    f"  {self.check[k]}: {self.probability[k]:.4g} [{self.interval[k, 0]:.4g}, "
+                    f"{self.interval[k, 1]:.4g}]{aside}"
+                )
+        if self.failed:
+            rows.append(f"  {self.failed} lines could not be computed and count as exceeding")
+        if self.worst is not None:
+            values = ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items())
+            rows.append(f"  worst line judged: {self.worst.check}, {self.worst.because}, with {values}")
+            rows.append("  what moves it: " + ", ".join(f"{n} {100 * s:.0f} %" for n, s in self.ranking[:5]))
+        return "\n".join(rows)
+
+
+def study_checks(
+    assembly: Assembly,
+    spreads: tuple[Spread, ...],
+    speeds: tuple[float, float],
+    lines: int | None,
+    confidence: float,
+    seed: int,
+    tell: Callable[[float], None],
+) -> CheckStudy:
+    """Judge ``lines`` lines (None: as many as ``SECONDS`` allow) over ``speeds``; see ``tolerance_study``."""
+    judge = _Judge(assembly, spreads, speeds)
+    judge.of(np.full(len(spreads), 0.5))  # whatever the first of all takes to get going
+    begun = perf_counter()
+    judge.of(np.full(len(spreads), 0.45))
+    seconds = perf_counter() - begun
+    wanted = SECONDS / max(seconds, 1e-6) if lines is None else lines
+    each = 1 << int(np.clip(np.ceil(np.log2(wanted / SCRAMBLES)), np.log2(FEWEST), np.log2(MOST)))
+    if lines is None and each > FEWEST and each * SCRAMBLES > wanted:
+        each //= 2
+    shares = sobol(len(spreads), each, seed)
+    found = []
+    for k, place in enumerate(shares):
+        found.append(judge.of(place))
+        tell((k + 1) / len(shares))
+    names = tuple(dict.fromkeys(c.name for checks in found for c in checks or () if c.status in _JUDGED))
+    status = np.array([[_status(checks, name) for name in names] for checks in found]).reshape(len(found), len(names))
+    guideline = np.array([_is_guideline(found, name) for name in names], dtype=bool)
+    holds = status != _EXCEEDED
+    computed = np.array([checks is not None for checks in found])
+    together = holds[:, ~guideline].all(axis=1) & computed
+    spare = np.array([[_spare(checks, name) for name in names] for checks in found]).reshape(len(found), len(names))
+    worst, ranking = _worst(judge, shares, spare[:, ~guideline], np.array(names)[~guideline].tolist())
+    grid = (SCRAMBLES, each)
+    return CheckStudy(
+        names,
+        holds.mean(axis=0),
+        np.array([interval(column.reshape(grid), confidence) for column in holds.T]).reshape(-1, 2),
+        (status != _UNJUDGED).mean(axis=0),
+        guideline,
+        float(together.mean()),
+        interval(together.reshape(grid), confidence),
+        confidence,
+        len(shares),
+        int(np.count_nonzero(~computed)),
+        lines is None,
+        seconds,
+        POINTS,
+        worst,
+        ranking,
+    )
+
+
+_JUDGED = (Status.SATISFIED, Status.EXCEEDED)
+_HOLDS, _EXCEEDED, _UNJUDGED = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class _Judge:
+    assembly: Assembly
+    spreads: tuple[Spread, ...]
+    speeds: tuple[float, float]
+
+    def values(self, shares: Array) -> dict[str, float]:
+        """The numbers of a line at shares (parameters,) of its tolerances."""
+        return {s.label: float(s.values(shares[k : k + 1])[0]) for k, s in enumerate(self.spreads)}
+
+    def of(self, shares: Array) -> tuple[Check, ...] | None:
+        """Its checks; None where it cannot be computed."""
+        row = tables(self.assembly, self.spreads, np.clip(shares, LEAST, 1 - LEAST)[None], float("nan"))[0]
+        try:
+            line: Driveline = self.assembly.packed.line_at(row)
+            return checks_of(subject_of(line, self.speeds, None, None, POINTS))
+        except (InputError, ComputationError):
+            return None
+
+
+LEAST = 1e-12
+"""Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
+
+
+def _named(checks: tuple[Check, ...] | None, name: str) -> Check | None:
+    return next((c for c in checks or () if c.name == name), None)
+
+
+def _status(checks: tuple[Check, ...] | None, name: str) -> int:
+    own = _named(checks, name)
+    if own is None or own.status not in _JUDGED:
+        return _UNJUDGED
+    return _EXCEEDED if own.status is Status.EXCEEDED else _HOLDS
+
+
+def _spare(checks: tuple[Check, ...] | None, name: str) -> float:
+    own = _named(checks, name)
+    return own.spare if own is not None and own.status in _JUDGED else float("nan")
+
+
+def _is_guideline(found: list[Any], name: str) -> bool:
+    return any(own.guideline for checks in found if (own := _named(checks, name)) is not None)
+
+
+def _worst(
+    judge: _Judge, shares: Array, spare: Array, names: list[str]
+) -> tuple[WorstLine | None, tuple[tuple[str, float], ...]]:
+    """The least margin of any line, and towards the corner that its gradient points to; what moves it."""
+    known = np.where(np.isfinite(spare), spare, np.inf)
+    if not known.size or not np.isfinite(known).any():
+        return None, ()
+    at, k = np.unravel_index(int(known.argmin()), known.shape)
+    own = np.isfinite(spare[:, k])
+    design = shares[own] - 0.5
+    slope = np.linalg.lstsq(np.column_stack([design, np.ones(len(design))]), spare[own, k], rcond=None)[0][:-1]
+    candidates = [shares[at], *(shares[at] + part * (np.where(slope > 0, 0.0, 1.0) - shares[at]) for part in PARTS)]
+    best: WorstLine | None = None
+    for place in candidates:
+        check = _named(judge.of(place), names[k])
+        if check is not None and np.isfinite(check.spare) and (best is None or check.spare < best.spare):
+            best = WorstLine(judge.values(np.clip(place, LEAST, 1 - LEAST)), names[k], check.spare, check.because)
+    scatter = float(spare[own, k].var())
+    weight = slope**2 * design.var(axis=0) / scatter if scatter > 0 else np.zeros(len(slope))
+    pairs = [(s.label, float(min(w, 1.0))) for s, w in zip(judge.spreads, weight, strict=True)]
+    return best, tuple(sorted(pairs, key=lambda pair: -pair[1]))
