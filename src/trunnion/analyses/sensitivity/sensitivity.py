@@ -94,7 +94,7 @@ def sensitivity(
     stated = line if load_case is None else line.with_load(load_case)
     question = _Question(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
-        load_case=load_case, unit=unit or speed_unit(line), progress=progress or (lambda share: None),
+        load_case=load_case, unit=unit or speed_unit(line),
     )  # fmt: skip
     parts: dict[str, Callable[[], Iterator[_Rows]]] = {
         "frequencies": partial(_frequencies, question),
@@ -104,7 +104,8 @@ def sensitivity(
     }
     rows: list[_Rows] = []
     refusals: list[TrunnionProblem] = []
-    for kind in kinds:
+    for k, kind in enumerate(kinds):
+        question.progress = partial(_tell_part, progress, k, len(kinds))
         try:
             rows += parts[kind]()
         except (InputError, ComputationError) as error:
@@ -141,7 +142,7 @@ class _Question:
     directions: tuple[Direction, ...]
     load_case: str | None
     unit: str
-    progress: Callable[[float], None]
+    progress: Callable[[float], None] = lambda share: None
     findings: list[Finding] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -150,6 +151,11 @@ class _Question:
 
     def shown(self, speed: float) -> str:
         return show_speed(float(f"{speed:.12g}"), self.unit)
+
+
+def _tell_part(progress: Callable[[float], None] | None, part: int, parts: int, share: float) -> None:
+    if progress:
+        progress((part + share) / parts)
 
 
 def _kinds(of: Iterable[str]) -> tuple[str, ...]:
