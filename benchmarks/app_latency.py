@@ -7,7 +7,9 @@ Needs the extra ``app``, playwright and Chromium. Times are from the key press t
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -17,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from playwright.sync_api import sync_playwright
-from served import browser_path, start_server
+from served import Server, browser_path, start_server
 
 from trunnion.driveline.starter import starter
 
@@ -25,6 +27,7 @@ WAIT = 300_000
 
 
 def main() -> None:
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))  # so that the server is stopped
     name = sys.argv[1] if len(sys.argv) > 1 else "two-shaft"
     repeats = int(sys.argv[2]) if len(sys.argv) > 2 else 20
     with tempfile.TemporaryDirectory() as folder:
@@ -53,8 +56,16 @@ def measure(name: str, file: str, repeats: int) -> None:
                     report(f"{name}: point typed to its multipliers", points(page, repeats))
             browser.close()
     finally:
-        server.process.send_signal(signal.SIGINT)
+        stop(server)
+
+
+def stop(server: Server) -> None:
+    """End the server and its workers, whatever ended the measurement: politely, and after a minute not."""
+    server.process.send_signal(signal.SIGINT)
+    try:
         server.process.wait(60)
+    except subprocess.TimeoutExpired:
+        os.killpg(server.process.pid, signal.SIGKILL)
 
 
 def slide(page: Any, repeats: int, wait: Callable[[Any], None]) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from served import Look
 
@@ -45,6 +46,59 @@ def test_a_link_is_restored_in_a_fresh_browser(look: Look, browser: object, serv
     field.wait_for()
     assert field.input_value() == "7.25 deg"
     other.context.close()
+
+
+def choose(look: Look, label: str, text: str) -> None:
+    """Choose the option that begins with ``text``."""
+    field = look.page.get_by_label(label, exact=True)
+    field.select_option(label=next(o for o in field.locator("option").all_inner_texts() if o.startswith(text)))
+
+
+def test_from_a_starter_to_a_satisfied_verdict(look: Look) -> None:
+    """As somebody who reads nothing: begin, see what is exceeded and what is not judged, mend it, state limits."""
+    look.at()
+    choose(look, "Begin with", "two-shaft")
+    look.page.get_by_role("button", name="Begin", exact=True).click()
+    look.view("Verdict")
+    look.page.locator("[data-verdict=exceeded]", has_text="uniformity").wait_for()
+    look.page.get_by_text("state limits for Shaft 1, Shaft 2").first.wait_for()
+    look.view("Driveline")
+    look.type("angle of HookeJoint 1", "2 deg")
+    look.page.get_by_role("button", name="Add limit").click()  # of every shaft, as it stands there
+    look.page.get_by_label("vibratory torque of limit of Shaft *", exact=True).wait_for()
+    look.view("Verdict")
+    look.page.locator("[data-verdict=satisfied]").wait_for()
+
+
+def test_what_helps_is_found_and_tried(look: Look) -> None:
+    """The change that the button makes is the one that its sentence names, and it satisfies what it is for."""
+    line = tn.loads(starter("two-shaft")).replace("HookeJoint 1", angle="3.5 deg")
+    sentence = tn.assess(line).sentence
+    assert sentence.startswith("exceeded: uniformity")
+    look.at()
+    look.type("angle of HookeJoint 1", "3.5 deg")
+    look.view("Verdict")
+    look.page.get_by_text(sentence, exact=True).wait_for()
+    look.page.get_by_role("button", name="What would help?").click()
+    (expected,) = tn.remedies(line, most=2).of("uniformity")
+    look.page.get_by_text(expected.sentence.partition(": ")[2]).first.wait_for()
+    look.page.get_by_role("button", name="Try it").first.click()
+    mended = tn.assess(line.replace("HookeJoint 1", angle=expected.after)).sentence
+    look.page.get_by_text(mended, exact=True).wait_for()
+
+
+def test_the_report_is_saved_whole(look: Look, tmp_path: Path) -> None:
+    """One file without references to elsewhere, with the verdict that the page shows."""
+    look.at("?view=verdict")
+    sentence = look.page.locator("[data-verdict]").inner_text()
+    with look.page.expect_download(timeout=280_000) as waiting:
+        look.page.locator("a[href$='driveline.html'], a[href$='report.html']").first.click()
+    path = tmp_path / "report.html"
+    waiting.value.save_as(path)
+    page = path.read_text(encoding="utf-8")
+    assert page.lstrip().lower().startswith("<!doctype html>") and page.rstrip().endswith("</html>")
+    assert not re.findall(r"(?:src|href)=[\"']https?://", page)
+    assert "data:image/svg+xml" in page and sentence.removeprefix("exceeded: ") in page
 
 
 def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:

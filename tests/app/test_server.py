@@ -48,6 +48,25 @@ def test_own_origin_is_admitted(server: Server) -> None:
     assert ask(server, Origin=f"http://{server.host}")[0] == 200
 
 
+def post(server: Server, path: str, **headers: str) -> int:
+    """Status of a POST with the given headers."""
+    name, _, port = server.host.partition(":")
+    connection = http.client.HTTPConnection(name, int(port), timeout=120)
+    connection.request("POST", path, body=b"x=1", headers={k.replace("_", "-"): v for k, v in headers.items()})
+    return connection.getresponse().status
+
+
+def test_what_changes_needs_the_token_of_this_site(server: Server) -> None:
+    """XSRF: a form of another site carries the cookies of this one, but cannot read the token to send beside them."""
+    path = "/download/x/driveline/driveline.toml"
+    token = "2|aaaaaaaa|" + "0" * 32 + "|1700000000"
+    form = {"Content_Type": "application/x-www-form-urlencoded"}
+    assert post(server, path, **form) == 403
+    assert post(server, path, **form, Cookie=f"_xsrf={token}") == 403
+    assert post(server, path, **form, Cookie=f"_xsrf={token}", X_XSRFToken=token.replace("0", "1")) == 403
+    assert post(server, path, **form, Cookie=f"_xsrf={token}", X_XSRFToken=token) == 405  # admitted, nothing to post to
+
+
 def test_only_the_loopback_address_listens(server: Server) -> None:
     port = int(server.host.partition(":")[2])
     addresses = {a[4][0] for a in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)} - {"127.0.0.1"}

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.driveline.starter import starter
 from trunnion.reporting import Report
+from trunnion.reporting.tables import TIED, checks
 
 TEXT = """
 format = 1
@@ -196,3 +198,12 @@ def test_motion_under_load_is_that_of_the_function(file: Path) -> None:
     assert section.count("<img") == 2
     bare = tn.report(line.replace("pump", load_torque=None), points=(12, 9))
     assert 'id="under-load"' not in bare.html and bare.contents.loaded == ()
+
+
+def test_reasons_without_a_margin_keep_their_commas() -> None:
+    """What is not judged has no margin to take out of its reason."""
+    line = tn.loads(starter("two-shaft"))
+    rows = {row[1]: row for row in checks(tn.assess(line)).rows}
+    assert rows["torque without limit"][4] == "Shaft 1, Shaft 2: no limit of torque or stress is stated"
+    assert rows["uniformity"][2] == "exceeded by 1540 %".replace(" ", TIED)
+    assert rows["uniformity"][4].endswith("as one joint of 12°")

@@ -43,14 +43,17 @@ def assessment(result: Any) -> Plain:
         "limit": bind.limit if bind else math.nan,
         "quantity": bind.unit if bind else "",
         "rows": result.table(),
-        "rules": [
-            f"{c.rule.formula}: {c.rule.source} ({c.rule.certainty}){'; ' + c.inputs if c.inputs else ''}"
-            for c in result.checks
-        ],
+        "rules": [_rule(c) for c in result.checks],
         "margin": [c.margin for c in result.checks],
         "required": [c.required_margin for c in result.checks],
         "findings": [str(f) for f in result.findings],
     }
+
+
+def _rule(check: Any) -> str:
+    """Formula, source and inputs of a check, those that it has."""
+    parts = [check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]
+    return "; ".join(part for part in parts if part)
 
 
 def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[str, ...]) -> bytes:

@@ -20,7 +20,8 @@ MOST_RESONANCES = 30
 MOST_CROSSINGS = 30
 REASONS = 5
 """Satisfied checks printed with their reasons."""
-NARROW = "\u202f"
+TIED = "\u00a0"
+"""A space at which no line breaks."""
 
 
 @dataclass(frozen=True)
@@ -159,8 +160,9 @@ def checks(judged: Assessment) -> Table:
     for row, check in zip(judged.table(), judged.checks, strict=True):
         if check.status is Status.NOT_APPLICABLE:
             continue
-        margin = str(row["margin"]).replace(" ", NARROW)
-        because = check.because.replace(f", {percent(check.margin)}", "")
+        margin = str(row["margin"]).replace(" ", TIED)
+        shown = percent(check.margin)
+        because = check.because.replace(f", {shown}", "") if shown else check.because
         if check.status is Status.NOT_JUDGED:
             because = because.split(";")[0]  # the findings say what to do
         elif check.status is Status.SATISFIED and len(rows) >= REASONS:

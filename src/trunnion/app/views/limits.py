@@ -90,12 +90,17 @@ class _Side(Side):
         bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
         figures.hover(self.bars, [bar], [("", "@name"), ("", "@value")])
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.bars.visible = False
         self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
         self.panel = pn.Column(self.curves.panel, self.bar_panel, self.text, sizing_mode="stretch_width", margin=0)
 
     def show(self, name: str, data: Any) -> None:
         """What was asked for."""
-        self.curves.panel.visible, self.bar_panel.visible = name == "limit", name != "limit"
+        for shown, panel, figure in (
+            (name == "limit", self.curves.panel, self.curves.figure),
+            (name != "limit", self.bar_panel, self.bars),
+        ):
+            panel.visible = figure.visible = shown
         self.text.object = f"<pre style='white-space:pre-wrap;font-size:13px'>{figures.text(data['text'])}</pre>"
         if name != "limit":
             order = np.argsort(-np.abs(np.asarray(data["value"])))[:16]

@@ -152,7 +152,7 @@ class _Side(Side):
         modes = [(f"mode {n}", x, hertz[:, k]) for k, n in enumerate(data["mode"])]
         lines = [(name, x, values / (2 * np.pi)) for name, values in data["lines"]]
         colours = [figures.BLUE] * len(modes) + [figures.FAINT] * len(lines)
-        dashes = [figures.DASHES[k % 4] for k in range(len(modes))] + ["solid"] * len(lines)
+        dashes = [figures.DASHES[k % 4] for k in range(len(modes))] + [figures.DASHES[k % 4] for k in range(len(lines))]
         self.campbell.set(
             [*modes, *lines],
             colours=colours,

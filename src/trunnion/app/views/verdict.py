@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import panel as pn
@@ -11,12 +11,10 @@ from bokeh.models import Span
 
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
+from trunnion.app.curves import Curves
 from trunnion.app.helping import Help
 from trunnion.app.views.base import Side, Step, View, select, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
-
-if TYPE_CHECKING:
-    pass
 
 ALL = "as stated and every load case"
 
@@ -88,19 +86,14 @@ class _Side(Side):
         self.bars.data = {"check": [], "margin": [], "colour": [], "hatch": [], "said": []}
         self.margins.add_layout(Span(location=0, dimension="height", line_color=figures.INK))
         figures.hover(self.margins, [bar], [("check", "@check"), ("margin", "@margin{0.0} %"), ("", "@said")])
-        self.torque = figures.plot("input speed", "torque [N·m]", height=300)
-        self.lines = figures.source(xs=[], ys=[], colour=[], dash=[], name=[])
-        drawn = self.torque.multi_line(
-            "xs", "ys", line_color="colour", line_dash="dash", line_width=2, source=self.lines
-        )
-        figures.hover(self.torque, [drawn], [("", "@name")])
+        self.torque = Curves("input speed", "torque [N·m]", height=320, title="torque over speed")
         self.table = pn.pane.HTML("", sizing_mode="stretch_width")
         self.help = Help(session)
         self.panel = pn.Column(
             self.sentence,
             pn.pane.Bokeh(self.margins, sizing_mode="stretch_width"),
             self.help.panel,
-            pn.pane.Bokeh(self.torque, sizing_mode="stretch_width"),
+            self.torque.panel,
             self.table,
             sizing_mode="stretch_width",
             margin=0,
@@ -138,21 +131,20 @@ class _Side(Side):
 
     def _torque(self, data: Any) -> None:
         unit, factor = unit_of(self.view.line_of(self))
-        self.torque.xaxis.axis_label = f"input speed [{unit}]"
         springs = data["springs"]
         shown = [springs.index(self.binding)] if self.binding in springs else list(range(len(springs)))
         x = data["speed"] * factor
-        names = [f"{springs[i]}: vibratory torque" for i in shown] + [f"{springs[i]}: largest torque" for i in shown]
-        ys = [data["vibratory"][:, i] for i in shown] + [data["peak"][:, i] for i in shown]
-        colours = [figures.COLOURS[k % 7] for k in range(len(shown))] * 2
+        curves = [(f"{springs[i]}: vibratory", x, data["vibratory"][:, i]) for i in shown]
+        curves += [(f"{springs[i]}: largest", x, data["peak"][:, i]) for i in shown]
+        colours = [figures.COLOURS[k % len(figures.COLOURS)] for k in range(len(shown))] * 2
         dashes = ["solid"] * len(shown) + ["dashed"] * len(shown)
         limit, quantity = self.limit
         if len(shown) == 1 and quantity == "N*m" and np.isfinite(limit):
-            names, ys = [*names, "limit"], [*ys, np.full(len(x), limit)]
+            curves.append(("limit", x, np.full(len(x), limit)))
             colours, dashes = [*colours, figures.ORANGE], [*dashes, "dotted"]
-        self.lines.data = {"xs": [x] * len(ys), "ys": ys, "colour": colours, "dash": dashes, "name": names}
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
-        self.torque.title.text = f"torque of {whose}: vibratory (solid), largest (dashed), limit (dotted)"
+        title = f"torque of {whose}: vibratory (solid), largest (dashed)"
+        self.torque.set(curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", title=title)
 
 
 def _table(data: Any) -> str:
