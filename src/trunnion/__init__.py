@@ -105,7 +105,7 @@ if TYPE_CHECKING:
     from trunnion.equations.speed_profile import SpeedProfile
     from trunnion.errors import ComputationError, InputError, InputRemark
     from trunnion.plots.layout import sketch
-    from trunnion.reporting import report
+    from trunnion.reporting.report import report
     from trunnion.studies.entries import catalogue
     from trunnion.studies.reproduce import reproduce
     from trunnion.systems.events import Event
@@ -238,7 +238,7 @@ _HOME = {
     "averaging": "trunnion.analyses.perturbation.averaging",
     "DescribingFunction": "trunnion.analyses.perturbation.describing_function",
     # hand on
-    "report": "trunnion.reporting",
+    "report": "trunnion.reporting.report",
     "reproduce": "trunnion.studies.reproduce",
     # errors
     "InputError": "trunnion.errors",

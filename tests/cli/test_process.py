@@ -47,6 +47,38 @@ def test_light_imports(start, action):
     assert out.splitlines()[-1] == "HEAVY []"
 
 
+def test_the_answer_loads_no_compiler(start):
+    """Verdict, checks and findings of a jointed line, stability along its range included."""
+    script = (
+        "import sys, trunnion as tn\n"
+        "from trunnion.cli import output\n"
+        "from trunnion.reporting.answer import answer\n"
+        "with output.compile_notice():\n"
+        "    given = answer(tn.load('line.toml'))\n"
+        "assert given.stability is not None\n"
+        "print([name for name in ('numba', 'matplotlib', 'xarray') if name in sys.modules])\n"
+    )
+    code, out, err = finished(start(program=("-c", script)))
+    assert code == 0, err
+    assert out.splitlines()[-1] == "[]"
+
+
+def test_compiling_is_said_once(start, tmp_path):
+    """However many parts of a command compile."""
+    script = (
+        "from trunnion.cli import output\n"
+        "for _ in range(2):\n"
+        "    with output.compile_notice() as compiling:\n"
+        "        import numba\n"
+        "        from trunnion.numerics import jit\n"
+        "        numba.njit(lambda x: x + 1)(1)\n"
+        "        assert compiling.seconds() > 0\n"
+    )
+    code, _, err = finished(start(program=("-c", script)))
+    assert code == 0, err
+    assert err.count("compiling once") == 1
+
+
 def finished(process):
     out, err = process.communicate(timeout=300)
     return process.returncode, out, err

@@ -12,7 +12,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline.starter import starter
-from trunnion.reporting import Report
+from trunnion.reporting.report import Report
 from trunnion.reporting.tables import TIED, checks
 
 TEXT = """

@@ -7,7 +7,9 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from functools import cache
+from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,16 +114,20 @@ def progress(what: str) -> Iterator[Callable[[float], None]]:
 COMPILING = "compiling once, a few seconds (up to half a minute on a slow machine)"
 
 
+@cache
+def _say_compiling() -> None:
+    """Once in a command, however many parts of it compile."""
+    print(COMPILING, file=sys.stderr, flush=True)
+
+
 class _Compiling:
     """Seconds spent on compiling so far, what is being compiled included."""
 
     def __init__(self) -> None:
-        self.spent, self.depth, self.since, self.said = 0.0, 0, 0.0, False
+        self.spent, self.depth, self.since = 0.0, 0, 0.0
 
     def begin(self) -> None:
-        if not self.said:
-            self.said = True
-            print(COMPILING, file=sys.stderr, flush=True)
+        _say_compiling()
         if not self.depth:
             self.since = time.monotonic()
         self.depth += 1
@@ -137,13 +143,48 @@ class _Compiling:
 
 @contextmanager
 def compile_notice() -> Iterator[_Compiling]:
-    """Says so once if something has to be compiled, which otherwise looks like a hang, and how long it took."""
+    """Says so once if something has to be compiled, which otherwise looks like a hang, and how long it took.
+
+    The compiler is loaded by what needs it, not here.
+    """
     compiling = _Compiling()
-    try:
-        from numba.core import event
-    except ImportError:  # only the notice depends on this corner of numba
+    with ExitStack() as stack:
+
+        def listen() -> None:
+            with suppress(ImportError):  # only the notice depends on this corner of numba
+                stack.enter_context(_listening(compiling))
+
+        if COMPILER in sys.modules:
+            listen()
+        else:
+            waiting = _Before(COMPILER, listen)
+            sys.meta_path.insert(0, waiting)
+            stack.callback(waiting.leave)
         yield compiling
-        return
+
+
+COMPILER = "trunnion.numerics.jit"
+"""The module through which everything is compiled."""
+
+
+class _Before(MetaPathFinder):
+    """Calls ``then`` when the module ``name`` is about to be loaded."""
+
+    def __init__(self, name: str, then: Callable[[], None]) -> None:
+        self.name, self.then = name, then
+
+    def find_spec(self, fullname: str, path: object, target: object = None) -> None:
+        if fullname == self.name:
+            self.leave()
+            self.then()
+
+    def leave(self) -> None:
+        with suppress(ValueError):
+            sys.meta_path.remove(self)
+
+
+def _listening(compiling: _Compiling) -> AbstractContextManager[Any]:
+    from numba.core import event
 
     class Notice(event.Listener):  # type: ignore[misc]
         def on_start(self, event: Any) -> None:
@@ -152,8 +193,8 @@ def compile_notice() -> Iterator[_Compiling]:
         def on_end(self, event: Any) -> None:
             compiling.end()
 
-    with event.install_listener("numba:compile", Notice()):
-        yield compiling
+    listening: AbstractContextManager[Any] = event.install_listener("numba:compile", Notice())
+    return listening
 
 
 class _Clock:

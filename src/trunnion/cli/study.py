@@ -24,9 +24,9 @@ from trunnion.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from trunnion.reporting import Report
     from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
+    from trunnion.reporting.report import Report
 
 DEFAULT_FOLDER = Path("trunnion-out")
 
@@ -74,8 +74,8 @@ def analyze(
 
 def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) -> tuple[Overview, list[Path]]:
     """Write the report, then once more with the chart: what is interrupted leaves the first."""
-    from trunnion.reporting import report
     from trunnion.reporting.overview import at_speed, charted
+    from trunnion.reporting.report import report
 
     with output.progress("report") as advance:
         seen = at_speed(given)

@@ -18,6 +18,8 @@ from trunnion.equations.topology import require_period
 
 Array = NDArray[np.float64]
 Cases = NDArray[np.intp]
+LARGEST_DENSE = 12
+"""Unknowns up to which products of dense matrices cost less than the chain kernel."""
 STEPS_PER_CYCLE = 4
 FEWEST_STEPS = 8
 FEWEST_SAMPLES = 64

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,16 +11,17 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
-from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent
-from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor
 from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from trunnion.results.chart import StabilityChart
 
 NEAR = 0.05
 """Relative distance from a resonance speed that deserves a word."""
@@ -72,6 +74,9 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
     bands = runs(found.verdict == Verdict.UNSTABLE)
     for first, last in bands:
         worst = first + int(np.argmax(found.growth_rate[first : last + 1]))
+        # Loaded where needed: it brings the compiler with it.
+        from trunnion.analyses.linear.stability import stability
+
         there = stability(assembly, float(found.speed[worst]))
         cause = f" ({there.resonance.in_words})" if there.resonance else ""
         edges = f"from {_plain(float(found.speed[first]), unit)} to {_speed(float(found.speed[last]), unit)}"

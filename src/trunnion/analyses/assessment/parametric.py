@@ -19,7 +19,6 @@ from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.own_limits import bands
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, straight_decay
-from trunnion.analyses.linear.stability import stability
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.verdict import Verdict
 
@@ -79,6 +78,9 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
 
 
 def _resonance(case: Case, speed: float) -> str:
+    # Loaded where needed: it brings the compiler with it.
+    from trunnion.analyses.linear.stability import stability
+
     try:
         found = stability(case.assembly, speed).resonance
     except (InputError, ComputationError):
@@ -97,6 +99,9 @@ def _along(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
 
 def _one_by_one(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
     """The same at few speeds, each about its own motion, found by shooting."""
+    # Loaded where needed: it brings the compiler with it.
+    from trunnion.analyses.linear.stability import stability
+
     low, high = float(case.speeds[0]), float(case.speeds[-1])
     speeds = np.linspace(low, high, EACH) if high > low else case.speeds
     growth, verdict = np.full(len(speeds), np.nan), np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8)

@@ -21,7 +21,7 @@ from trunnion.analyses.charts.few_nodes import leading_patches
 from trunnion.analyses.charts.leading_group import told_apart
 from trunnion.analyses.charts.prices import without_groups
 from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.first_order import LineRates
+from trunnion.equations.first_order import LARGEST_DENSE, LineRates
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
@@ -313,8 +313,6 @@ class LineFamily:
 
 AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
 """How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
-LARGEST_DENSE = 12
-"""Unknowns up to which products of dense matrices cost less than the chain kernel."""
 FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 

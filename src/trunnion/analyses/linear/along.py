@@ -1,9 +1,8 @@
 """Floquet stability at many speeds at once: what the verdicts along a running range stand on.
 
 All speeds share the work. Up to ``LARGEST_DENSE`` unknowns the monodromy matrices come from exponentials in plain
-NumPy, so
-that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain kernel. Bent
-lines that start free are taken about their own periodic motions.
+NumPy, so that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain
+kernel. Bent lines that start free are taken about their own periodic motions.
 """
 
 from __future__ import annotations
@@ -13,16 +12,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.charts.chart_families import LARGEST_DENSE, quantities
-from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
-from trunnion.analyses.linear.own_motions import own_motions
 from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.first_order import LineRates, fastest_cycles, first_order, period_of, steps_that_see
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+from trunnion.equations.first_order import (
+    LARGEST_DENSE,
+    LineRates,
+    fastest_cycles,
+    first_order,
+    period_of,
+    steps_that_see,
+)
 from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import bent, require_balance
 from trunnion.errors import InputError
-from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import without
 from trunnion.results.verdict import Verdict, verdicts
@@ -104,6 +105,8 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
 
 
 def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
+    from trunnion.analyses.linear.own_motions import own_motions
+
     table = assembly.table(len(speed))
     table[:, 0] = speed
     require_balance(assembly, table)
@@ -133,6 +136,12 @@ def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
 
 
 def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
+    # Loaded here, as they bring the compiler with them, which lines of up to ``LARGEST_DENSE`` unknowns do without.
+    from trunnion.analyses.charts.chart_families import quantities
+    from trunnion.analyses.charts.chart_pixels import judge, judge_matrices
+    from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+    from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
+
     topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
     period = period_of(assembly)
     lanes = chain_lanes(topo, co, by_speed)

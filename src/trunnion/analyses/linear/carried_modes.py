@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
-from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
 from trunnion.numerics.spectrum import multipliers, without
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
+
+if TYPE_CHECKING:
+    from trunnion.numerics.chain.dense_monodromy import Propagation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -27,6 +31,8 @@ def judged_multipliers(run: Propagation, aside: Array) -> tuple[Complex, Array]:
 
 def propagated(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
     """The propagator, its error in energy-like units below ``tolerance``."""
+    # Loaded here: it brings the compiler with it, and judging a line along its range does without.
+    from trunnion.numerics.chain.dense_monodromy import propagate
 
     def arrays(tau: Array) -> tuple[Array, Array, Array, Array]:
         m = system.coefficients(tau)

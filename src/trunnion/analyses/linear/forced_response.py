@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,10 @@ from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.topology import Topology
 from trunnion.errors import ComputationError
-from trunnion.numerics.chain.dense_monodromy import Propagation
 from trunnion.results.declared import Held, Result, axis, over, remark
+
+if TYPE_CHECKING:
+    from trunnion.numerics.chain.dense_monodromy import Propagation
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,6 @@ from trunnion.analyses.linear.mode_content import (
     named_resonance,
 )
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.linear.own_motion import own_motion
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.orbit_result import speed_in_words
 from trunnion.analyses.orders.response import without_excitation
@@ -35,13 +35,15 @@ from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
-from trunnion.numerics.chain.dense_monodromy import Propagation
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.declared import Held, Result, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
+
+if TYPE_CHECKING:
+    from trunnion.numerics.chain.dense_monodromy import Propagation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -211,6 +213,8 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
     """Of a free line with bent joints, which no motion of rigid shafts stands for."""
     topo = assembly.topology
     turns = require_period(assembly.line, topo)
+    from trunnion.analyses.linear.own_motion import own_motion
+
     motion = own_motion(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)

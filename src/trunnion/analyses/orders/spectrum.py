@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,6 @@ from numpy.typing import NDArray
 from trunnion.analyses.orders.channels import Channels, channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
-from trunnion.analyses.orders.own_orders import OwnBase, OwnOrders, about, add_own, seen_about
 from trunnion.analyses.orders.straight import straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
@@ -34,6 +34,9 @@ from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
+
+if TYPE_CHECKING:
+    from trunnion.analyses.orders.own_orders import OwnBase, OwnOrders
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -199,7 +202,7 @@ class _Case:
         self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
-        self.own = OwnOrders(assembly, self.turns) if self.topo.free and bent(assembly) else None
+        self.own = _own_orders(assembly, self.turns) if self.topo.free and bent(assembly) else None
         self.reach = _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         if self.own is not None:
@@ -305,6 +308,8 @@ class _Case:
 
     def _about_own_motion(self, own: OwnBase, table: Array) -> tuple[_Sum, Array]:
         """One speed of a bent line that starts free."""
+        from trunnion.analyses.orders.own_orders import about, add_own, seen_about
+
         topo, cycles, speed = self.topo, 1 / self.turns, float(table[0, 0])
         places, co = channels_of(topo), own.coefficients
         total, last = _Sum(1, places.count, topo.size), 0.0
@@ -449,3 +454,10 @@ def _reach(joints: tuple[JointLaw, ...]) -> int:
     """As many harmonics as the most uneven joint asks for: behind a Hooke's joint they fall off as tan^2h(β/2)."""
     share = max((law.spread for law in joints), default=0.0)
     return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))
+
+
+def _own_orders(assembly: Assembly, turns: Fraction) -> OwnOrders:
+    """Loaded for lines that need it: it brings the compiler and the orbits with it."""
+    from trunnion.analyses.orders.own_orders import OwnOrders
+
+    return OwnOrders(assembly, turns)
