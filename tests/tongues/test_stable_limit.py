@@ -137,7 +137,7 @@ def test_one_speed_and_a_range_with_margin() -> None:
     assert "between the speeds too" in str(found)
     one = tn.stable_limit(LINE, ANGLE, 1.6, high=0.9)
     assert len(one.speed) == 1 and one.sentence.startswith("Stable at 1.6 rad/s up to angle of HookeJoint 1 18.")
-    assert found.sentence_at(0.9).startswith("Stable at 0.9 rad/s") or "No instability at 0.9" in found.sentence_at(0.9)
+    assert found.sentence_at(0.9).startswith("Stable at 0.9 rad/s")
 
 
 DISK = tn.Disk(inertia=0.5, name="disk", excitation=[{"order": 2, "amplitude": 10.0}])

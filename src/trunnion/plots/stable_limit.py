@@ -57,6 +57,11 @@ def draw(
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
     axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
     plain(axes)
+    if ends.all():
+        axes.text(
+            0.5, 0.5, "no instability found", transform=axes.transAxes, ha="center", va="center", fontsize=TEXT,
+            color=INK, bbox={"facecolor": "white", "edgecolor": "none", "pad": 3}, zorder=6,
+        )  # fmt: skip
     _key(axes, bool(ends.all()), bool(operating and operating.speed), shown)
     return axes
 

@@ -144,7 +144,7 @@ class StableLimit(Result):
             failed = show_speed(float(self.speed[self.kind == LimitKind.UNKNOWN][0]), unit)
             said = f"At {failed} stability could not be computed over the whole range of the {shown.quantity}"
         elif at is None:
-            said = f"No instability at {span} up to {shown.value(self.high)}, the end of the range"
+            said = f"Stable at {span} up to {shown.value(self.high)}, the end of the range"
         elif np.any(self.kind == LimitKind.AT_ONCE):
             said = f"Unstable from {shown.value(self.low)} on, at {show_speed(at, unit)}"
         else:
