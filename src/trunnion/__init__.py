@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.motion.run_up import run_up
     from trunnion.analyses.motion.safe_accelerations import safe_accelerations
     from trunnion.analyses.motion.simulate import simulate
+    from trunnion.analyses.optimisation.optimise import optimise
     from trunnion.analyses.orbits.basins import basins
     from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response
     from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
@@ -173,6 +174,7 @@ _HOME = {
     "load_chart": "trunnion.analyses.charts.stability_chart",
     "stable_limit": "trunnion.analyses.limits.stable_limit",
     "compare": "trunnion.analyses.comparison.compare",
+    "optimise": "trunnion.analyses.optimisation.optimise",
     "sensitivity": "trunnion.analyses.sensitivity.sensitivity",
     "tolerance_study": "trunnion.analyses.tolerance.study",
     "certify_stability": "trunnion.analyses.tolerance.certify",

@@ -34,7 +34,22 @@ def test_compare(run, here):
     assert run("compare", "one.toml", "one.toml").stdout.strip().endswith("the two descriptions are alike")
 
 
+def test_optimise(run, here):
+    call = ("optimise", "three-shaft-cardan", "-f", "Shaft 2.fork_offset:-60deg:100deg", "-a", "irregularity")
+    done = run(*call, "--designs", "40", "-o", "o.png", "-o", "o.nc", "--write", "best.toml")
+    assert done.exit_code == 0 and "Shaft 2.fork_offset = 0 deg (90 deg before)" in done.stdout
+    assert (here / "o.png").exists() and "HookeJoint" in (here / "best.toml").read_text(encoding="utf-8")
+    shown = json.loads(run(*call, "--designs", "40", "--json", "-o", "p.nc").stdout)
+    assert shown["free"] == ["Shaft 2.fork_offset"] and shown["aim_value"][0] < 1e-9
+
+
 REFUSED = [
+    (("optimise", "two-shaft-cardan", "-f", "HookeJoint 1.angle", "-a", "irregularity"), "needs two bounds"),
+    (("optimise", "two-shaft-cardan", "-f", "HookeJoint 1.angle:0:1", "-a", "evenness"), "is no aim"),
+    (
+        ("optimise", "two-shaft-cardan", "-f", "HookeJoint 1.angle:0:1", "-a", "irregularity", "--write", "best.txt"),
+        "is no place for a driveline file",
+    ),
     (("compare", "two-shaft-cardan"), "AFTER"),
     (("compare", "two-shaft-cardan", "nowhere.toml"), "nowhere.toml"),
     (("compare", "two-shaft-cardan", "three-shaft-cardan", "--speed", "2:1"), "is no rising range"),

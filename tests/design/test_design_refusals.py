@@ -7,6 +7,7 @@ import pytest
 import trunnion as tn
 
 LINE = tn.catalogue("two-shaft-cardan")
+ANGLE = "HookeJoint 1.angle"
 
 
 def tips_of(line):
@@ -28,6 +29,30 @@ REFUSED = [
     (lambda: tn.compare(LINE, LINE, (2.0, 1.0)), "speeds = (2.0, 1.0): must be a lowest and a highest", "tn.rpm"),
     (lambda: tn.compare(LINE, LINE, (1.0, 2.0), load_case="hill"), "load_case = 'hill'", ""),
     (lambda: tn.compare(LINE, LINE).plot(), "comparison: has nothing to draw", "change a value"),
+    (lambda: tn.optimise(LINE, {}, "irregularity"), "free: must name one parameter or more", "fork_offset"),
+    (lambda: tn.optimise(LINE, {"speed": (1, 2)}, "irregularity"), "speed: is no parameter of the line", "give speeds"),
+    (lambda: tn.optimise(LINE, {"Shaft 9.damping": (0, 1)}, "irregularity"), "is not a parameter", "did you mean"),
+    (lambda: tn.optimise(LINE, {ANGLE: 0.3}, "irregularity"), "= 0.3: must be a low and a high bound", "free="),
+    (lambda: tn.optimise(LINE, {ANGLE: (0.3, 0.2)}, "irregularity"), "must be rising bounds", "free="),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, float("inf"))}, "irregularity"), "must be finite numbers", "free="),
+    (lambda: tn.optimise(LINE, {ANGLE: ("1 m", "2 m")}, "irregularity"), f"{ANGLE} = '1 m': ", ""),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 2)}, "irregularity"), "would reach 2, which no line", "move the bound"),
+    (
+        lambda: tn.optimise(LINE, {ANGLE: (0, 1), "HookeJoint *.angle": (0, 1)}, "irregularity"),
+        "HookeJoint *.angle: moves HookeJoint 1.angle, as HookeJoint 1.angle does", "free once",
+    ),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "evenness"), "aims = 'evenness': is no aim", "irregularity"),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, []), "aims = 0: must be one aim or two", "irregularity"),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, ["irregularity"] * 2), "names one aim twice", "leave one out"),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "growth rate"), "is needed for the aim growth rate", "speeds=("),
+    (
+        lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "irregularity", (1.0, 1.1), checks=["U"]),
+        "checks = 'U': is not a check of this line", "uniformity",
+    ),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "irregularity", checks=3), "checks = 3: must be True, False", "names"),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "irregularity", checks="U"), "are judged over a range", "give speeds"),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "irregularity", designs=3), "designs = 3: must be a whole number", ""),
+    (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "irregularity", seed=-1), "seed = -1: must be a whole number", ""),
     (
         lambda: tn.sensitivity(tn.catalogue("three-shaft-cardan"), 1.0, of=[], tips=tips_of(LINE)),
         "tips: are not of this line", "of the same line",
@@ -41,6 +66,11 @@ def test_refused_in_one_line(call, begins, says):
         call()
     text = str(caught.value)
     assert begins in text and says in text and "\n" not in text
+
+
+def test_what_cannot_be_computed_is_said():
+    with pytest.raises(tn.ComputationError, match="no design within the bounds can be computed"):
+        tn.optimise(LINE, {ANGLE: (0.1, 0.2)}, lambda line: float("nan"), designs=20)
 
 
 def test_what_follows_nothing_is_not_drawn():

@@ -304,6 +304,7 @@ NOT_ANALYSES = {
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "compare": "natural_frequencies, stability, order_response and assess of two lines side by side",
+    "optimise": "judges changed lines as kinetostatics, order_response, stability and assess do",
     "sensitivity": "derivatives of what the analyses above compute, with what each of them leaves out",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",

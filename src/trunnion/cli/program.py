@@ -27,6 +27,7 @@ from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import minimum_damping, stable_windows, tongues
 from trunnion.cli.linearity import linearity_check
 from trunnion.cli.motion import periodic_response, run_up, simulate
+from trunnion.cli.optimise import optimise
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
@@ -189,6 +190,7 @@ app.command("tongues")(tongues)
 app.command("stable-windows")(stable_windows)
 app.command("minimum-damping")(minimum_damping)
 app.command("compare")(compare)
+app.command("optimise")(optimise)
 app.command("sensitivity")(sensitivity)
 app.command("certify-stability")(certify_stability)
 app.command("tolerance-study")(tolerance_study)

@@ -10,6 +10,7 @@ DRAWINGS = {
     "StableLimit.plot": "trunnion.plots.stable_limit:draw",
     "StableWindows.plot": "trunnion.plots.tongues:draw_windows",
     "Comparison.plot": "trunnion.plots.comparison:draw",
+    "Optimum.plot": "trunnion.plots.optimum:draw",
     "Sensitivities.plot": "trunnion.plots.sensitivity:draw",
     "ToleranceStudy.plot": "trunnion.plots.tolerance:draw",
     "Tongues.plot": "trunnion.plots.tongues:draw",

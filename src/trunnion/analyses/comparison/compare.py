@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Status
+from trunnion.analyses.assessment.range_extremes import largest_growth, largest_torque
 from trunnion.analyses.assessment.result import Assessment
-from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.comparison.result import Comparison, Difference
-from trunnion.analyses.linear.along import straight_decay
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.errors import ComputationError, InputError
+from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
 Array = NDArray[np.float64]
@@ -125,7 +125,7 @@ def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[st
 
 def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
     """The largest growth rate, and the largest torques by all orders, under the load case that binds."""
-    growths = [one for case in subject.cases if (one := _growth(case)) is not None]
+    growths = [one for case in subject.cases if (one := largest_growth(case)) is not None]
     if growths:
         rate, speed = max(growths)
         yield "largest growth rate", ("growth rate", rate, "1/s", speed)
@@ -134,33 +134,8 @@ def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, 
         return
     for c, spring in enumerate(shaft_names(cases[0].assembly)):
         for word in ("peak", "vibratory"):
-            most = max((_largest(case, word, c) for case in cases), key=lambda found: found[0])
+            most = max((largest_torque(case, word, c) for case in cases), key=lambda found: found[0])
             yield f"{word} torque of {spring}", ("torque", most[0], "N*m", most[1])
-
-
-def _largest(case: Case, word: str, spring: int) -> tuple[float, float]:
-    response = case.response
-    assert response is not None
-    values = (response.peak_torque if word == "peak" else response.vibratory_torque)[:, spring]
-    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
-    return (float(values[at]) if np.isfinite(values[at]) else np.inf), float(case.speeds[at])
-
-
-def _growth(case: Case) -> tuple[float, float] | None:
-    """Largest growth rate over the range and its speed; of a line that nothing varies, its slowest decay."""
-    try:
-        if not case.parametric:
-            speeds = case.speeds
-            rates = np.array([-straight_decay(case.assembly, float(speed)) for speed in speeds])
-        else:
-            speeds, rates = case.along.speed, case.along.growth_rate
-    except (InputError, ComputationError):
-        return None
-    if not np.any(np.isfinite(rates)):
-        return None
-    at = int(np.nanargmax(rates))
-    everywhere = np.ptp(rates) <= 1e-9 * abs(rates[at])
-    return float(rates[at]), np.nan if everywhere else float(speeds[at])
 
 
 def _margins(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, str, float]]]:

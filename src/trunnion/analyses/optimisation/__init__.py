@@ -1,0 +1,1 @@
+"""The best numbers of a line within bounds."""

@@ -1,0 +1,162 @@
+"""What a design is to be best in, and which checks it has to satisfy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+
+import numpy as np
+
+from trunnion.analyses.assessment.assess import checks_of, subject_of
+from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.assessment.range_extremes import exact_torque, largest_growth
+from trunnion.analyses.assessment.subject import POINTS, Subject
+from trunnion.analyses.kinetostatics.chain import chain
+from trunnion.analyses.kinetostatics.phasing import irregularity_of
+from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import ComputationError, InputError
+
+IRREGULARITY, GROWTH, SPARE = "irregularity", "growth rate", "least spare margin"
+TORQUES = ("peak torque of ", "vibratory torque of ")
+MARGIN = "margin of "
+WORST = 10.0
+"""The largest violation that one check can count, in margins."""
+OwnAim = Callable[[Driveline], float]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """One aim: its name and unit, and whether the largest value is wanted, not the smallest."""
+
+    name: str
+    unit: str
+    largest: bool = False
+    own: OwnAim | None = None
+
+    @property
+    def judged(self) -> bool:
+        """Whether it needs the checks."""
+        return self.name == SPARE or self.name.startswith(MARGIN)
+
+    @property
+    def over_range(self) -> bool:
+        """Whether it needs a range of speeds."""
+        return self.own is None and self.name != IRREGULARITY
+
+
+@dataclass(frozen=True)
+class Question:
+    """What every design is asked: aims, the range of speeds [rad/s] or None, and the checks that must hold (None:
+    every limit and rating; empty: none)."""
+
+    aims: tuple[Aim, ...]
+    speeds: tuple[float, float] | None
+    load_case: str | None
+    unit: str
+    held: frozenset[str] | None
+
+    @property
+    def checking(self) -> bool:
+        """Whether checks are computed."""
+        return self.speeds is not None and (self.held is None or bool(self.held) or any(a.judged for a in self.aims))
+
+    def answer(self, line: Driveline, points: int = POINTS) -> Answer:
+        """The aims of one line, and by how much it violates checks; NaN where it cannot be computed."""
+        try:
+            return self._answer(line, points)
+        except (InputError, ComputationError):
+            return Answer(tuple(nan for _ in self.aims), inf, ())
+
+    def _answer(self, line: Driveline, points: int) -> Answer:
+        subject = None
+        if self.checking or any(aim.over_range for aim in self.aims):
+            subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
+        checks = checks_of(subject) if subject is not None and self.checking else ()
+        values = tuple(_value(aim, line, subject, checks) for aim in self.aims)
+        judged = [c for c in checks if self._must_hold(c) and c.status in (Status.SATISFIED, Status.EXCEEDED)]
+        broken = [c for c in judged if c.status is Status.EXCEEDED]
+        violation = sum(min(-c.spare, WORST) for c in broken)
+        return Answer(values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf))
+
+    def _must_hold(self, check: Check) -> bool:
+        return not check.guideline if self.held is None else check.name in self.held
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Values of the aims, the violation of checks (0 where all hold), the names of those violated, and the least margin
+    beyond the one required."""
+
+    values: tuple[float, ...]
+    violation: float
+    broken: tuple[str, ...]
+    spare: float = inf
+
+    @property
+    def possible(self) -> bool:
+        """Whether there are values at all."""
+        return all(isfinite(value) for value in self.values)
+
+
+def aims_of(line: Driveline, aims: object) -> tuple[Aim, ...]:
+    """One aim or two, by name or as a function of the line.
+
+    Raises
+    ------
+    InputError : none or more than two; unknown names.
+    """
+    given = aims if isinstance(aims, tuple | list) else (aims,)
+    if not 1 <= len(given) <= 2:
+        raise InputError("must be one aim or two", key="aims", value=len(given), remedy='aims="irregularity", say')
+    found = tuple(_aim(line, one) for one in given)
+    if len({one.name for one in found}) < len(found):
+        raise InputError("names one aim twice", key="aims", value=found[0].name, remedy="leave one out")
+    return found
+
+
+def _aim(line: Driveline, given: object) -> Aim:
+    if callable(given):
+        return Aim(getattr(given, "__name__", "own aim"), "1", own=given)
+    from trunnion.equations.coefficients import assemble
+
+    springs = shaft_names(assemble(line))
+    known = [IRREGULARITY, GROWTH, SPARE, *(f"{word}{spring}" for word in TORQUES for spring in springs)]
+    if isinstance(given, str) and given.startswith(MARGIN):
+        return Aim(given, "1", largest=True)
+    if given not in known:
+        near = nearest(str(given), known)
+        raise InputError(
+            "is no aim", key="aims", value=given, remedy=f'{near}; "margin of CHECK", or a function of a line'
+        )
+    assert isinstance(given, str)
+    units = {IRREGULARITY: "1", GROWTH: "1/s", SPARE: "1"}
+    return Aim(given, units.get(given, "N*m"), largest=given == SPARE)
+
+
+def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[Check]) -> float:
+    if aim.own is not None:
+        return float(aim.own(line))
+    if aim.name == IRREGULARITY:
+        return float(irregularity_of(chain(line), (), np.zeros((1, 0)))[0])
+    assert subject is not None
+    if aim.name == GROWTH:
+        found = [one for case in subject.cases if (one := largest_growth(case)) is not None]
+        return max(found)[0] if found else nan
+    if aim.judged:
+        return min(_margins(aim, checks), default=nan)
+    word, _, spring = aim.name.partition(" torque of ")
+    cases = [case for case in subject.cases if case.response is not None]
+    return max((exact_torque(case, word, shaft_names(case.assembly).index(spring))[0] for case in cases), default=nan)
+
+
+def _margins(aim: Aim, checks: Iterable[Check]) -> Iterator[float]:
+    for check in checks:
+        if check.status not in (Status.SATISFIED, Status.EXCEEDED):
+            continue
+        if aim.name == SPARE and not check.guideline:
+            yield check.spare
+        elif aim.name == f"{MARGIN}{check.name}":
+            yield check.margin

@@ -1,0 +1,230 @@
+"""The numbers of a line, within bounds, that are best in one aim or two and satisfy the checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.assess import assess, subject_of
+from trunnion.analyses.assessment.result import Assessment
+from trunnion.analyses.optimisation.aims import Aim, OwnAim, Question, aims_of
+from trunnion.analyses.optimisation.result import Optimum
+from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
+from trunnion.analyses.optimisation.space import Space
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import assemble
+from trunnion.errors import ComputationError, InputError
+from trunnion.results.finding import Finding, Gravity, by_gravity
+
+Array = NDArray[np.float64]
+POINTS = 21
+"""Points of a front at most."""
+AT_BOUND = 1e-4
+"""Share of the bounds nearer to one of which a number stands at it."""
+DESIGNS = 600
+"""Designs of the search from everywhere; polishing adds to them."""
+
+
+def optimise(
+    line: Driveline,
+    free: Mapping[str, Sequence[object]],
+    aims: str | OwnAim | Sequence[str | OwnAim],
+    speeds: tuple[float, float] | None = None,
+    *,
+    checks: bool | Iterable[str] = True,
+    load_case: str | None = None,
+    designs: int = DESIGNS,
+    seed: int = 0,
+    unit: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Optimum:
+    """Choose numbers of the description, each within its bounds, for one aim or for two.
+
+    Differential evolution from everywhere within the bounds, then Nelder and Mead's simplex from the best design. What
+    comes out was computed anew as ``assess`` and the analyses do; that nothing better exists is not proved.
+
+    Parameters
+    ----------
+    free : path as of a chart's axis → (low, high), SI units or texts, as {"joint 2.angle": ("2 deg", "8 deg")}; what
+        ranges over more than a factor of ten is searched by its logarithm.
+    aims : one of these, or two: "irregularity" of the output, shafts rigid; "growth rate", the largest over the range;
+        "peak torque of SPRING", "vibratory torque of SPRING", the largest over the range and all load cases, all to be
+        smallest; "margin of CHECK", "least spare margin" of all limits and ratings, to be largest; or a function of a
+        ``Driveline`` to be smallest.
+    speeds : lowest and highest input speed [rad/s]; default the range of the description. "irregularity" needs none.
+    checks : True: every limit and rating of ``assess`` is to be satisfied (guidelines are not); names: those; False or
+        (): none. Without speeds nothing is judged.
+    load_case : name of one of the line's load cases; by default all count.
+    designs : computed in the search from everywhere, about; of two aims for each of them.
+    seed : of the search; the same seed gives the same design.
+    unit : of speeds in print; default the one of the description.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : no such parameter, aim, check or load case; bounds that no line can have; no speeds where they are
+        needed.
+    ComputationError : no design within the bounds can be computed.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.Driveline([
+    ...     tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1), tn.HookeJoint(angle="20 deg"),
+    ...     tn.Shaft(stiffness=1e4, fork_offset="50 deg"), tn.Disk(inertia=0.1), tn.HookeJoint(angle="20 deg"),
+    ...     tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1)])
+    >>> best = tn.optimise(line, {"Shaft 2.fork_offset": ("-60 deg", "80 deg")}, "irregularity", designs=100)
+    >>> bool(best.aim[0] < 1e-9), bool(abs(best.values["Shaft 2.fork_offset"]) < 1e-8)
+    (True, True)
+    """
+    wanted = aims_of(line, aims)
+    space = Space(assemble(line), free)
+    _require_whole(designs, seed)
+    span = _span(line, speeds, wanted)
+    held = _held(checks)
+    if span is not None:
+        subject_of(line, span, load_case, unit)  # refuses speeds and load cases that there are not
+    question = Question(wanted, span, load_case, unit or speed_unit(line), held if span is not None else frozenset())
+    _require_checks(line, question, held or frozenset())
+    found, best, tried = _searched(space, question, designs * len(wanted), seed, progress)
+    after = _there(space, best)
+    signs = np.array([-1.0 if aim.largest else 1.0 for aim in wanted])
+    if progress:
+        progress(1.0)
+    return Optimum(
+        line=after,
+        free=tuple(one.path for one in space.free),
+        units=tuple(one.unit for one in space.free),
+        low=np.array([one.low for one in space.free]),
+        high=np.array([one.high for one in space.free]),
+        before=np.array([one.before for one in space.free]),
+        value=space.values(best.shares),
+        aims=tuple(aim.name for aim in wanted),
+        aim_units=tuple(aim.unit for aim in wanted),
+        largest=tuple(aim.largest for aim in wanted),
+        aim_before=np.array(question.answer(line).values),
+        aim=signs * best.losses,
+        front_value=np.array([space.values(one.shares) for one in found]),
+        front=np.array([signs * one.losses for one in found]),
+        broken=best.answer.broken,
+        assessment=_judged(after, span, load_case, unit),
+        designs=tried,
+        seed=seed,
+        findings=by_gravity(_findings(space, best, found)),
+    )
+
+
+def _searched(
+    space: Space, question: Question, most: int, seed: int, progress: Callable[[float], None] | None
+) -> tuple[list[Tried], Tried, int]:
+    """The front, the design to take, and how many were computed.
+
+    Checks cost more than most aims, so the first search leaves them alone: where what it finds satisfies them, nothing
+    better is left to find.
+    """
+    aims = replace(question, held=frozenset())
+    before = 0
+    if question.checking and not aims.checking:
+        search = Search(space, aims, most, seed, progress)
+        found, best = _found(search)
+        before = len(search.tried)
+        if not any(question.answer(_there(space, one)).violation for one in found):
+            return found, best, before
+    search = Search(space, question, most, seed, progress)
+    found, best = _found(search)
+    return found, best, before + len(search.tried)
+
+
+def _there(space: Space, one: Tried) -> Driveline:
+    line = space.line(one.shares)
+    assert line is not None
+    return line
+
+
+def _found(search: Search) -> tuple[list[Tried], Tried]:
+    """Designs of the front, computed anew, and the one to take: of two aims the one nearest to the best of both."""
+    if len(search.question.aims) == 1:
+        best = search.whole(search.best(first).shares)
+        if not best.answer.possible:
+            raise ComputationError("no design within the bounds can be computed; narrow them, or ask for other aims")
+        return [best], best
+    found = nondominated([search.whole(one.shares) for one in thinned(front(search), POINTS)])
+    if not found:
+        # Nothing holds all checks: the design that comes nearest to it.
+        nearest = search.whole(min(search.tried.values(), key=lambda one: one.answer.violation).shares)
+        if not nearest.answer.possible:
+            raise ComputationError("no design within the bounds can be computed; narrow them, or ask for other aims")
+        return [nearest], nearest
+    losses = np.array([one.losses for one in found])
+    off = (losses - losses.min(axis=0)) / np.maximum(np.ptp(losses, axis=0), 1e-300)
+    return found, found[int(np.argmin(np.hypot(off[:, 0], off[:, 1])))]
+
+
+def _require_whole(designs: object, seed: object) -> None:
+    for name, value, least in (("designs", designs, 20), ("seed", seed, 0)):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+            raise InputError(f"must be a whole number, {least} or more", key=name, value=value)
+
+
+def _span(line: Driveline, speeds: tuple[float, float] | None, aims: Sequence[Aim]) -> tuple[float, float] | None:
+    operation = line.operation
+    if speeds is not None:
+        return speeds
+    if operation is not None and operation.speed_range:
+        return float(operation.speed_range[0]), float(operation.speed_range[1])
+    if operation is not None and operation.speed is not None:
+        return float(operation.speed), float(operation.speed)
+    needing = next((aim.name for aim in aims if aim.over_range), None)
+    if needing is not None:
+        remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"
+        raise InputError(f"is needed for the aim {needing}", key="speeds", remedy=remedy)
+    return None
+
+
+def _held(checks: object) -> frozenset[str] | None:
+    if checks is True:
+        return None
+    if checks is False:
+        return frozenset()
+    if not isinstance(checks, Iterable):
+        raise InputError("must be True, False or names", key="checks", value=checks, remedy='["max torque of shaft"]')
+    return frozenset((checks,) if isinstance(checks, str) else checks)
+
+
+def _require_checks(line: Driveline, question: Question, held: frozenset[str]) -> None:
+    """Refuse names of checks that the line has not."""
+    named = {aim.name.removeprefix("margin of ") for aim in question.aims if aim.name.startswith("margin of ")}
+    named |= held
+    if not named:
+        return
+    if question.speeds is None:
+        raise InputError("are judged over a range of speeds", key="checks", remedy="give speeds")
+    known = [c.name for c in assess(line, question.speeds, load_case=question.load_case).checks]
+    for name in sorted(named):
+        if name not in known:
+            raise InputError(
+                "is not a check of this line", key="checks", value=name, remedy=f"there are {', '.join(known)}"
+            )
+
+
+def _judged(
+    line: Driveline, span: tuple[float, float] | None, load_case: str | None, unit: str | None
+) -> Assessment | None:
+    return None if span is None else assess(line, span, load_case=load_case, unit=unit)
+
+
+def _findings(space: Space, best: Tried, found: Sequence[Tried]) -> Iterator[Finding]:
+    if best.answer.broken:
+        yield Finding(
+            Gravity.DANGER,
+            f"No design within the bounds was found that satisfies {', '.join(best.answer.broken)}; this one comes "
+            "nearest.",
+        )
+    for one, share in zip(space.free, best.shares, strict=True):
+        if min(share, 1 - share) < AT_BOUND:
+            side = "lowest" if share < 0.5 else "largest"
+            yield Finding(Gravity.NOTE, f"{one.path} stands at its {side} bound: a wider one may give more.")
