@@ -132,3 +132,20 @@ def test_a_long_run_is_cancelled_while_another_session_answers(look: Look, brows
     look.page.get_by_text("Campbell diagram", exact=False).first.wait_for()
     look.settled()
     assert look.page.locator("[role=alert]", has_text="process ended").count() == 0
+
+
+@pytest.mark.parametrize(
+    ("what", "begins"),
+    [
+        ("stable windows of a parameter", "Every speed from 300 rpm to 3000 rpm"),
+        ("tolerances", "stable at 1500 rpm with"),
+    ],
+)
+def test_windows_and_tolerances_are_among_the_limits(look: Look, what: str, begins: str) -> None:
+    """In the words of the public functions."""
+    look.at("?view=limits&limits.what=" + what.replace(" ", "+"))
+    look.page.locator("pre", has_text=begins).wait_for()
+    if what != "tolerances":
+        expected = str(tn.stable_windows(line(), "HookeJoint 1.angle", 0.0, tn.deg(45), (tn.rpm(300), tn.rpm(3000))))
+        assert look.page.locator("pre", has_text=begins).inner_text().split() == expected.split()
+    assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0

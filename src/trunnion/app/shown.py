@@ -241,6 +241,30 @@ def limit(result: Any) -> Plain:
     return {"speed": result.speed, "limit": result.limit, "others": others, "text": str(result)}
 
 
+def windows(result: Any) -> Plain:
+    """Outlines of the regions behind stable windows, and the ends of the windows inside the range searched."""
+    regions = [
+        (
+            str(t.resonance or t.kind),
+            np.concatenate([t.low, t.high[::-1], t.low[:1]]),
+            np.concatenate([t.y, t.y[::-1], t.y[:1]]),
+        )
+        for t in result.tongues
+    ]
+    ends = sorted({float(v) for v in result.windows.ravel() if result.low < v < result.high})
+    return {"speeds": result.speeds, "regions": regions, "ends": ends, "text": str(result)}
+
+
+def tolerances(result: Any) -> Plain:
+    """What each tolerance explains of the scatter, and the probability in words."""
+    return {
+        "name": [name for name, _ in result.ranking],
+        "value": [100 * share for _, share in result.ranking],
+        "label": "explains of the scatter of the growth rate [%]",
+        "text": str(result),
+    }
+
+
 def ranked(result: Any) -> Plain:
     """What the first of the checks follows most, and the smallest changes."""
     if not result.checks:
