@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
 import sys
 import time
 
@@ -141,3 +142,28 @@ def test_ctrl_c_keeps_the_answer_and_the_report_without_its_chart(start, here):
     page = (here / "kept.html").read_text(encoding="utf-8")
     assert page.endswith("</html>") and "was still computing it, or was interrupted" in page
     assert sorted(os.listdir(here)) == ["kept.html", "line.toml"]
+
+
+@pytest.mark.slow
+def test_warm_up_fills_the_cache_and_leaves_it_as_it_is(tmp_path):
+    """A second run compiles nothing anew; each part runs by itself."""
+    from trunnion.cli.warm_up import PARTS
+
+    environment = {**os.environ, "TRUNNION_CACHE": str(tmp_path / "kept"), "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-m", "trunnion", "warm-up", "--part", "reports and motions"]
+    assert command[-1] in PARTS
+    written = []
+    for _ in range(2):
+        subprocess.run(command, env=environment, check=True, timeout=600)
+        written.append({p: p.stat().st_mtime_ns for p in (tmp_path / "kept").rglob("*.nb*")})
+    assert written[0] and written[1] == written[0]
+
+
+def test_warm_up_says_in_one_line_that_nothing_can_be_kept(tmp_path):
+    (tmp_path / "file").write_text("")
+    environment = {**os.environ, "TRUNNION_CACHE": str(tmp_path / "file"), "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(
+        [sys.executable, "-m", "trunnion", "warm-up"], env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.count("\n") <= 2 and "cannot be written" in done.stderr.splitlines()[-1]

@@ -33,6 +33,7 @@ from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
 from trunnion.cli.sensitivity import sensitivity
 from trunnion.cli.tolerance import certify_stability, tolerance_study
+from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark, TrunnionError, short
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
@@ -205,6 +206,7 @@ app.command("poincare-map")(poincare_map)
 app.command("certify-chaos")(certify_chaos)
 app.command("reproduce")(reproduce)
 app.command("app")(serve_app)
+app.command("warm-up")(warm_up)
 app.command("catalogue")(describe.catalogue)
 app.command("new")(describe.new)
 app.command("schema")(describe.schema)

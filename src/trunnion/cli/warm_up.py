@@ -1,0 +1,131 @@
+"""The command ``warm-up``: compile ahead of time what the first chart and the first report would compile."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trunnion.cli import output
+from trunnion.errors import ComputationError, InputError
+
+POLL = 0.1
+"""Seconds between looks at the processes."""
+
+
+def warm_up(
+    processes: Annotated[
+        int | None, typer.Option("--processes", min=1, help="How many compile side by side; default: one per core.")
+    ] = None,
+    part: Annotated[str | None, typer.Option("--part", hidden=True)] = None,
+) -> None:
+    """Compile ahead of time, so that no first chart or report waits for it; what is there already is kept."""
+    if part is not None:
+        PARTS[part]()
+        return
+    folder = _folder()
+    begin = time.monotonic()
+    output.note(f"compiling into {folder}")
+    _side_by_side(list(PARTS), processes or os.cpu_count() or 1)
+    output.console().print(f"ready after {time.monotonic() - begin:.0f} s: {folder}", soft_wrap=True)
+
+
+def _folder() -> Path:
+    """Where machine code is kept.
+
+    Raises
+    ------
+    InputError : it cannot be written.
+    """
+    from trunnion.numerics.cache_folder import cache_folder
+    from trunnion.numerics.jit import SOURCES, digest_of
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the error says it
+        folder = cache_folder(f"package-{digest_of(SOURCES)}")
+    if folder is None:
+        problem = "cannot be written, so that nothing compiled would be kept"
+        raise InputError(problem, element="cache folder", remedy="set TRUNNION_CACHE to a folder of yours")
+    return folder.parent
+
+
+def _side_by_side(names: list[str], processes: int) -> None:
+    """Each part in a process of its own; on Ctrl-C all are ended, and what they have written stays whole.
+
+    Raises
+    ------
+    ComputationError : a part fails.
+    """
+    waiting, running, done = names[::-1], dict[str, subprocess.Popen[str]](), 0
+    try:
+        while waiting or running:
+            while waiting and len(running) < processes:
+                name = waiting.pop()
+                command = [sys.executable, "-m", "trunnion", "warm-up", "--part", name]
+                running[name] = subprocess.Popen(
+                    command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+                )
+            for name in [n for n, process in running.items() if process.poll() is not None]:
+                process = running.pop(name)
+                said = process.communicate()[1].strip().splitlines()
+                if process.returncode:
+                    raise ComputationError(f"compiling {name} failed: {said[-1] if said else process.returncode}")
+                done += 1
+                output.note(f"  {done} of {len(names)}: {name}")
+            time.sleep(POLL)
+    finally:
+        for process in running.values():
+            process.terminate()
+        for process in running.values():
+            process.communicate()
+
+
+def _charts_of_two() -> None:
+    from trunnion.analyses.charts.stability_chart import stability_chart
+    from trunnion.studies.entries import catalogue
+
+    line = catalogue("two-shaft-cardan")
+    stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint 1.angle", 0.0, 1.2, 120), tolerance=1e-8)
+
+
+def _charts_of_three() -> None:
+    from trunnion.analyses.charts.stability_chart import stability_chart
+    from trunnion.studies.entries import catalogue
+
+    line = catalogue("three-shaft-cardan")
+    stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint *.angle", 0.0, 1.0, 120), tolerance=1e-8)
+
+
+def _charts_of_longer_lines() -> None:
+    from trunnion.analyses.charts.stability_chart import stability_chart
+    from trunnion.driveline import ConstantSpeed, Disk, Driveline, Element, HookeJoint, Shaft
+
+    elements: list[Element] = [ConstantSpeed()]
+    for i in range(4):
+        elements += [HookeJoint(angle=0.2)] if i else []
+        elements += [Shaft(stiffness=1.0, damping=0.01), Disk(inertia=1.0)]
+    stability_chart(Driveline(elements), ("speed", 0.5, 2.0, 12), ("HookeJoint *.angle", 0.0, 0.3, 8))
+
+
+def _reports() -> None:
+    from trunnion.driveline import loads
+    from trunnion.driveline.starter import starter
+    from trunnion.reporting.report import report
+
+    report(loads(starter("two-shaft")))
+
+
+PARTS: dict[str, Callable[[], None]] = {
+    "charts of two shafts": _charts_of_two,
+    "charts of three shafts": _charts_of_three,
+    "charts of longer lines": _charts_of_longer_lines,
+    "reports and motions": _reports,
+}
+"""What is compiled, each in a process of its own."""
