@@ -51,7 +51,7 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
     if np.any(unstable):
         ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
         spread = " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in ranges)
-        resonance = _resonance(case, float(speeds[at]))
+        resonance = _resonance(case, float(speeds[at])) if subject.naming else ""
         because = (
             f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s {here}{resonance}; unstable between {spread}"
         )

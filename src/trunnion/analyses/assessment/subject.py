@@ -31,7 +31,10 @@ POINTS = 201
 
 @dataclass(frozen=True)
 class Subject:
-    """The line, its running range [rad/s], its operating speed [rad/s] or None, the unit of speeds, its cases."""
+    """The line, its running range [rad/s], its operating speed [rad/s] or None, the unit of speeds, its cases.
+
+    naming: whether what grows is named, which takes far longer than to find that it grows.
+    """
 
     line: Driveline
     low: float
@@ -39,6 +42,7 @@ class Subject:
     speed: float | None
     unit: str
     cases: tuple[Case, ...]
+    naming: bool = True
 
     def shown(self, speed: float) -> str:
         """A speed in the unit of the description."""

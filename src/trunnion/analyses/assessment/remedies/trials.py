@@ -65,7 +65,7 @@ class Trials:
         """The same question about another line."""
         subject = self.subject
         cases = cases_of(line, subject.low, subject.high, *((points,) if points else ()))
-        return replace(subject, line=line, cases=cases[: len(subject.cases)])
+        return replace(subject, line=line, cases=cases[: len(subject.cases)], naming=False)
 
     def _judge(self, line: Driveline, variable: DesignVariable | None) -> Checks:
         subject = self.of(line, QUICK_POINTS)
