@@ -19,6 +19,7 @@ import difflib
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -230,18 +231,29 @@ def _unit(key: str) -> str:
 def _numbers(element: Element) -> Iterator[tuple[str, float]]:
     """Every number of an element by its key."""
     idle = getattr(element, "idle", ())
-    for key in UNITS:
-        number = None if key in idle else getattr(element, key, None)
+    plain, harmonics, lists = _keys_of(type(element))
+    for key in plain:
+        number = None if key in idle else getattr(element, key)
         if isinstance(number, float | int) and not isinstance(number, bool):
             yield key, float(number)
-    for name, keys in _HARMONICS.items():
-        for i, harmonic in enumerate(getattr(element, name, ()), start=1):
-            for key in keys:
+    for name in harmonics:
+        for i, harmonic in enumerate(getattr(element, name), start=1):
+            for key in _HARMONICS[name]:
                 if (number := _number(harmonic, key)) is not None:
                     yield f"{name} {i} {key}", float(number)
-    for name, (single, _) in _LISTS.items():
-        for i, number in enumerate(getattr(element, name, ()), start=1):
-            yield f"{single} {i}", float(number)
+    for name in lists:
+        for i, number in enumerate(getattr(element, name), start=1):
+            yield f"{_LISTS[name][0]} {i}", float(number)
+
+
+@cache
+def _keys_of(kind: type[Element]) -> tuple[tuple[str, ...], ...]:
+    """Of single numbers, lists of harmonics and lists of numbers, those that a kind of element has."""
+
+    def has(key: str) -> bool:
+        return key in kind.model_fields or hasattr(kind, key)
+
+    return tuple(tuple(filter(has, keys)) for keys in (UNITS, _HARMONICS, _LISTS))
 
 
 def _number(harmonic: Any, key: str) -> float | None:

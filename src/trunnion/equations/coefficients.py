@@ -6,8 +6,10 @@ evaluates a whole row of points at once.
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,9 @@ from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Mesh, Topology, topology
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
+
+if TYPE_CHECKING:
+    from trunnion.equations.aligned import AlignedMatrices
 
 Array = NDArray[np.float64]
 
@@ -134,6 +139,13 @@ class Assembly:
         return np.asarray(2 * table[:, column(-1, "damping_ratio")] * stiffness / reference)
 
     @cached_property
+    def aligned(self) -> AlignedMatrices:
+        """The line with all joint angles zero, at the first row of its numbers, without a speed."""
+        from trunnion.equations.aligned import aligned_matrices
+
+        return aligned_matrices(self.topology, self.coefficients(self.table(1), any_frequency=True))
+
+    @cached_property
     def damping_reference(self) -> float:
         """Frequency [rad/s] at which a common damping ratio holds: as given, else the lowest elastic mode."""
         if self.line.damping_ratio_frequency is not None:
@@ -143,9 +155,20 @@ class Assembly:
         return lowest_elastic_frequency(self)
 
 
+_RECENT: deque[Assembly] = deque(maxlen=8)
+
+
 def assemble(line: Driveline) -> Assembly:
-    """Pack ``line`` and sort it into stations and compliances."""
-    return Assembly(line, pack(line), topology(line))
+    """Pack ``line`` and sort it into stations and compliances.
+
+    Lines do not change, so the last few are kept: what is asked of a line is mostly asked of it again.
+    """
+    for known in tuple(_RECENT):
+        if known.line is line:
+            return known
+    made = Assembly(line, pack(line), topology(line))
+    _RECENT.append(made)
+    return made
 
 
 def joint_laws(assembly: Assembly, table: Array) -> tuple[JointLaw, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.aligned import aligned_matrices, frequencies
+from trunnion.equations.aligned import AlignedMatrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import drawing
@@ -34,15 +35,38 @@ class NaturalFrequencies(Result):
     frequency (mode,) undamped [rad/s]; damping_ratio (mode,) [1], from the damped eigenvalues where the mode
     oscillates; shape (rotation, mode): rotation of each inertia, largest entry 1; names (rotation,).
     ``rigid_body`` tells that mode 1 is the free rotation of the whole line. ``findings`` say what of the line is
-    left out.
+    left out. Damping ratios, shapes and findings are computed when they are asked for.
     """
 
     frequency: Array
-    damping_ratio: Array
-    shape: Array
     names: tuple[str, ...]
     rigid_body: bool
-    findings: tuple[Finding, ...] = ()
+    assembly: Assembly
+
+    @cached_property
+    def shape(self) -> Array:
+        """Rotation of each inertia (rotation, mode), the largest entry 1."""
+        shape = self._vectors / np.sqrt(self.assembly.aligned.mass[0])[:, None]
+        return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
+
+    @cached_property
+    def damping_ratio(self) -> Array:
+        """Damping ratio of each mode (mode,)."""
+        matrices = self.assembly.aligned
+        damping, stiffness, loss = (
+            _over_masses(part[0], matrices) for part in (matrices.damping, matrices.stiffness, matrices.loss)
+        )
+        return _damping_ratios(damping, stiffness, loss, self._vectors, self.frequency)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What of the line is left out."""
+        return left_out("natural_frequencies", self.assembly.line)
+
+    @cached_property
+    def _vectors(self) -> Array:
+        matrices = self.assembly.aligned
+        return np.linalg.eigh(_over_masses(matrices.stiffness[0], matrices))[1]
 
     @property
     def hertz(self) -> Array:
@@ -99,17 +123,13 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
     topo = assembly.topology
-    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), any_frequency=True))
-    mass, damping, stiffness = matrices.mass[0], matrices.damping[0], matrices.stiffness[0]
-    root = np.sqrt(mass)
-    found = frequencies(matrices, free=topo.free)[0]
-    _, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
-    shape = vectors / root[:, None]
-    shape = shape / shape[np.abs(shape).argmax(0), np.arange(len(mass))]
-    c, k, h = (part / np.outer(root, root) for part in (damping, stiffness, matrices.loss[0]))
-    ratio = _damping_ratios(c, k, h, vectors, found)
-    said = left_out("natural_frequencies", assembly.line)
-    return NaturalFrequencies(found, ratio, shape, topo.names, topo.free, said)
+    found = frequencies(assembly.aligned, free=topo.free)[0]
+    return NaturalFrequencies(found, topo.names, topo.free, assembly)
+
+
+def _over_masses(part: Array, matrices: AlignedMatrices) -> Array:
+    root = np.sqrt(matrices.mass[0])
+    return np.asarray(part / np.outer(root, root))
 
 
 def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Array, frequency: Array) -> Array:
