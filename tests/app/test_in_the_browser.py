@@ -102,6 +102,8 @@ def test_the_report_is_saved_whole(look: Look, tmp_path: Path) -> None:
 
 
 def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
+    from playwright.sync_api import expect  # where there is a browser, see conftest
+
     look.at()
     field = look.page.get_by_label("Open a TOML file")
     field.set_input_files({"name": "bad.toml", "mimeType": "text/plain", "buffer": b"format = 1\n[[element"})
@@ -112,4 +114,4 @@ def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
     field.set_input_files({"name": "good.toml", "mimeType": "text/plain", "buffer": good})
     look.page.wait_for_function("() => document.location.search.length > 0", timeout=180_000)
     look.page.get_by_text("3.5").first.wait_for()
-    assert look.page.get_by_label("angle of HookeJoint 1", exact=True).input_value() == "3.5 deg"
+    expect(look.page.get_by_label("angle of HookeJoint 1", exact=True)).to_have_value("3.5 deg", timeout=60_000)
