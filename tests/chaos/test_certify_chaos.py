@@ -101,6 +101,7 @@ def test_which_criteria_discriminate() -> None:
     assert free.criteria[2].discriminates  # its volumes grow where |x| < 1
 
 
+@pytest.mark.slow
 def test_conservative_systems_preserve_volumes() -> None:
     def cubic(t, x, p):  # type: ignore[no-untyped-def]
         return x[1], -x[0] - x[0] ** 3
@@ -115,6 +116,7 @@ def test_conservative_systems_preserve_volumes() -> None:
     assert "shrink at 0.05 1/s" in tn.certify_chaos(ueda(), 200, sweep=False).criteria[2].why
 
 
+@pytest.mark.slow
 def test_at_rest_on_a_saddle() -> None:
     def saddle(t, x, p):  # type: ignore[no-untyped-def]
         return x[1], 0.5 * x[0] - 0.02 * x[1]
@@ -130,6 +132,7 @@ def test_at_rest_on_a_saddle() -> None:
     assert both.reasons[2].startswith("start 2: ") and "blows up" in both.reasons[2]
 
 
+@pytest.mark.slow
 def test_a_phase_as_a_state_needs_no_jacobian() -> None:
     def rate(t, x, p):  # type: ignore[no-untyped-def]
         return x[1], -0.05 * x[1] - x[0] ** 3 + 7.5 * np.cos(x[2]), p.frequency

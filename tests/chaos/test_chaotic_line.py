@@ -54,6 +54,7 @@ def test_a_loaded_hooke_driven_line_is_chaotic() -> None:
     assert np.abs(found.map.points).max() < 5  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_its_exponent_does_not_depend_on_who_writes_the_equation() -> None:
     one = tn.lyapunov_spectrum(line(), 2000, speed=SPEED)
     two = tn.lyapunov_spectrum(equation(), 2000, tolerance=1e-9)
@@ -80,7 +81,9 @@ def test_neighbours_do_part_at_that_rate() -> None:
     assert rate == pytest.approx(0.0622, abs=0.02)
 
 
-@pytest.mark.parametrize(("angle", "speed"), [(0.3, 0.65), (np.pi / 4, 0.2), (0.0, 0.65)])
+@pytest.mark.parametrize(
+    ("angle", "speed"), [(0.3, 0.65), pytest.param(np.pi / 4, 0.2, marks=pytest.mark.slow), (0.0, 0.65)]
+)
 def test_the_same_line_elsewhere_is_regular(angle: float, speed: float) -> None:
     found = tn.certify_chaos(line(angle), 3000, speed=speed, transient=2000, sweep=False)
     assert (found.verdict, found.kind) == ("regular", "periodic"), str(found)

@@ -28,7 +28,9 @@ CHAOTIC = {
 }
 
 
-@pytest.mark.parametrize("name", CHAOTIC)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in ("ueda", "driven pendulum") else []) for n in CHAOTIC]
+)
 def test_chaotic_systems_at_the_default_effort(name: str) -> None:
     make, exponent, uncertainty, total = CHAOTIC[name]
     found = tn.lyapunov_spectrum(make())
@@ -168,6 +170,7 @@ def test_endings() -> None:
     assert blown.exponents[0] == pytest.approx(0.0995364, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_differenced_tangents_of_a_motion_that_runs_away() -> None:
     """x′ = x and a linear saddle, whose states outgrow any fixed step of differences long before the end."""
 

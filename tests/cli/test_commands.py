@@ -144,6 +144,7 @@ def test_analyze_json_and_folder(run, here):
     assert len(list((here / "deep" / "er").iterdir())) == len(data["written"]) == 3
 
 
+@pytest.mark.slow
 def test_analyze_names_the_unstable_band_of_the_catalogue(run):
     result = run("analyze", "two-shaft-cardan", *SMALL)
     assert result.exit_code == 0, result.stderr

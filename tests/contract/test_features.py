@@ -132,10 +132,13 @@ QUICK = {
 """Features seen in the quick run, where an analysis takes long; the others are seen in the slow one."""
 
 
+COSTLY = {(name, "mesh-stiffness variation") for name in ("order_response", "speed_sweep", "tolerance_study")}
+
+
 def cells():
     for analysis, row in TABLE.items():
         for key in row:
-            slow = key not in QUICK.get(analysis, (key,))
+            slow = key not in QUICK.get(analysis, (key,)) or (analysis, key) in COSTLY
             yield pytest.param(analysis, key, marks=[pytest.mark.slow] if slow else [], id=f"{analysis}-{key}")
 
 

@@ -81,6 +81,7 @@ def test_coexisting_orbits_of_the_dead_zone_oscillator() -> None:
     assert values[np.argmax(values.imag)] == pytest.approx(DEAD_ZONE_MULTIPLIER, abs=5e-6)
 
 
+@pytest.mark.slow
 def test_backlash_that_never_pulls() -> None:
     """Damping acts in contact only and cannot pull: hard and soft contact, parting, gap, on both sides."""
     half, stiffness, damper = np.pi / 8, 20e3, 50.0

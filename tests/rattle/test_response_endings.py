@@ -53,7 +53,7 @@ def test_a_continuation_that_stalls_keeps_its_last_point(method: str, options: d
     assert found.outcome.sentence in str(found)
 
 
-@pytest.mark.parametrize("method", ["exact", "harmonic balance"])
+@pytest.mark.parametrize("method", ["exact", pytest.param("harmonic balance", marks=pytest.mark.slow)])
 def test_undamped_growth_is_said_and_nothing_is_made_of_rounding(method: str) -> None:
     """Linear, undamped, towards its resonance: unbounded; multipliers on the circle all along are no tori."""
     undamped = PiecewiseOscillator((), (1.0,), 0.0, 0.0, 0.1)
