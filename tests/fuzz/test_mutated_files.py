@@ -68,7 +68,7 @@ def judged(seed: int) -> str:
         warnings.simplefilter("ignore", InputRemark)
         try:
             line = loads(mutated(seed), source="mutated.toml")
-            natural_frequencies(line)
+            assert str(natural_frequencies(line))
             done = "frequencies"
             if seed % 4 == 0:
                 stability(line, speed=None if line.operation and line.operation.speed else 150.0)
