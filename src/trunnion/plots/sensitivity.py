@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ FIRST = ("check", "torque", "growth rate", "tip", "frequency")
 
 
 def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = None, *, most: int = SHOWN) -> Axes:
-    """A tornado of ``quantity``, by default of the first check, torque or growth rate that follows anything.
+    """A tornado of ``quantity``, by default of the first check, torque or growth rate that follows several parameters.
 
     Every bar goes to both sides: what the step upwards and the one downwards make of the quantity.
     """
@@ -46,17 +46,17 @@ def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = 
     axes.set_axisbelow(True)
     plain(axes)
     axes.tick_params(axis="y", labelsize=SMALL)
-    legend = axes.legend(fontsize=SMALL, frameon=False, loc="lower right")
-    for text in legend.get_texts():
-        text.set_color(FAINT)
+    axes.figure.figure.legend(loc="outside lower right", ncols=2, fontsize=SMALL, frameon=False, labelcolor=INK)
     return axes
 
 
 def _chosen(found: Sensitivities) -> Quantity:
-    for kind in FIRST:
-        for one in found.quantities:
-            if one.kind == kind and found.ranked(one.name, 1):
-                return one
+    """The first that follows several parameters; an angle, which only follows itself, needs no picture."""
+    for several in (2, 1):
+        for kind in FIRST:
+            for one in found.quantities:
+                if one.kind == kind and len(found.ranked(one.name, several)) == several:
+                    return one
     if not found.quantities:
         raise InputError("holds no quantity to draw", element="sensitivity", remedy="ask for frequencies, say")
     return found.quantities[0]
