@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.analyses.comparison.result import Comparison, Difference
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +41,8 @@ def _margins(found: Comparison, rows: list[Difference], axes: Axes | None) -> Ax
         axes.plot(ends[:1], [place], "o", mfc="white", mec=INK, ms=7, zorder=3, label=before)
         axes.plot(ends[1:], [place], "o", color=INK, ms=7, zorder=3, label=after)
     axes.axvline(0.0, color=INK, lw=1.0)
-    axes.set_xlabel("margin [%]", fontsize=TEXT, color=INK)
+    far = max(abs(100 * end) for one in rows for end in (one.before, one.after)) > BEST
+    axes.set_xlabel("margin [%]" + ", beyond ±100 at the edge" * far, fontsize=TEXT, color=INK)
     return _finished(axes, [one.name.removeprefix("margin of ") for one in rows])
 
 
@@ -60,7 +61,5 @@ def _finished(axes: Axes, names: list[str]) -> Axes:
     axes.set_axisbelow(True)
     plain(axes)
     axes.tick_params(axis="y", labelsize=SMALL)
-    legend = axes.legend(fontsize=SMALL, frameon=False, loc="best")
-    for text in legend.get_texts():
-        text.set_color(FAINT)
+    axes.figure.figure.legend(loc="outside lower right", ncols=2, fontsize=SMALL, frameon=False, labelcolor=INK)
     return axes
