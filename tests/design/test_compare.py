@@ -103,6 +103,6 @@ def test_it_introduces_itself(tmp_path):
     save_dataset(found.data.assign_attrs(format="c"), tmp_path / "c.nc")
     assert read_dataset(tmp_path / "c.nc", "c").sizes["quantity"] == len(found.differences)
     assert json.loads(found.to_json())["change"] == ["rear, stiffness"]
-    assert found.plot().get_xlabel() .startswith("margin [%]")
+    assert found.plot().get_xlabel().startswith("margin [%]")
     plain = tn.Driveline(line().elements)
     assert "change from" in tn.compare(plain, plain.replace("hub", inertia=0.06)).plot().get_xlabel()
