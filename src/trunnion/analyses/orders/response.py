@@ -20,8 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
-from trunnion.analyses.orders.spectrum import OrderSpectrum, order_spectrum
+from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.stable_speeds import verdicts_at
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit

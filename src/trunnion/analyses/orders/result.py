@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.orders.spectrum import OrderSpectrum
+from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
 from trunnion.results.declared import Held, Result, along, axis, over, remark
 from trunnion.results.drawing import drawing

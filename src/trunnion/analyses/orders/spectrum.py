@@ -7,14 +7,15 @@ Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}]
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.orders.channels import Channels, channels_of, motion_channels
+from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
+from trunnion.analyses.orders.channels import channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
 from trunnion.analyses.orders.straight import straight_response
@@ -50,61 +51,6 @@ MOST_NUMBERS = 300_000
 """Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
 
 
-@dataclass(frozen=True)
-class OrderSpectrum:
-    """Amplitudes by order at many speeds.
-
-    order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
-    (speed, order, channel) of the deviation from the base motion, base (speed, order, inertia) [rad] of the base
-    motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
-    damping and loss (1 or speed, spring) [N m s/rad, N m/rad].
-    """
-
-    speed: Array
-    order: tuple[Fraction, ...]
-    frequency: Array
-    amplitude: Complex
-    base: Complex
-    mean: Array
-    cut_off: Array
-    channels: Channels
-    damping: Array
-    loss: Array
-
-    @property
-    def order_numbers(self) -> Array:
-        """``order`` as plain numbers."""
-        return np.array([float(order) for order in self.order])
-
-    @property
-    def angular_frequency(self) -> Array:
-        """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
-        return self.speed[:, None] * self.order_numbers + self.frequency
-
-
-Key = tuple[Fraction, float]
-
-
-class _Sum:
-    """Amplitudes by (order, frequency), summed up as they come."""
-
-    def __init__(self, cases: int, channels: int, inertias: int) -> None:
-        self.amplitude: dict[Key, Complex] = {}
-        self.base: dict[Key, Complex] = {}
-        self.mean = np.zeros((cases, channels))
-        self.zero = np.zeros((cases, channels), dtype=complex)
-        self.flat = np.zeros((cases, inertias), dtype=complex)
-
-    def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
-        if frequency == 0 and order == 0:
-            self.mean = self.mean + amplitude.real
-        elif frequency == 0 and order < 0:
-            self.add(-order, 0.0, amplitude.conj())
-        else:
-            key = (order, frequency)
-            self.amplitude[key] = self.amplitude.get(key, self.zero) + amplitude
-
-
 def order_spectrum(
     assembly: Assembly,
     speed: Array,
@@ -123,7 +69,7 @@ def order_spectrum(
     """
     shaken = exciters(assembly)
     case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table))
-    parts: list[tuple[_Sum, Array]] = []
+    parts: list[tuple[OrderSum, Array]] = []
     done = 0
     while done < len(speed):
         chunk = case.numbers[done : done + case.batch]
@@ -178,7 +124,7 @@ def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, tabl
     return numbers
 
 
-def _require_room(assembly: Assembly, first: _Sum, speeds: int) -> None:
+def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
     numbers = len(set(first.amplitude) | set(first.base)) * (
         channels_of(assembly.topology).count + assembly.topology.size
@@ -230,7 +176,7 @@ class _Case:
         most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
         return max(1, MOST_NUMBERS // max(most**2, 4 * times * n**2))
 
-    def solved(self, table: Array) -> tuple[_Sum, Array]:
+    def solved(self, table: Array) -> tuple[OrderSum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
             return self._about_own_motion(self.own.at(float(table[0, 0])), table[:1])
@@ -242,12 +188,12 @@ class _Case:
                 return found, last
             self.reach = min(MOST, self.reach + max(1, self.reach // 2))
 
-    def _straight(self, table: Array) -> _Sum:
+    def _straight(self, table: Array) -> OrderSum:
         topo, speed, co = self.topo, table[:, 0], self.coefficients(table)
         matrices = line_matrices(topo, co, np.zeros(1))
         loss = _loss_matrix(self.assembly, co)
         base = self._base(table, co, np.zeros(1))
-        total = _Sum(len(speed), channels_of(topo).count, topo.size)
+        total = OrderSum(len(speed), channels_of(topo).count, topo.size)
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
         if groups:
             carrier = [[g.frequency if g.frequency else float(e.order) for e, _ in g.members][0] for g in groups]
@@ -267,7 +213,7 @@ class _Case:
         self._add_static(total, co)
         return total
 
-    def _bent(self, cases: Array, reach: int) -> tuple[_Sum, Array]:
+    def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
         topo, cycles, speed = self.topo, 1 / self.turns, cases[:, 0]
         every = self.coefficients(cases)
         nodes = Nodes(speed, None) if self.loss_in_time or not self.alike else nodes_of(speed, every)
@@ -284,7 +230,7 @@ class _Case:
         alike = slice(0, 1) if nodes.weights is not None else slice(None)  # ratios do not depend on the speed
         ratio, relative = matrices.ratio[alike], base.relative[alike]
         places = channels_of(topo)
-        total = _Sum(len(speed), places.count, topo.size)
+        total = OrderSum(len(speed), places.count, topo.size)
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in groups:
             carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * nodes.speed
@@ -306,13 +252,13 @@ class _Case:
         largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
-    def _about_own_motion(self, own: OwnBase, table: Array) -> tuple[_Sum, Array]:
+    def _about_own_motion(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
         """One speed of a bent line that starts free."""
         from trunnion.analyses.orders.own_orders import about, add_own, seen_about
 
         topo, cycles, speed = self.topo, 1 / self.turns, float(table[0, 0])
         places, co = channels_of(topo), own.coefficients
-        total, last = _Sum(1, places.count, topo.size), 0.0
+        total, last = OrderSum(1, places.count, topo.size), 0.0
         add_own(own, cycles, total.add)
         for group in groups_of(self.shaken, self.row, cycles, own.count):
             carrier = group.frequency or float(group.carrier) * speed
@@ -413,12 +359,12 @@ class _Case:
                 torque = torque + co.torque[:, e, None] * change[:, h % times]
             seen[..., places.torque.start + e] += torque
 
-    def _add_static(self, total: _Sum, co: LineCoefficients) -> None:
+    def _add_static(self, total: OrderSum, co: LineCoefficients) -> None:
         places = channels_of(self.topo)
         total.mean[:, places.twist] += co.twist
         total.mean[:, places.torque] += co.torque
 
-    def _add_base(self, total: _Sum, rotation: Array, cycles: Fraction, highest: int) -> None:
+    def _add_base(self, total: OrderSum, rotation: Array, cycles: Fraction, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
         topo = self.topo
         first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]

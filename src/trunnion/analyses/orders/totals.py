@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.orders.spectrum import OrderSpectrum
+from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.equations.topology import LONGEST_PERIOD
 from trunnion.numerics.cycle_extremes import cycle_extremes
 

@@ -1,0 +1,68 @@
+"""Amplitudes by order: as they are summed up, and as a whole over many speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.orders.channels import Channels
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Key = tuple[Fraction, float]
+
+
+class OrderSum:
+    """Amplitudes by (order, frequency), summed up as they come."""
+
+    def __init__(self, cases: int, channels: int, inertias: int) -> None:
+        self.amplitude: dict[Key, Complex] = {}
+        self.base: dict[Key, Complex] = {}
+        self.mean = np.zeros((cases, channels))
+        self.zero = np.zeros((cases, channels), dtype=complex)
+        self.flat = np.zeros((cases, inertias), dtype=complex)
+
+    def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
+        """Take in one part; order 0 is the mean, negative orders are folded onto positive ones."""
+        if frequency == 0 and order == 0:
+            self.mean = self.mean + amplitude.real
+        elif frequency == 0 and order < 0:
+            self.add(-order, 0.0, amplitude.conj())
+        else:
+            key = (order, frequency)
+            self.amplitude[key] = self.amplitude.get(key, self.zero) + amplitude
+
+
+@dataclass(frozen=True)
+class OrderSpectrum:
+    """Amplitudes by order at many speeds.
+
+    order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
+    (speed, order, channel) of the deviation from the base motion, base (speed, order, inertia) [rad] of the base
+    motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
+    damping and loss (1 or speed, spring) [N m s/rad, N m/rad].
+    """
+
+    speed: Array
+    order: tuple[Fraction, ...]
+    frequency: Array
+    amplitude: Complex
+    base: Complex
+    mean: Array
+    cut_off: Array
+    channels: Channels
+    damping: Array
+    loss: Array
+
+    @property
+    def order_numbers(self) -> Array:
+        """``order`` as plain numbers."""
+        return np.array([float(order) for order in self.order])
+
+    @property
+    def angular_frequency(self) -> Array:
+        """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
+        return self.speed[:, None] * self.order_numbers + self.frequency
