@@ -68,6 +68,8 @@ def test_from_a_starter_to_a_satisfied_verdict(look: Look) -> None:
     look.page.get_by_label("vibratory torque of limit of Shaft *", exact=True).wait_for()
     look.view("Verdict")
     look.page.locator("[data-verdict=satisfied]").wait_for()
+    assert look.page.locator("[data-verdict=exceeded]").count() == 0
+    assert look.page.get_by_text("state limits for Shaft 1").count() == 0
 
 
 def test_what_helps_is_found_and_tried(look: Look) -> None:

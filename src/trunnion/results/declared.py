@@ -8,6 +8,7 @@ paragraph above its dataset.
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
@@ -72,12 +73,12 @@ def parameters_of(system: System) -> Iterator[Held]:
         yield remark(f"parameter {name}", value)
 
 
-class Result:
+class Result(ABC):
     """Base of what analyses return; a subclass writes ``declared`` and ``__str__``."""
 
+    @abstractmethod
     def declared(self) -> Iterator[Held]:
         """What the result holds, axes first."""
-        raise NotImplementedError(f"{type(self).__name__} does not say what it holds")
 
     @property
     def data(self) -> xr.Dataset:

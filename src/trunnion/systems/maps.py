@@ -9,6 +9,7 @@ branches, Lyapunov exponents) works on any of these.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -236,13 +237,14 @@ class Crossings(NamedTuple):
     run: Trajectory
 
 
-class _Applied:
+class _Applied(ABC):
     """What follows from ``apply`` alone."""
 
     system: System
 
+    @abstractmethod
     def apply(self, state: ArrayLike, tangents: ArrayLike | None = None) -> Image:
-        raise NotImplementedError
+        """P(x) and what it does to tangents."""
 
     def __call__(self, state: ArrayLike) -> Array:
         """P(x)."""

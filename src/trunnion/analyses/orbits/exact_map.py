@@ -7,6 +7,7 @@ the end of a piece (grazing) has none.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -41,7 +42,7 @@ class Settled(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ExactMap:
+class ExactMap(ABC):
     """What both maps share; ``value`` is the frequency or speed [rad/s] that turns the excitation."""
 
     value: float
@@ -56,9 +57,9 @@ class ExactMap:
         found = self.steady(x, periods * self.periods, periods * self.periods, 0.0)
         return found.state if found.done else None
 
+    @abstractmethod
     def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
         """The motion after ``least`` to ``most`` periods of the excitation, until it changes by less than ``same``."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

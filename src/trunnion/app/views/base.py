@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -57,21 +58,21 @@ class Step:
         return toml if self.line is None else dumps(self.line)
 
 
-class Side:
+class Side(ABC):
     """The picture of one variant; ``variant`` is "now" or "kept", set by the view."""
 
     panel: Any
     variant = "now"
 
+    @abstractmethod
     def show(self, name: str, data: Any) -> None:
         """Show what the step ``name`` gave."""
-        raise NotImplementedError
 
-    def refused(self, name: str, sentence: str) -> None:
+    def refused(self, name: str, sentence: str) -> None:  # noqa: B027 - views without soft steps leave it
         """Say why the step ``name`` gave nothing; asked for of soft steps only."""
 
 
-class View:
+class View(ABC):
     """One view of a session. A subclass says its settings, controls, steps and side."""
 
     name = ""
@@ -94,16 +95,16 @@ class View:
         """Widgets, made once."""
         return pn.FlexBox()
 
-    def adapt(self, line: Driveline) -> None:
+    def adapt(self, line: Driveline) -> None:  # noqa: B027 - views whose choices stay leave it
         """Choices that depend on the line."""
 
+    @abstractmethod
     def steps(self, line: Driveline) -> list[Step]:
         """What is computed, in order."""
-        raise NotImplementedError
 
+    @abstractmethod
     def side(self) -> Side:
         """A picture."""
-        raise NotImplementedError
 
     # -- what they share ------------------------------------------------------------------------------------------
 
