@@ -134,11 +134,11 @@ def branched(line: tn.Driveline) -> tn.Driveline:
     )
 
 
-def clutch(rubs: bool = False) -> Change:
+def clutch(rubs: bool = False, **more: float) -> Change:
     stages = {"breakpoints": [-0.002, 0.002], "stiffnesses": [1.2e4, 1e4, 1.2e4], "damping": 5, "name": "front"}
     if not rubs:
         return front(tn.PiecewiseShaft(**stages))
-    return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}]))
+    return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}], **more))
 
 
 def rippled() -> Change:
@@ -182,6 +182,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "stages": (same, staged()),
     "damping in contact only": (staged(), staged(damping_law="in contact")),
     "dry friction": (clutch(), clutch(True)),
+    "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),

@@ -465,6 +465,37 @@ PYTHON = [
         "Shaft.damping = 3: stands beside loss_factor",
         "leave one of the two out",
     ),
+    (
+        lambda: tn.Clutch(stiffnesses=[1.0], friction=[{"torque": 1, "stiffness": 1}], linear_amplitude=0.1),
+        "Clutch.linear_frequency: is missing beside linear_amplitude",
+        '"30 Hz"',
+    ),
+    (
+        lambda: tn.Clutch(
+            stiffnesses=[1.0], friction=[{"torque": 1, "stiffness": 1}], linear_amplitude=0, linear_frequency=9
+        ),
+        "Clutch.linear_amplitude = 0: must be positive",
+        '"12 deg"',
+    ),
+    (
+        lambda: tn.Clutch(stiffnesses=[1.0], friction=[{"torque": 1, "stiffness": 1}]).linear(),
+        "Clutch.linear_amplitude: is not stated",
+        "frequency=",
+    ),
+    (
+        lambda: tn.natural_frequencies(
+            line(
+                ConstantSpeed(),
+                Shaft(stiffness=1e-23),
+                Disk(inertia=1),
+                Shaft(stiffness=1),
+                Disk(inertia=1),
+                damping_ratio=0.05,
+            )
+        ),
+        "driveline.damping_ratio: holds at the lowest elastic mode, which is lost in rounding",
+        "damping_ratio_frequency",
+    ),
     # disks, joints, ratios
     (lambda: Disk(), "Disk.inertia: is missing", "or outer_diameter, thickness, density"),
     (lambda: Disk(inertia=0), "Disk.inertia = 0: must be positive", "0.4 kg*m^2"),

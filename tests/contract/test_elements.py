@@ -65,6 +65,10 @@ WITH_STAGES = [
     GearPair(base_radius_in=0.04, base_radius_out=0.06, mesh_stiffness=2e8, angular_backlash="0.2 deg"),
     PiecewiseShaft(breakpoints=["-4 deg", "4 deg"], stiffnesses=[2e3, 0, 2.5e3], damping=0.3, fork_offset="90 deg"),
     Clutch(stiffnesses=["800 N*m/rad"], friction=[{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}], damping=0.1),
+    Clutch(
+        stiffnesses=[800.0], friction=[{"torque": 6.0, "stiffness": 4e3}],
+        linear_amplitude="1 deg", linear_frequency="30 Hz",
+    ),
 ]  # fmt: skip
 
 

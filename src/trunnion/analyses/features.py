@@ -15,6 +15,7 @@ from enum import Enum
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import FEATURES, feature
 from trunnion.driveline.remarks import HELD, SERIES, remarks
+from trunnion.equations.linear_clutches import stand_ins
 from trunnion.results.finding import Finding, Gravity
 
 
@@ -47,6 +48,8 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     where they concern it."""
     said = {key for key, cell in TABLE[analysis].items() if cell.treatment is Treatment.SAID}
     own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in remarks(line) if key in said)
+    if TABLE[analysis]["dry friction"].treatment is Treatment.REFUSED:
+        own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
@@ -104,9 +107,12 @@ _SERIES: dict[str, Words] = {
     )
 }
 _BY_PLACE = {**_HELD, **_SERIES}
-_RUBBING = {"dry friction": "linear equations have none; Clutch.linear stands for it at one amplitude"}
+ONE_MOTION = "dry friction at one motion"
+_RUBBING = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
 _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
-_NOT_FOLLOWED = {"dry friction": "sliders change between sticking and slipping, which is not followed"}
+_NOT_FOLLOWED = dict.fromkeys(
+    ("dry friction", ONE_MOTION), "sliders change between sticking and slipping, which is not followed"
+)
 _FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _BASE = {
     **_RUBBING,
@@ -121,7 +127,7 @@ _UNPROVABLE = {
         (
             "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
             "ratio", "gear mesh", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
-            "stages", "damping in contact only", "load torque", "viscous load", "quadratic load", SERIES,
+            "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load", "quadratic load", SERIES,
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -175,7 +181,7 @@ _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
         "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
-        "dry friction",
+        "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
         "unlike damping in series", "free start", "drive share",
@@ -274,7 +280,10 @@ TABLE: dict[str, Row] = {
             "excitation of a held disk": _STEADY,
             "unlike damping in series": _UNDAMPED_TURN,
             "drive share": "the first element drives alone",
-            "dry friction": "a turn has the springs of a clutch alone; its sliders hold it within a band of twist",
+            **dict.fromkeys(
+                ("dry friction", ONE_MOTION),
+                "a turn has the springs of a clutch alone; its sliders hold it within a band of twist",
+            ),
         },
         inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
     ),

@@ -7,12 +7,14 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
+from trunnion.driveline.elements import positive
 from trunnion.driveline.quantities import (
     ANGLE,
     FREQUENCY,
     STIFFNESS,
     TORQUE,
     Angle,
+    Frequency,
     Kind,
     Stiffness,
     Torque,
@@ -96,6 +98,8 @@ class Clutch(PiecewiseShaft):
     stiffnesses : of the spring [N m/rad]: one, or below, between and above the breakpoints; 0 for none.
     breakpoints : twists at which its stiffness changes [rad], rising; none by default.
     damping, damping_law, fork_offset : as of a ``PiecewiseShaft``.
+    linear_amplitude, linear_frequency : the motion [rad], [rad/s] at which linear analyses take its mean stiffness and
+        loss (see ``linear``); without them they refuse it.
 
     >>> disk = Clutch(stiffnesses=[800.0], friction=[{"torque": 6.0, "stiffness": 4000.0}])
     >>> print(round(disk.lost_per_cycle("1 deg"), 4))
@@ -114,6 +118,21 @@ class Clutch(PiecewiseShaft):
     friction: Annotated[tuple[Slider, ...], BeforeValidator(_sliders)] = Field(
         description="sliders in parallel with the spring, each with a spring of its own"
     )
+    linear_amplitude: Angle | None = Field(
+        default=None, description="swing at which linear analyses take its mean stiffness and loss"
+    )
+    linear_frequency: Frequency | None = Field(default=None, description="of that swing")
+
+    @model_validator(mode="after")
+    def _linear_at_one_motion(self) -> Self:
+        positive(self, "linear_amplitude", "linear_frequency")
+        for key, other, example in (
+            ("linear_amplitude", "linear_frequency", "1 deg"),
+            ("linear_frequency", "linear_amplitude", "30 Hz"),
+        ):
+            if getattr(self, key) is None and getattr(self, other) is not None:
+                raise InputError(f"is missing beside {other}", key=key, remedy=f'write {key} = "{example}", say')
+        return self
 
     def lost_per_cycle(self, amplitude: float | str) -> float:
         """Energy [J] that its friction takes in a cycle of the twist between ± ``amplitude`` [rad]."""
@@ -122,23 +141,47 @@ class Clutch(PiecewiseShaft):
         size = _positive(amplitude, ANGLE, "amplitude")
         return sum(float(friction.lost_per_cycle(s.torque, s.stiffness, size)) for s in self.friction)
 
-    def linear(self, amplitude: float | str, frequency: float | str) -> Shaft:
+    def linear(
+        self, amplitude: float | str | None = None, frequency: float | str | None = None, torque: float | str = 0.0
+    ) -> Shaft:
         """A Shaft with the stiffness and damping that the clutch has on average at one motion, for linear analyses.
 
-        Harmonic linearisation: the torque in phase with a twist of ± ``amplitude`` [rad] over the twist, and the
-        damping that takes as much energy at ``frequency`` [rad/s]. It holds at that motion about no twist only; the
-        linear analyses do not know how large their motion is, so compare.
+        Harmonic linearisation about the twist at which the spring carries ``torque`` [N m] on average: the torque in
+        phase with a swing of ± ``amplitude`` [rad] over it, and the damping that takes as much energy at ``frequency``
+        [rad/s]; by default those that it states, ``linear_amplitude`` and ``linear_frequency``. It holds at that
+        motion; the linear analyses do not know how large their motion is, so compare (``tn.linearity_check``).
         """
         import numpy as np
 
         from trunnion.laws import friction
+        from trunnion.laws.spring import StageSpring
 
+        amplitude = self.linear_amplitude if amplitude is None else amplitude
+        frequency = self.linear_frequency if frequency is None else frequency
+        if amplitude is None or frequency is None:
+            remedy = 'write clutch.linear(amplitude="1 deg", frequency="30 Hz")'
+            raise InputError("is not stated", element="Clutch", key="linear_amplitude", remedy=remedy)
         size, rate = _positive(amplitude, ANGLE, "amplitude"), _positive(frequency, FREQUENCY, "frequency")
-        stiffness = friction.mean_slope(np.array(self.breakpoints), np.array(self.stiffnesses), size)
+        mean = parse(torque, TORQUE)
+        spring = StageSpring(np.array(self.breakpoints), np.array(self.stiffnesses))
+        middle = friction.middle_under(spring, mean, size)
+        if np.isnan(middle):
+            raise InputError(
+                f"has no stage that carries {mean:g} N·m", element=self.name or "Clutch", key="stiffnesses",
+                remedy="raise its outermost stiffness",
+            )  # fmt: skip
+        stiffness = float(friction.over_a_cycle(spring, middle, size)[1])
         stiffness += sum(float(friction.mean_stiffness(s.torque, s.stiffness, size)) for s in self.friction)
-        damping = self.damping + self.lost_per_cycle(size) / (np.pi * size**2 * rate)
+        viscous = self.damping
+        if self.damping_law == "in contact":
+            stages = np.arange(len(self.stiffnesses)) != int(np.argmin(self.stiffnesses))
+            viscous *= float(friction.damped_share(spring, stages, middle, np.array(size)))
         return Shaft(
-            stiffness=stiffness, damping=damping, fork_offset=self.fork_offset, name=self.name, after=self.after
+            stiffness=stiffness,
+            damping=viscous + self.lost_per_cycle(size) / (np.pi * size**2 * rate),
+            fork_offset=self.fork_offset + float(middle) - mean / stiffness,
+            name=self.name,
+            after=self.after,
         )
 
 

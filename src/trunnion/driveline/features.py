@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.joints import DoubleCardanJoint
@@ -59,6 +60,17 @@ def _off_centre(line: Driveline) -> list[str]:
         for name, e in zip(line.names, line.elements, strict=True)
         if isinstance(e, DoubleCardanJoint) and e.distance_ratio
     ]
+
+
+def _rubbing(at_one_motion: bool) -> Finder:
+    def find(line: Driveline) -> list[str]:
+        return [
+            f"{name}.friction"
+            for name, e in zip(line.names, line.elements, strict=True)
+            if isinstance(e, Clutch) and (e.linear_amplitude is not None) is at_one_motion
+        ]
+
+    return find
 
 
 def _branches(line: Driveline) -> list[str]:
@@ -158,7 +170,8 @@ FEATURES = (
     Feature(
         "damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law", "Clutch.damping_law")
     ),
-    Feature("dry friction", ("Clutch.friction", "Slider.torque", "Slider.stiffness")),
+    Feature("dry friction", ("Clutch.friction", "Slider.torque", "Slider.stiffness"), _rubbing(False)),
+    Feature("dry friction at one motion", ("Clutch.linear_amplitude", "Clutch.linear_frequency"), _rubbing(True)),
     Feature("load torque", ("Disk.load_torque",)),
     Feature("drive share", ("Disk.drive_share",)),
     Feature("viscous load", ("Disk.viscous_load",)),

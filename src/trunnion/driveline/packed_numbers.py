@@ -11,6 +11,8 @@ UNITS = {
     "relative_damping": "1",
     "mass": "kg",
     "loss_factor_frequency": "rad/s",
+    "linear_amplitude": "rad",
+    "linear_frequency": "rad/s",
     "outer_diameter": "m",
     "inner_diameter": "m",
     "length": "m",

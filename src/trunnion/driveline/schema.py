@@ -38,6 +38,9 @@ _RULES: dict[str, dict[str, Any]] = {
         },
     },
     "Coupling": {"required": ["type", "stiffness"]},
+    "Clutch": {
+        "dependentRequired": {"linear_amplitude": ["linear_frequency"], "linear_frequency": ["linear_amplitude"]}
+    },
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
         "dependentRequired": {

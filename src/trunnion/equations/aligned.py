@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.topology import Topology
+from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -74,7 +75,21 @@ def frequencies(matrices: AlignedMatrices, *, free: bool) -> Array:
 
 
 def lowest_elastic_frequency(assembly: Assembly) -> float:
-    """Lowest non-zero natural frequency [rad/s] of the line as described, damping left out."""
+    """Lowest non-zero natural frequency [rad/s] of the line as described, damping left out.
+
+    Raises
+    ------
+    InputError : springs so unlike that it is lost in rounding.
+    """
     topo = assembly.topology
     matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    return float(frequencies(matrices, free=topo.free)[0, 1 if topo.free else 0])
+    found = frequencies(matrices, free=topo.free)[0]
+    lowest = float(found[1 if topo.free else 0])
+    # Eigenvalues, the squares, are right to their rounding beside the largest.
+    if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
+        raise InputError(
+            f"holds at the lowest elastic mode, which is lost in rounding beside {found[-1]:.3g} rad/s",
+            element="driveline", key="damping_ratio",
+            remedy='write damping_ratio_frequency = "50 Hz", say, or check the stiffnesses',
+        )  # fmt: skip
+    return lowest

@@ -21,6 +21,7 @@ from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffne
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.equations.linear_clutches import mean_clutch, states_a_motion
 from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
@@ -116,7 +117,8 @@ class Assembly:
 
         ``statically_twisted`` shifts joint phases by the twist under the transmitted torque; without it the line is
         taken at zero twist and zero torque. ``damped=False`` leaves all damping out. ``free_play=True`` leaves a
-        spring in its free play without stiffness, and dry friction out, which are otherwise refused.
+        spring in its free play without stiffness, and dry friction out, which are otherwise refused, but for a clutch
+        that states the motion at which it is taken.
         ``any_frequency=True`` is for equations by frequency, which have ``loss``; for all others a shaft that has
         it is refused.
 
@@ -128,7 +130,7 @@ class Assembly:
         if damped and not any_frequency:
             _refuse_any_frequency(self.line)
         if not free_play:
-            refuse_friction(self.line)
+            refuse_friction(self.line, but=states_a_motion)
         return _coefficients(self, np.atleast_2d(table), statically_twisted, damped, free_play)
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:
@@ -303,9 +305,14 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         twist[:, e] = np.divide(torque[:, e], stiffness[:, e], out=np.zeros(cases), where=stiffness[:, e] > 0)
         first = compliance.shafts[0]
         if has_stages(assembly.line.elements[first]):
-            law = stage_law(assembly.line, first, column, table)
-            at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
-            damping[:, e] *= damped_there
+            if states_a_motion(assembly.line.elements[first]) and not free:
+                rubbing = mean_clutch(assembly, table, first, static[:, e], damping[:, e])
+                at_rest, stiffness[:, e] = rubbing.middle, rubbing.stiffness
+                damping[:, e] = rubbing.damping if damped else 0.0
+            else:
+                law = stage_law(assembly.line, first, column, table)
+                at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
+                damping[:, e] *= damped_there
             twist[:, e] = at_rest if twisted else 0.0
     shift = np.zeros((cases, stations))
     compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}

@@ -22,7 +22,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.harmonic_torques import cylinders
-from trunnion.equations.sliders import refuse_friction
+from trunnion.equations.sliders import NOT_FOLLOWED, refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -93,7 +93,7 @@ def _three(line: Driveline) -> tuple[Disk | ConstantSpeed, GearPair | PiecewiseS
             remedy="write [Disk or ConstantSpeed, GearPair or PiecewiseShaft, Disk]; longer lines take "
             "tn.exact_motion, tn.piecewise_orbit and tn.simulate",
         )  # fmt: skip
-    refuse_friction(line)
+    refuse_friction(line, NOT_FOLLOWED, "use tn.exact_motion, tn.piecewise_orbit or tn.sweep of the line itself")
     front, spring, back = elements
     assert isinstance(front, Disk | ConstantSpeed) and isinstance(back, Disk)
     assert isinstance(spring, GearPair | PiecewiseShaft)

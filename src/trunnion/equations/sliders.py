@@ -6,6 +6,7 @@ slips; its torque is kx throughout. It sticks while |x| < T/k, and slips until t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Element
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -75,21 +77,29 @@ def sliders(assembly: Assembly, row: Array) -> tuple[PlacedSlider, ...]:
 
 LINEAR = "whose torque depends on how far it moves: linear equations have none"
 NOT_FOLLOWED = "whose sliders change between sticking and slipping, which this analysis does not follow"
+_MOTION = 'linear_amplitude = "1 deg" and linear_frequency = "30 Hz"'
+STATE_A_MOTION = f"write {_MOTION}, the motion at which linear analyses take its mean stiffness and loss"
+STAND_IN = (
+    'put clutch.linear(amplitude="1 deg", frequency="30 Hz") in its place, a Shaft with its mean stiffness and loss'
+)
+"""What a linear analysis can do, and one that could follow all but the friction."""
 
 
-def refuse_friction(line: Driveline, why: str = LINEAR) -> None:
+def refuse_friction(
+    line: Driveline,
+    why: str = LINEAR,
+    remedy: str = STATE_A_MOTION,
+    *,
+    but: Callable[[Element], bool] = lambda _: False,
+) -> None:
     """Refuse a line with dry friction, for equations that are linear or another reason ``why``.
+
+    ``but`` : clutches that are taken all the same.
 
     Raises
     ------
     InputError : names the clutch, and offers what stands for it at one amplitude.
     """
     for element, name in zip(line.elements, line.names, strict=True):
-        if isinstance(element, Clutch):
-            raise InputError(
-                f"has dry friction, {why}",
-                element=name,
-                key="friction",
-                remedy='put clutch.linear(amplitude="1 deg", frequency="30 Hz") in its place, a Shaft with its mean '
-                "stiffness and loss at one motion, or use tn.simulate, tn.periodic_response or tn.sweep",
-            )
+        if isinstance(element, Clutch) and not but(element):
+            raise InputError(f"has dry friction, {why}", element=name, key="friction", remedy=remedy)

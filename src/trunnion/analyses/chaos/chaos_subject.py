@@ -35,9 +35,9 @@ def as_system(subject: System | Driveline, speed: float | None = None) -> System
     if isinstance(subject, Driveline):
         from trunnion.driveline.operating_speed import operating_speed
         from trunnion.equations.line_system import line_system
-        from trunnion.equations.sliders import NOT_FOLLOWED, refuse_friction
+        from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 
-        refuse_friction(subject, NOT_FOLLOWED)
+        refuse_friction(subject, NOT_FOLLOWED, STAND_IN)
         prepared = line_system(subject, operating_speed(subject, speed))
         if prepared.assembly.topology.free:
             raise InputError(

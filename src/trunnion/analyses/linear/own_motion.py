@@ -23,6 +23,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import quiet
 from trunnion.equations.line_system import line_system
 from trunnion.equations.linear import line_matrices
+from trunnion.equations.linear_clutches import with_mean_clutches
 from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
 from trunnion.numerics.curves import extremes, fourier
@@ -93,7 +94,7 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     InputError : torques that do not balance.
     ComputationError : no motion found.
     """
-    prepared = line_system(assemble(quiet(line)), speed)
+    prepared = line_system(assemble(with_mean_clutches(assemble(quiet(line)), speed)), speed)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
     found = kept_speed_orbit(prepared, tolerance=tolerance)
     orbit = found.orbit

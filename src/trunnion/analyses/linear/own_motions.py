@@ -20,6 +20,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.equations.exciters import quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
 from trunnion.numerics.integration.integration import kernel
 from trunnion.numerics.spectrum import along, without
@@ -84,10 +85,12 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
 
     ``found`` is False where the harmonics did not settle.
     """
-    described = quiet(line)
-    assembly = assemble(described)
-    prepared = [line_system(assemble(described), float(speed)) for speed in speeds[:1]]
-    if prepared[0].system.regimes is not None:
+    described = assemble(quiet(line))
+    if mean_by_load(line) and loaded_by_speed(described):
+        return None
+    assembly = assemble(with_mean_clutches(described, float(speeds[0])))
+    prepared = line_system(assembly, float(speeds[0]))
+    if prepared.system.regimes is not None:
         return None
     period = 2 * np.pi * float(require_period(assembly.line, assembly.topology))
     rate = max(float(r) for r in assembly.topology.rates) * period / (2 * np.pi)
@@ -96,7 +99,7 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
     while True:
         motions, guess = [], before
         for speed in speeds:
-            problem = Balance(LineSystem(prepared[0].assembly, float(speed)), period, harmonics)
+            problem = Balance(LineSystem(assembly, float(speed)), period, harmonics)
             motion = problem.solve(guess)
             guess = motion.deviation if motion.found else None
             motions.append(motion)

@@ -204,6 +204,8 @@ class RunUp(Result):
                 f"  the drives carry the loads and accelerate the inertia; the input turned up to "
                 f"{show_speed(abs(self.lag[worst]), unit)} {sense} than asked, at {show_speed(self.speed[worst], unit)}"
             )
+        if self.simulation.line.sliders:
+            rows.append("  no steady response beside it: clutches rub, which no branch follows; ask periodic_response")
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
     def _against(self, i: int) -> str:
@@ -342,7 +344,7 @@ def _profile(first: float, last: float, acceleration: float, ramp: float) -> Spe
 def _inertia_torque(assembly: Assembly) -> Array:
     """Torque of every compliance (shaft,) [N m] per acceleration of the input [rad/s²], in the sense of its twist."""
     topo = assembly.topology
-    coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False)
+    coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False, free_play=True)
     ratios = np.abs(np.array([float(q) for q in topo.speed_ratio]))
     needed = coefficients.inertia * ratios
     if topo.free:
@@ -358,7 +360,7 @@ def _quasi_static(
     speeds = np.linspace(min(first, last), max(first, last), STATIC_SPEEDS)
     table = np.repeat(assembly.table(1), STATIC_SPEEDS, axis=0)
     table[:, 0] = speeds
-    static = assembly.coefficients(table).torque
+    static = assembly.coefficients(table, free_play=True).torque
     inertia = _inertia_torque(assembly) * (profile.speed[-1] - profile.speed[-2])
     inertia = inertia / (profile.time[-1] - profile.time[-2])
 
@@ -375,6 +377,8 @@ def _steady(assembly: Assembly, first: float, last: float, points: int) -> Stead
     """The branch of steady motions over the range, folds and all; what was found of it."""
     prepared = line_system(assembly, first)
     if prepared.system.forcing_period is None or (assembly.topology.free and not closes(prepared)):
+        return None
+    if prepared.sliders:  # no branch follows them
         return None
     branch = periodic_branch(
         assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10

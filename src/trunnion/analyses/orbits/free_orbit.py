@@ -122,7 +122,8 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     """
     topo, n = line.assembly.topology, line.assembly.topology.size
     turn = np.array([float(topo.speed_ratio[topo.reference[g]]) for g, c in enumerate(topo.coordinate) if c >= 0])
-    faster = np.append(np.zeros(n), turn)
+    others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
+    faster = np.concatenate([np.zeros(n), turn, others])
     column, elements = line.assembly.packed.column, line.assembly.line.elements
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
     unsteady = []
@@ -135,7 +136,8 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
         by_speed = _any(line, system, loads)
         steady = not (by_speed or _uneven(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
-        shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + np.append(turn * speed, np.zeros(n))
+        moved = np.concatenate([turn * speed, np.zeros(n), others])
+        shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + moved
         if steady:
             return Neutral(np.stack([shift, faster], axis=1))
         return Neutral(shift[:, None], None if by_speed else faster)

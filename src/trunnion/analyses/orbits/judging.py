@@ -71,14 +71,14 @@ class IntegratedClosing(Closing[IntegratedMap]):
         values, bound = multipliers(scaled, np.array(error))
         order = np.argsort(-np.abs(values))
         values, bound = values[order], bound[order]
+        counted, counted_bound, speed = values, bound, np.nan
         if self.neutral is not None:
-            return Judged(values, bound, *beside_neutral(scaled, error, self.neutral(system, x), scale))
-        counted = np.arange(len(values))
-        if isinstance(place, TimedMap) and not rests(place, run):
-            counted = np.delete(counted, int(np.argmin(np.abs(values - 1))))
-        for _ in range(system.regimes.idle(run.event_which) if system.regimes is not None else 0):
-            counted = np.delete(counted, int(np.argmin(np.abs(values[counted] - 1))))
-        return Judged(values, bound, values[counted], bound[counted], np.nan)
+            counted, counted_bound, speed = beside_neutral(scaled, error, self.neutral(system, x), scale)
+        stuck = system.regimes.idle(run.event_which) if system.regimes is not None else 0
+        for _ in range(stuck + (isinstance(place, TimedMap) and not rests(place, run))):
+            one = int(np.argmin(np.abs(counted - 1)))
+            counted, counted_bound = np.delete(counted, one), np.delete(counted_bound, one)
+        return Judged(values, bound, counted, counted_bound, speed)
 
     def multipliers(self, point: CurvePoint) -> Complex:
         """Those that count, by falling modulus; NaN where the motion cannot be computed."""

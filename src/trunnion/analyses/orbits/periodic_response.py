@@ -31,7 +31,6 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
-from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.curves import Extremes, extremes, fourier
@@ -306,7 +305,6 @@ def periodic_response(
     description = line.line if isinstance(line, Assembly) else line
     prepared = line_system(line, operating_speed(description, speed))
     if prepared.assembly.topology.free:
-        refuse_friction(description, "which this analysis does not follow in lines that start free")
         return _free(prepared, start, tolerance, settle)
     require_forced(prepared)
     orbit = _forced(prepared, start, periods, tolerance, settle)

@@ -18,7 +18,7 @@ from trunnion.analyses.orbits.judging import ExactClosing
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.sliders import NOT_FOLLOWED, refuse_friction
+from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -104,7 +104,7 @@ def _of_line(
     most_points: int,
     progress: Progress | None,
 ) -> PeriodicBranch:
-    refuse_friction(line.line if isinstance(line, Assembly) else line, NOT_FOLLOWED)
+    refuse_friction(line.line if isinstance(line, Assembly) else line, NOT_FOLLOWED, STAND_IN)
     prepared = line_over(line, first, speed)
     orbit, place = orbit_near(prepared, start_state(prepared, start), first, periods), LineMap(first, periods, prepared)
     size = np.abs(orbit.start)

@@ -16,7 +16,7 @@ from trunnion.driveline.operating_speed import operating_speed
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
-from trunnion.equations.sliders import NOT_FOLLOWED, refuse_friction
+from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.errors import InputError
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
@@ -96,7 +96,7 @@ def system_over(
     if isinstance(line, System):
         return _of_system(line, str(parameter), first, (high - low) * width)
     description = line.line if isinstance(line, Assembly) else line
-    refuse_friction(description, NOT_FOLLOWED)
+    refuse_friction(description, NOT_FOLLOWED, STAND_IN)
     over_speed = parameter == "speed"
     prepared = line_system(line, first if over_speed and first > 0 else operating_speed(description, speed))
     if not prepared.assembly.topology.free:

@@ -18,12 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.own_motions import FEWEST, MOST, NEGLIGIBLE, Balance, FreeMotion
+from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.analyses.orders.channels import channels_of, motion_channels
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.exciters import BaseOfExcitation, quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.linear import stiffness_waves
+from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Link, Topology
 from trunnion.errors import ComputationError
@@ -62,7 +64,11 @@ class OwnOrders:
     """Own motions of one line, speed after speed."""
 
     def __init__(self, assembly: Assembly, turns: Fraction) -> None:
-        self.quiet = assemble(quiet(assembly.line))
+        if mean_by_load(assembly.line) and loaded_by_speed(assembly):
+            refuse_own_motion(
+                assembly, "the mean of its clutch changes with the speed besides: use tn.periodic_response"
+            )
+        self.quiet = assemble(with_mean_clutches(assemble(quiet(assembly.line)), 1.0))
         self.topo, self.period = self.quiet.topology, 2 * np.pi * float(turns)
         prepared = line_system(self.quiet, 1.0)
         if prepared.system.regimes is not None:

@@ -24,6 +24,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.stable_speeds import verdicts_at
+from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
@@ -224,7 +225,25 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
     yield from _nominal_angle(assembly, spectrum, at_work)
+    yield from _swing_of_clutches(assembly, spectrum)
     yield from left_out("order_response", assembly.line)
+
+
+def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
+    """Clutches that swing otherwise in the response than where their mean was taken."""
+    swing = np.abs(spectrum.amplitude[..., spectrum.channels.twist]).sum(axis=1)
+    for place, element in enumerate(assembly.line.elements):
+        if not isinstance(element, Clutch) or element.linear_amplitude is None:
+            continue
+        own = next(e for e, c in enumerate(assembly.topology.compliances) if place in c.shafts)
+        reached, stated = float(np.nanmax(swing[:, own], initial=0.0)), element.linear_amplitude
+        if not stated / ALIKE_SWING <= reached <= stated * ALIKE_SWING:
+            yield Finding(
+                Gravity.CAUTION,
+                f"{assembly.line.names[place]} swings by up to ± {np.rad2deg(reached):.3g} deg in this response, but "
+                f"counts by its mean over ± {np.rad2deg(stated):.3g} deg: give linear_amplitude = "
+                f'"{np.rad2deg(reached):.2g} deg" and ask again.',
+            )
 
 
 def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
@@ -243,5 +262,7 @@ def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Ex
         )
 
 
+ALIKE_SWING = 1.5
+"""Factor by which a clutch may swing more or less than where its mean was taken, before that is said."""
 LARGEST_SWING = 0.1
 """Order times swing of its disk [rad] from which the nominal angle is no longer good enough."""
