@@ -32,7 +32,7 @@ def driven(clutch: object, *, load: float = 45.0, angle: float = 0.3) -> tn.Driv
             tn.ConstantSpeed(),
             tn.HookeJoint(angle=angle, name="joint"),
             tn.Shaft(stiffness=2e4, damping=2.0, name="front"),
-            # In front of the clutch: a fork offset, which a stand-in has for its middle, does not turn disks as twist does.
+            # In front of the clutch: the fork offset of a stand-in does not turn the disks behind it as its twist does.
             tn.Disk(inertia=0.08, name="hub", excitation=[{"order": 2, "amplitude": 6.0}]),
             clutch,
             tn.Disk(inertia=0.05, name="gearbox"),
