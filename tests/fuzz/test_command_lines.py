@@ -91,6 +91,8 @@ def words(seed: int) -> list[str]:
     for option in rng.sample(sorted(OPTIONS[command]), min(len(OPTIONS[command]), rng.randint(0, 4))):
         values = OPTIONS[command][option]
         line += [option, rng.choice(values)] if values else [option]
+    if command == "certify-chaos" and not {"--periods", "--duration"} & set(line):
+        line += ["--periods", "50", "--starts", "1"]  # nor is the evidence that a verdict rests on
     if rng.random() < 0.1:
         at = rng.randrange(len(line))
         line[at] = "".join(chr(rng.randrange(33, 0x2100)) if rng.random() < 0.3 else c for c in line[at])
