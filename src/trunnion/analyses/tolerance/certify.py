@@ -1,8 +1,8 @@
 """A proof that every line within its tolerances is stable over a range of speeds, or a line that is not.
 
-Boxes of speed and parameters are proved one by one (``lyapunov``), and halved where the proof fails, along the width
-that costs most. A box whose middle is unstable ends the search: that line is the counterexample, once ``stability``
-confirms it.
+Boxes of speed and parameters are proved one by one (``lyapunov``), and halved where the proof fails, across the side
+that brings most of what stands against it. A box whose middle is unstable ends the search: that line is the
+counterexample, once ``stability`` confirms it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.stability import stability
+from trunnion.analyses.tolerance.bounds import half_widths, over_boxes
 from trunnion.analyses.tolerance.lyapunov import judge_boxes
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances
 from trunnion.driveline.driveline import Driveline
@@ -30,10 +31,10 @@ from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
-BATCH = 192
-"""Boxes judged together."""
+BATCH = {1: 48, 2: 24, 3: 8}
+"""Boxes judged together, by unknowns: some 300 MB of matrices."""
 MOST_UNKNOWNS = 3
-FIRST = 0.01
+FIRST = 0.02
 """Relative width of the first cells of speed."""
 KEYS = ("stiffness", "damping", "inertia", "angle")
 """What may scatter: numbers with which stiffness, damping and inertia rise, and the angle of a line's only joint."""
@@ -180,11 +181,17 @@ class _Space:
         wider = 1e-14 * np.maximum(np.abs(low), np.abs(high)) * moved
         return low - wider, high + wider
 
-    def widths(self) -> Array:
-        """How wide the whole range of each is, relative to its middle."""
-        spans = [np.log(self.speeds[1] / self.speeds[0]) * 2]
-        spans += [(s.high - s.low) / max(abs(s.high + s.low) / 2, 1e-300) for s in self.spreads]
-        return np.array(spans)
+    def across(self, boxes: Array, blame: Array) -> NDArray[np.int64]:
+        """The side of each box that moves the variables most that are to blame (boxes, variables) for its failure."""
+        middle = boxes.mean(axis=1)
+        moved = []
+        for side in range(boxes.shape[2]):
+            ends = np.repeat(middle[:, None], 2, axis=1)
+            ends[:, :, side] = boxes[:, :, side]
+            moved.append(half_widths(over_boxes(self.assembly, *self.ends(ends)))[:, : blame.shape[1]])
+        each = np.stack(moved, axis=1)
+        share = each / np.maximum(each.sum(axis=1, keepdims=True), 1e-300)
+        return np.asarray((share * blame[:, None]).sum(axis=2).argmax(axis=1))
 
 
 @dataclass(frozen=True)
@@ -201,11 +208,11 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
     edges = np.linspace(0.0, 1.0, cells + 1)
     todo = np.tile(np.array([np.zeros(size), np.ones(size)]), (cells, 1, 1))
     todo[:, 0, 0], todo[:, 1, 0] = edges[:-1], edges[1:]
-    widths, judged, radius = space.widths(), 0, 0.0
+    batch_size, judged, radius = BATCH[space.assembly.topology.size], 0, 0.0
     while len(todo) and judged < most:
         # The largest first: what is left when the budget ends is then as small as can be.
         order = np.argsort(-np.prod(todo[:, 1] - todo[:, 0], axis=1), kind="stable")
-        batch, todo = todo[order[:BATCH]], todo[order[BATCH:]]
+        batch, todo = todo[order[:batch_size]], todo[order[batch_size:]]
         found = judge_boxes(space.assembly, *space.ends(batch))
         judged, radius = judged + len(batch), max(radius, float(np.nanmax(found.radius)))
         for box in batch[found.radius > 1]:
@@ -213,16 +220,15 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
             if example is not None:
                 return _Found(example, np.concatenate([batch, todo]), judged, radius)
         left = batch[~found.proved]
-        todo = np.concatenate([todo, _halved(left, widths)])
+        todo = np.concatenate([todo, _halved(left, space.across(left, found.blame[~found.proved]))])
         tell(min(1 - _volume(todo), 0.999))
     return _Found(None, todo, judged, radius)
 
 
-def _halved(boxes: Array, widths: Array) -> Array:
-    """Two halves of each box, across its widest side relative to the middle."""
+def _halved(boxes: Array, along: NDArray[np.int64]) -> Array:
+    """Two halves of each box, across a side."""
     if not len(boxes):
         return boxes
-    along = ((boxes[:, 1] - boxes[:, 0]) * widths).argmax(axis=1)
     here = np.arange(len(boxes))
     middle = (boxes[here, 0, along] + boxes[here, 1, along]) / 2
     lower, upper = boxes.copy(), boxes.copy()
