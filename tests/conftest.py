@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+import typer.testing
 from typer.testing import CliRunner, Result
 
 import trunnion as tn
@@ -73,6 +74,9 @@ type = "Disk"
 inertia = "0.9 kg*m^2"
 """
 Run = Callable[..., Result]
+
+# A tree of so many commands takes a tenth of a second to build: once a process, as for its users, not once a call.
+typer.testing._get_command = cache(typer.testing._get_command)
 
 
 @pytest.hookimpl(tryfirst=True)

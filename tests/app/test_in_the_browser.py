@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from served import Look
 
 import trunnion as tn
@@ -54,6 +55,7 @@ def choose(look: Look, label: str, text: str) -> None:
     field.select_option(label=next(o for o in field.locator("option").all_inner_texts() if o.startswith(text)))
 
 
+@pytest.mark.slow
 def test_from_a_starter_to_a_satisfied_verdict(look: Look) -> None:
     """As somebody who reads nothing: begin, see what is exceeded and what is not judged, mend it, state limits."""
     look.at()
@@ -72,6 +74,7 @@ def test_from_a_starter_to_a_satisfied_verdict(look: Look) -> None:
     assert look.page.get_by_text("state limits for Shaft 1").count() == 0
 
 
+@pytest.mark.slow
 def test_what_helps_is_found_and_tried(look: Look) -> None:
     """The change that the button makes is the one that its sentence names, and it satisfies what it is for."""
     line = tn.loads(starter("two-shaft")).replace("HookeJoint 1", angle="3.5 deg")
@@ -89,6 +92,7 @@ def test_what_helps_is_found_and_tried(look: Look) -> None:
     look.page.get_by_text(mended, exact=True).wait_for()
 
 
+@pytest.mark.slow
 def test_the_report_is_saved_whole(look: Look, tmp_path: Path) -> None:
     """One file without references to elsewhere, with the verdict that the page shows."""
     look.at("?view=verdict")

@@ -58,7 +58,10 @@ def test_a_click_in_the_chart_shows_the_multipliers_there(look: Look) -> None:
     agrees(look, float(at["at_x"]), float(at["at_y"]))
 
 
-@pytest.mark.parametrize("view", ["Driveline", "Verdict", "Orders", "Stability", "Joints", "Limits", "Motion"])
+LABORIOUS = [pytest.param(view, marks=pytest.mark.slow) for view in ("Orders", "Stability", "Limits", "Motion")]
+
+
+@pytest.mark.parametrize("view", ["Driveline", "Verdict", "Joints", *LABORIOUS])
 def test_every_view_computes_and_asks_nobody_outside(look: Look, view: str) -> None:
     look.at(f"?view={view.lower()}&stability.across=20&stability.up=16")
     assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
@@ -93,6 +96,7 @@ def saved(look: Look, name: str, folder: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_exported_python_gives_the_numbers_on_screen(look: Look, tmp_path: Path) -> None:
     look.at(STABILITY + "&stability.at_x=707.0&stability.at_y=19.5&stability.look=True")
     program = saved(look, "stability/view.py", tmp_path).read_text(encoding="utf-8")
@@ -118,6 +122,7 @@ def laborious() -> str:
     return tn.dumps(tn.Driveline(elements, operation=operation))
 
 
+@pytest.mark.slow
 def test_a_long_run_is_cancelled_while_another_session_answers(look: Look, browser: Any) -> None:
     look.page.goto(look.server.address + "?view=stability&line=" + pack(laborious()))
     look.page.locator("[data-state=busy]").wait_for()
@@ -136,6 +141,7 @@ def test_a_long_run_is_cancelled_while_another_session_answers(look: Look, brows
     assert look.page.locator("[role=alert]", has_text="process ended").count() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "begins"),
     [

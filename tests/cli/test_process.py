@@ -86,9 +86,9 @@ def finished(process):
 
 
 def test_json_is_alone_on_stdout(start):
-    code, out, err = finished(start("analyze", "line.toml", "--points", "12x6", "--json"))
+    code, out, err = finished(start("stability-chart", "line.toml", "--points", "12x6", "--json"))
     assert code == 0, err
-    assert json.loads(out)["driveline"] == "test line"
+    assert json.loads(out)["x"]["points"] == 12
 
 
 def test_the_package_itself_is_the_command_too(start):

@@ -75,6 +75,18 @@ def made(file: Path) -> Report:
     return tn.report(tn.load(file), points=(60, 40), source=file)
 
 
+@pytest.fixture(scope="module")
+def loaded(mild: tn.Driveline) -> Report:
+    """Of the mild line, with speeds in Hz."""
+    return tn.report(mild, unit="Hz", points=(12, 9))
+
+
+@pytest.fixture(scope="module")
+def unloaded(mild: tn.Driveline) -> Report:
+    """Of the mild line without its load, with speeds in rad/s."""
+    return tn.report(mild.replace("pump", load_torque=None), unit="rad/s", points=(12, 9))
+
+
 class Page(HTMLParser):
     """Tags with attributes, and the text of the page."""
 
@@ -154,9 +166,9 @@ def test_provenance(made: Report, file: Path) -> None:
     assert "Lateral vibration" in text and "outside this torsional model" in text
 
 
-@pytest.mark.parametrize(("unit", "shown"), [("Hz", "10 to 50 Hz"), ("rad/s", "62.83 to 314.2 rad/s")])
-def test_speed_unit(mild: tn.Driveline, unit: str, shown: str) -> None:
-    text = Page(tn.report(mild, unit=unit, points=(20, 12)).html).text
+@pytest.mark.parametrize(("of", "shown"), [("loaded", "10 to 50 Hz"), ("unloaded", "62.83 to 314.2 rad/s")])
+def test_speed_unit(of: str, shown: str, request: pytest.FixtureRequest) -> None:
+    text = Page(request.getfixturevalue(of).html).text
     assert shown in text and "rpm" not in text
 
 
@@ -182,28 +194,24 @@ def test_line_without_joints_and_with_a_branch() -> None:
     assert "torque" not in ids and "limit" not in ids and {"driveline", "modes", "bending"} <= set(ids)
 
 
-def test_line_too_slow_for_a_chart(file: Path) -> None:
+def test_line_too_slow_for_a_chart(mild: tn.Driveline) -> None:
     """Far below every resonance there is no chart, but the forced torques are still given."""
-    line = tn.load(file)
-    slow = tn.Driveline(line.elements, operation=tn.Operation(speed="1 rpm", speed_range=["0.2 rpm", "2 rpm"]))
+    slow = tn.Driveline(mild.elements, operation=tn.Operation(speed="1 rpm", speed_range=["0.2 rpm", "2 rpm"]))
     made = tn.report(slow)
     assert made.contents.overview.chart is None and made.contents.sweep is not None
     assert "no chart" in Page(made.html).text
 
 
-def test_motion_under_load_is_that_of_the_function(mild: tn.Driveline) -> None:
+def test_motion_under_load_is_that_of_the_function(mild: tn.Driveline, loaded: Report, unloaded: Report) -> None:
     """The section shows the true motion's growth rate and torque; a line without load has no such section."""
-    line = mild
-    made = tn.report(line, points=(12, 9))
-    (motion,) = made.contents.loaded
-    expected = tn.periodic_response(line)
+    (motion,) = loaded.contents.loaded
+    expected = tn.periodic_response(mild)
     assert motion.case == "as described"
     assert motion.response.growth_rate == pytest.approx(expected.growth_rate, rel=1e-9)
-    section = made.html.split('id="under-load"')[1].split("</section>")[0]
+    section = loaded.html.split('id="under-load"')[1].split("</section>")[0]
     assert f"{float(f'{expected.torque_peak_to_peak.max():.4g}'):.10g}" in section
     assert section.count("<img") == 2
-    bare = tn.report(line.replace("pump", load_torque=None), points=(12, 9))
-    assert 'id="under-load"' not in bare.html and bare.contents.loaded == ()
+    assert 'id="under-load"' not in unloaded.html and unloaded.contents.loaded == ()
 
 
 def test_reasons_without_a_margin_keep_their_commas() -> None:
