@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
@@ -61,7 +62,11 @@ KNOWN: dict[str, tuple[Make, str, str, int]] = {
 }
 
 
-@pytest.mark.parametrize("name", KNOWN)
+QUICK = ("lorenz", "linear oscillator", "rossler, period 4", "mathieu in its tongue", "lorenz at rest")
+"""One of each verdict; of a torus there is the pendulum of ``test_shear_and_sections.py``."""
+
+
+@pytest.mark.parametrize("name", quick_only(QUICK, KNOWN))
 def test_known_kinds(name: str) -> None:
     make, verdict, kind, repeat = KNOWN[name]
     found = tn.certify_chaos(make(), tolerance=1e-9, sweep=False, **_effort(name))
@@ -77,7 +82,7 @@ def _effort(name: str) -> dict[str, object]:
     return {"duration": 8000.0} if name == "rossler" else {"duration": 4000.0} if name == "van der pol" else {}
 
 
-@pytest.mark.parametrize("force", [2.0, 6.0])
+@pytest.mark.parametrize("force", [2.0, pytest.param(6.0, marks=pytest.mark.slow)])
 def test_periodic_motions_of_a_chaotic_oscillator(force: float) -> None:
     found = tn.certify_chaos(ueda(force=force), 3000, sweep=False)
     assert found.verdict == "regular" and found.kind == "periodic"
@@ -160,6 +165,7 @@ def test_between_lengths_is_undecided() -> None:
     assert found.verdict == "undecided" and "200" in found.reasons[-1]
 
 
+@pytest.mark.slow
 def test_starts_that_differ_are_undecided() -> None:
     """Ueda's oscillator at B = 5.5 has, by start, a chaotic and a periodic motion."""
     starts = {}

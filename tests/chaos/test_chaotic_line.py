@@ -82,7 +82,12 @@ def test_neighbours_do_part_at_that_rate() -> None:
 
 
 @pytest.mark.parametrize(
-    ("angle", "speed"), [(0.3, 0.65), pytest.param(np.pi / 4, 0.2, marks=pytest.mark.slow), (0.0, 0.65)]
+    ("angle", "speed"),
+    [
+        (0.3, 0.65),
+        pytest.param(np.pi / 4, 0.2, marks=pytest.mark.slow),
+        pytest.param(0.0, 0.65, marks=pytest.mark.slow),
+    ],
 )
 def test_the_same_line_elsewhere_is_regular(angle: float, speed: float) -> None:
     found = tn.certify_chaos(line(angle), 3000, speed=speed, transient=2000, sweep=False)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.numerics.averages import average
@@ -43,13 +44,13 @@ def test_chaotic_systems_at_the_default_effort(name: str) -> None:
 
 
 def test_lorenz_is_complete() -> None:
-    found = tn.lyapunov_spectrum(lorenz(), duration=4000.0)
+    found = tn.lyapunov_spectrum(lorenz(), duration=2000.0)
     assert abs(found.exponents[1]) <= 2 * found.half_width[1] + 1e-3
     assert found.exponents[2] == pytest.approx(-14.572, abs=0.02)
     assert found.dimension == pytest.approx(2.062, abs=0.002)
 
 
-@pytest.mark.parametrize("damping", [0.1, 0.5, 3.0])
+@pytest.mark.parametrize("damping", quick_only((0.5, 3.0), (0.1, 0.5, 3.0)))
 def test_linear_system(damping: float) -> None:
     """Real parts of the roots of s² + cs + 1."""
     found = tn.lyapunov_spectrum(linear_oscillator(damping=damping, frequency=0.8))
@@ -71,7 +72,7 @@ def test_three_different_rates_of_a_linear_system() -> None:
     assert found.sum_error < 1e-6  # its tangents are differenced
 
 
-@pytest.mark.parametrize("ratio", [0.0, 1e-6, 1e-3, 0.03, 0.3, 1.0, 4.0])
+@pytest.mark.parametrize("ratio", quick_only((0.0, 0.03), (0.0, 1e-6, 1e-3, 0.03, 0.3, 1.0, 4.0)))
 def test_a_decaying_oscillator_is_never_positive(ratio: float) -> None:
     found = tn.lyapunov_spectrum(linear_oscillator(damping=2 * ratio, force=0.0), start=[1.0, 0.0], periods=1500)
     assert not found.positive
@@ -131,8 +132,8 @@ def test_fewer_exponents_are_the_first() -> None:
 
 
 def test_intervals_cover_as_often_as_they_say() -> None:
-    """Of 95 % intervals from 60 short runs of Ueda's oscillator, at least 80 % hold the long-run value."""
-    short = tn.lyapunov_spectrum(ueda(), periods=400, starts=60, tolerance=1e-8)
+    """Of 95 % intervals from 30 short runs of Ueda's oscillator, at least 80 % hold the long-run value."""
+    short = tn.lyapunov_spectrum(ueda(), periods=400, starts=30, tolerance=1e-8)
     covered = np.abs(short.by_start[:, 0] - 0.1034) <= short.by_start_half_width[:, 0]
     assert covered.mean() > 0.8
     assert short.by_start_half_width[:, 0].mean() < 0.02

@@ -73,7 +73,7 @@ def test_a_failed_check_builds_the_chart_anew(tmp_path: Path) -> None:
 
 
 def test_a_family_read_from_a_file_answers_from_its_patches(tmp_path: Path) -> None:
-    chart = tn.stability_chart(MATHIEU, ("a", 0, 4, 150), ("q", 0, 3, 100))
+    chart = tn.stability_chart(MATHIEU, ("a", 0, 4, 60), ("q", 0, 3, 50))
     chart.save(tmp_path / "m.nc")
     again = tn.load_chart(tmp_path / "m.nc")
     assert again.at(1.0, 0.5).spectral_radius == chart.at(1.0, 0.5).spectral_radius

@@ -10,6 +10,7 @@ import pytest
 from oracles.chains import Chain, random_chain
 from oracles.comparisons import set_distance
 from oracles.package_kernels import chain_kernel
+from oracles.sampling import quick_every
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
@@ -23,6 +24,7 @@ def multipliers(line: tn.Driveline, speed: float, **options: bool) -> np.ndarray
 
 
 CHAINS = [random_chain(np.random.default_rng(s)) for s in range(10)]
+NUMBERS = quick_every(3, range(len(CHAINS)))
 
 
 @pytest.mark.parametrize("angle", [0.2, 0.9])
@@ -34,7 +36,7 @@ def test_time_origin(angle: float, offset: float) -> None:
     assert set_distance(paper, turned) < 1e-11
 
 
-@pytest.mark.parametrize("number", range(len(CHAINS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_time_origin_of_chains(number: int) -> None:
     """Turning all forks of the first shaft turns nothing else, unless a gear stands between joints."""
     chain = replace(CHAINS[number], teeth=[])
@@ -43,7 +45,7 @@ def test_time_origin_of_chains(number: int) -> None:
     assert set_distance(here, multipliers(replace(chain, fork_offset=offset).line(), chain.speed)) < 1e-10
 
 
-@pytest.mark.parametrize("number", range(len(CHAINS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_units(number: int) -> None:
     """Mass unit × 7 and time unit × 1/300: the same multipliers."""
     chain, heavy, fast = CHAINS[number], 7.0, 300.0
@@ -156,7 +158,7 @@ def test_rigid_homokinetic_pair_is_an_ideal_joint() -> None:
     assert set_distance(matrices, reference) < 1e-9
 
 
-@pytest.mark.parametrize("number", range(len(CHAINS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_straight_joints_are_no_joints(number: int) -> None:
     chain = replace(CHAINS[number], teeth=[])
     bare = replace(chain, angle=[0.0] * (chain.size - 1))
@@ -248,7 +250,7 @@ def test_gear_reduces_what_lies_behind_it() -> None:
         assert set_distance(multipliers(line(ratio), 0.7), multipliers(line(1.0), 0.7)) < 1e-12
 
 
-@pytest.mark.parametrize("number", range(len(CHAINS)))
+@pytest.mark.parametrize("number", NUMBERS)
 def test_undamped_chains_are_symplectic(number: int) -> None:
     """Without damping, loaded or not: multipliers in pairs σ, 1/σ and determinant 1."""
     chain = replace(CHAINS[number], damping=[0.0] * CHAINS[number].size)

@@ -174,14 +174,8 @@ def run_up(
     assert rate is not None
     from trunnion.analyses.motion.run_up import run_up as compute
     from trunnion.analyses.motion.safe_accelerations import safe_accelerations
-    from trunnion.driveline.quantities import TORQUE, parse
 
-    torque = None
-    if limit is not None:
-        try:
-            torque = parse(float(limit) if is_number(limit) else limit, TORQUE)
-        except InputError as error:
-            raise InputError(error.problem, key="--limit", value=limit, remedy=error.remedy) from None
+    torque = None if limit is None else _torque(limit)
     check_places(to)
     with output.compile_notice():
         result = compute(line, low, high, acceleration=rate, ramp=ramp)
@@ -242,6 +236,19 @@ def _course(line: Driveline, first: float | None, last: float | None, duration: 
     if duration is None:
         raise InputError("is missing beside --to-speed", key="--duration", remedy="write --duration 10, in seconds")
     return SpeedProfile([0.0, duration], [operating_speed(line, first), last])
+
+
+def _torque(text: str) -> float:
+    """A positive torque [N m] written at ``--limit``, refused before anything is computed."""
+    from trunnion.driveline.quantities import TORQUE, parse
+
+    try:
+        torque = parse(float(text) if is_number(text) else text, TORQUE)
+    except InputError as error:
+        raise InputError(error.problem, key="--limit", value=text, remedy=error.remedy) from None
+    if not torque > 0:
+        raise InputError("must be a positive torque", key="--limit", value=text)
+    return torque
 
 
 def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
