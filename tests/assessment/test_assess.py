@@ -54,6 +54,22 @@ def test_the_torque_of_two_masses_by_hand():
     assert peak.check("max torque of shaft").value == pytest.approx(torque(200.0) + 50.0, rel=1e-9)
 
 
+def test_a_loss_factor_at_all_frequencies_leaves_all_but_stability_judged():
+    """A coupling as its maker lists it beside a bent joint: torques by frequency, no equations in time."""
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=K, damping=1.0, name="shaft"), tn.Disk(inertia=0.5),
+        tn.HookeJoint(angle=0.1), tn.Coupling(stiffness=K, relative_damping=0.8, name="coupling"), tn.Disk(inertia=0.5),
+    ]  # fmt: skip
+    line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_torque=500.0)])
+    found = tn.assess(line, (60.0, 70.0))
+    check = found.check("max torque of shaft")
+    assert check.value == pytest.approx(tn.order_response(line, [check.speed]).peak_torque[0, 0], rel=1e-9)
+    stability = found.check("parametric stability")
+    assert stability.status is Status.NOT_JUDGED and "write loss_factor_frequency" in stability.because
+    compared = tn.compare(line, line.replace("shaft", stiffness=2 * K), (60.0, 70.0))
+    assert "peak torque of shaft" in str(compared)
+
+
 def test_motion_of_a_disk_by_hand():
     """Rotation of the load: J₂φ₂″ = −torque of the shaft, so its acceleration is torque/J₂."""
     limits = [tn.Limit(of="load", max_acceleration=1000.0, max_speed_fluctuation=10.0)]

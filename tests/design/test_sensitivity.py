@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.analyses.sensitivity.differences import slope
 from trunnion.results.files import read_dataset, save_dataset
 
 
@@ -289,3 +291,61 @@ def test_it_introduces_itself(tmp_path):
 def test_frequencies_alone_where_no_speed_is_known():
     found = tn.sensitivity(chain())
     assert {q.kind for q in found.quantities} == {"frequency", "damping ratio"}
+
+
+def pair(second="17.2 deg"):
+    """Two joints whose irregularities cancel where both bend alike."""
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.HookeJoint(angle="17.2 deg"), tn.Shaft(stiffness=1e4, damping=1.0),
+            tn.Disk(inertia=0.5), tn.HookeJoint(angle=second), tn.Shaft(stiffness=1e4, damping=1.0),
+            tn.Disk(inertia=0.5),
+        ],
+        operation=tn.Operation(speed=50.0),
+    )  # fmt: skip
+
+
+def test_a_cancelled_irregularity_has_a_kink_and_no_derivative():
+    """U ≈ |β₁² − β₂²| grows either way: what central differences give is no derivative."""
+    found = tn.sensitivity(pair(), of=["checks"], checks=["uniformity"])
+    angles = ("HookeJoint 1.angle", "HookeJoint 2.angle")
+    assert set(angles) <= set(found.kinks("uniformity"))
+    row = found.quantities.index(found.quantity("uniformity"))
+    for path in angles:
+        place = found.parameters.index(path)
+        assert np.isnan(found.derivative[row, place])
+        assert found.error[row, place] == pytest.approx(2 * math.tan(0.3002), rel=0.02)  # half of both sides' slopes
+    assert "no derivative by HookeJoint 1.angle" in str(found) and "where it has a kink" in str(found)
+    aside = tn.sensitivity(pair("12 deg"), of=["checks"], checks=["uniformity"])
+    assert not aside.kinks("uniformity") and aside.derivatives("uniformity")["HookeJoint 1.angle"] > 0.5
+
+
+def test_what_is_rounding_is_not_printed():
+    """A joint that stands straight forces nothing, and follows nothing to first order."""
+    parts = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0), tn.HookeJoint(angle=0.0),
+        tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0),
+    ]  # fmt: skip
+    found = tn.sensitivity(tn.Driveline(parts), 50.0, of=["torques"])
+    assert all(found.sentence(q).endswith("follows none of these parameters") for q in found.quantities)
+
+
+def test_a_line_that_can_only_turn_as_a_whole_has_no_growth_rate():
+    found = tn.sensitivity(tn.Driveline([tn.Disk(inertia=1.0), tn.Disk(inertia=2.0)]), 50.0, of=["growth"])
+    assert {q.refused for q in found.quantities} == {"the line can only turn as a whole"}
+
+
+@pytest.mark.parametrize(
+    ("values", "expected", "kink"),
+    [
+        (lambda x: np.array([abs(x), 2 + abs(x) + 3 * x]), [0.0, 3.0], True),
+        (lambda x: np.array([math.sin(3 * x), x * x]), [3.0, 0.0], False),
+        (lambda x: np.array([math.exp(x), abs(x) ** 3]), [1.0, 0.0], False),
+    ],
+)
+def test_kinks_are_told_from_curves(values, expected, kink):
+    found, error = slope(values)
+    if kink:
+        assert np.all(np.isnan(found)) and error == pytest.approx(np.ones(2), rel=1e-9)
+    else:
+        assert found == pytest.approx(np.array(expected), abs=1e-7) and np.all(error < 1e-6)

@@ -54,3 +54,15 @@ def test_modes_of_a_geared_pair_by_hand() -> None:
     modes = tn.natural_frequencies(line)
     assert modes.frequency[1] == pytest.approx(np.sqrt(50.0 * (1 / 2.0 + 1 / 1.0)), rel=1e-8)
     assert modes.damping_ratio[1] == pytest.approx(0.1 / 50.0 * modes.frequency[1] / 2, rel=1e-8)
+
+
+def test_without_damping_every_ratio_is_exactly_zero() -> None:
+    parts = [
+        tn.ConstantSpeed(),
+        tn.Shaft(stiffness=1e4),
+        tn.Disk(inertia=1.0),
+        tn.Shaft(stiffness=1e4),
+        tn.Disk(inertia=1.0),
+    ]
+    found = tn.natural_frequencies(tn.Driveline(parts))
+    assert not found.damping_ratio.any() and "damping ratio 0" in str(found)

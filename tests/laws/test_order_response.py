@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,35 @@ def test_a_drive_that_grows_with_the_speed_makes_a_straight_line_unstable() -> N
 
     assert tn.order_response(line(-2.1), [10.0, 20.0]).unstable.all()
     assert not tn.order_response(line(-1.9), [10.0, 20.0]).unstable.any()
+
+
+@pytest.mark.parametrize("damping", [-0.3, 0.3])
+def test_negative_damping_makes_a_straight_line_unstable(damping: float) -> None:
+    """Two masses in relative motion grow by −c(1/J₁ + 1/J₂)/2, at every speed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", tn.InputRemark)
+        line = two_masses(damping=damping)
+    found, judged = tn.order_response(line, [60.0, 70.0]), tn.assess(line, (60.0, 70.0)).check("parametric stability")
+    assert tn.stability(line, 60.0).growth_rate == pytest.approx(-damping * (1 / 0.2 + 1 / 0.8) / 2, rel=1e-9)
+    if damping < 0:
+        assert list(found.unstable) == [True, True]
+        assert any("The steady motion is unstable at 60 to 70 rad/s" in str(f) for f in found.findings)
+        assert judged.value == pytest.approx(-damping * (1 / 0.2 + 1 / 0.8) / 2, rel=1e-9)
+        assert "exceeded" in str(judged.status) and "unstable between 60 rad/s and 70 rad/s" in judged.because
+    else:
+        assert not found.unstable.any() and "not applicable" in str(judged.status)
+
+
+def test_a_line_too_stiff_to_be_judged_is_not_said_to_have_a_loss_factor() -> None:
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e12, damping=1.0), tn.Disk(inertia=1e-9), tn.HookeJoint(angle=0.3),
+            tn.Shaft(stiffness=1.0, damping=1e-3), tn.Disk(inertia=1e6),
+        ]
+    )  # fmt: skip
+    found = tn.order_response(line, [50.0])
+    said = " ".join(map(str, found.findings))
+    assert "was not judged: the computation failed" in said and "loss factor" not in said
 
 
 def test_stability_behind_a_loss_factor_is_said_not_to_be_judged() -> None:

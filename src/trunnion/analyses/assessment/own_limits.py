@@ -22,6 +22,7 @@ from trunnion.driveline.quantities import against, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
+from trunnion.results.counts import counted
 
 Array = NDArray[np.float64]
 WHOLE = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
@@ -104,7 +105,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
         because += f"; beyond it {_listed(subject, barred)}"
     return Check(
         name, judged(margin, limit.margin), rule, because, margin, limit.margin, value, limit.value, kind.unit,
-        float(case.speeds[at]), f"{len(values)} speeds, {subject.shown(case.speeds[0])} to "
+        float(case.speeds[at]), f"{counted(len(values), 'speed')}, {subject.shown(case.speeds[0])} to "
         f"{subject.shown(case.speeds[-1])}", case.name, barred, element=limit.element,
         cause=said,
     )  # fmt: skip

@@ -6,11 +6,14 @@ The margin is the share that joints and meshes leave of the damping of the strai
 slowest disturbance: 100 % where they take nothing, 0 on the border of stability. 201 speeds at least, closer about the
 peaks of the response, and at every named resonance speed; 25 for bent lines with play or stages that start free, where
 each takes its own periodic motion.
+
+Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
+exceeded all the same.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +22,9 @@ from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.own_limits import bands
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, straight_decay
+from trunnion.analyses.orders.stable_speeds import verdicts_at
 from trunnion.errors import ComputationError, InputError
+from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
 
 RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived")
@@ -31,8 +36,7 @@ Array = NDArray[np.float64]
 def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
     """One check: the speed at which the slowest disturbance dies out slowest."""
     if not case.parametric:
-        because = "no joint is bent and no mesh varies: nothing excites the line parametrically"
-        yield Check(NAME, Status.NOT_APPLICABLE, RULE, because)
+        yield _straight(subject, case)
         return
     try:
         speeds, growth, verdict = _along(case)
@@ -45,15 +49,15 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         return
     at = int(np.nanargmax(growth))
     straight = straight_decay(case.assembly, float(speeds[at]))
-    inputs = f"{len(speeds)} speeds, {subject.shown(speeds[0])} to {subject.shown(speeds[-1])}"
+    inputs = f"{counted(len(speeds), 'speed')}, {subject.shown(speeds[0])} to {subject.shown(speeds[-1])}"
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     unstable = verdict == Verdict.UNSTABLE
     if np.any(unstable):
         ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
-        spread = " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in ranges)
         resonance = _resonance(case, float(speeds[at])) if subject.naming else ""
         because = (
-            f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s {here}{resonance}; unstable between {spread}"
+            f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s {here}{resonance}; unstable "
+            f"{_ranges(subject, ranges)}"
         )
         margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
         yield Check(
@@ -75,6 +79,35 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
         because = f"{' and '.join(words)} at some speeds: {remedy}{case.suffix}"
         yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=inputs, load_case=case.name)
+
+
+def _straight(subject: Subject, case: Case) -> Check:
+    """Of a line that nothing varies: only what feeds energy in makes it grow."""
+    unstable = verdicts_at(case.assembly, case.speeds) == Verdict.UNSTABLE
+    if not np.any(unstable):
+        because = "no joint is bent and no mesh varies: nothing excites the line parametrically"
+        return Check(NAME, Status.NOT_APPLICABLE, RULE, because)
+    speeds = case.speeds
+    growth = np.array([-straight_decay(case.assembly, float(speed)) for speed in speeds])
+    at = int(np.argmax(growth >= growth.max() * (1 - 1e-9)))
+    ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
+    because = (
+        f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s at {subject.shown(speeds[at])}{case.suffix}: "
+        "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh; unstable "
+        f"{_ranges(subject, ranges)}"
+    )
+    inputs = counted(len(speeds), "speed")
+    return Check(
+        NAME, Status.EXCEEDED, RULE, because, -np.inf, 0.0, float(growth[at]), 0.0, "1/s", float(speeds[at]), inputs,
+        case.name, ranges,
+    )  # fmt: skip
+
+
+def _ranges(subject: Subject, ranges: Sequence[tuple[float, float]]) -> str:
+    """ "at 300 rpm", "between 300 rpm and 400 rpm, between …"."""
+    if all(a == b for a, b in ranges):
+        return f"at {' and '.join(subject.shown(a) for a, _ in ranges)}"
+    return ", ".join(f"between {subject.shown(a)} and {subject.shown(b)}" for a, b in ranges)
 
 
 def _resonance(case: Case, speed: float) -> str:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.assessment.check import Check, Rule, Status, above
 from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.results.counts import counted
 
 REQUIRED = 0.10
 WORTH = 0.01
@@ -63,7 +64,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         near, said, speed = min(clear)
         yield Check(
             "separation of modes", Status.SATISFIED, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED, "1",
-            speed, f"{len(orders)} orders", case.name, guideline=True,
+            speed, counted(len(orders), "order"), case.name, guideline=True,
         )  # fmt: skip
 
 

@@ -164,7 +164,7 @@ def _number(value: object, label: str, key: str) -> float:
 def lowest_speed(assembly: Assembly) -> float:
     """Speed [rad/s] below which a turn spans more than ``MOST_CYCLES`` cycles of the highest mode."""
     topo = assembly.topology
-    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1)))
+    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
     return float(frequencies(matrices, free=topo.free)[0, -1]) / MOST_CYCLES
 
 

@@ -28,6 +28,7 @@ from trunnion.equations.exciters import Exciter, exciters, size
 from trunnion.equations.harmonic_torques import cylinders
 from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
+from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -177,7 +178,8 @@ class CampbellDiagram(Result):
         unit = unit or self.unit
         span = f"{show_speed(self.speed[0], unit)} to {show_speed(self.speed[-1], unit)}"
         straight = ", joints made straight" if self.bent else ""
-        rows = [f"{len(self.mode)} modes from {span}{straight}, crossed {len(self.crossings)} times"]
+        modes, times = counted(len(self.mode), "mode"), counted(len(self.crossings), "time")
+        rows = [f"{modes} from {span}{straight}, crossed {times}"]
         for m, number in enumerate(self.mode):
             hertz = self.frequency[:, m] / (2 * np.pi)
             low, high = np.nanmin(hertz, initial=np.inf), np.nanmax(hertz, initial=-np.inf)

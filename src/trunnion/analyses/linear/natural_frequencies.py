@@ -135,6 +135,8 @@ def _over_masses(part: Array, matrices: AlignedMatrices) -> Array:
 def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Array, frequency: Array) -> Array:
     """−Re λ/|λ| of the damped modes; by modal projection where a mode does not oscillate."""
     n = len(frequency)
+    if not damping.any() and not loss.any():
+        return np.zeros(n)
     modal, lost = (np.einsum("im,ij,jm->m", vectors, part, vectors) for part in (damping, loss))
     ratio = np.divide(modal * frequency + lost, 2 * frequency**2, out=np.zeros(n), where=frequency > 0)
     if np.any(np.abs(ratio) >= 0.9):

@@ -34,6 +34,7 @@ from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
+from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
@@ -110,14 +111,15 @@ class SpeedSweep(Result):
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
         unit = unit or self.unit
-        rows = [f"linear forced response at {len(self.speed)} speeds"]
+        rows = [f"linear forced response at {counted(len(self.speed), 'speed')}"]
         for shaft in self.shafts:
             torque, at = self.peak(shaft)
             rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {show_speed(at, unit)}")
-        beyond = np.count_nonzero(~self.linear)
+        beyond = int(np.count_nonzero(~self.linear))
         if beyond:
             rows.append(
-                f"  at {beyond} speeds a joint's input deviates by more than {LINEAR_RANGE} rad: indication only"
+                f"  at {counted(beyond, 'speed')} a joint's input deviates by more than {LINEAR_RANGE} rad: indication "
+                "only"
             )
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 

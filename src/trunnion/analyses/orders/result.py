@@ -335,12 +335,15 @@ def order_name(order: float, frequency: float) -> str:
 
 def _stability(result: OrderResponse, unit: str) -> Iterable[Finding]:
     """Where the steady motion is not reached, in stretches of neighbouring speeds."""
-    if np.any(result.verdict == Verdict.FAILED):
-        yield Finding(
-            Gravity.NOTE,
-            "Whether the motion is stable was not judged: a loss factor that holds at all frequencies has no equations "
-            "in time; give a loss_factor_frequency and ask stability().",
+    if np.any(failed := result.verdict == Verdict.FAILED):
+        where = "" if failed.all() else f" at {failed.sum()} of {len(failed)} speeds"
+        why = (
+            "a loss factor that holds at all frequencies has no equations in time; give a loss_factor_frequency and "
+            "ask stability()."
+            if result.spectrum.loss.any()
+            else "the computation failed; stability() at such a speed says why."
         )
+        yield Finding(Gravity.NOTE, f"Whether the motion is stable was not judged{where}: {why}")
     order = np.argsort(result.speed)
     speed, unstable = result.speed[order], result.unstable[order]
     if not unstable.any():

@@ -18,9 +18,8 @@ GROWS = 1e-9
 
 
 def verdicts_at(assembly: Assembly, speed: Array, *, statically_twisted: bool = True) -> Codes:
-    """Codes of ``Verdict`` (speed,) at every ``speed`` [rad/s]; FAILED where a loss factor holds at all frequencies.
-
-    Such a loss has no equations in time, so that no multipliers exist.
+    """Codes of ``Verdict`` (speed,) at every ``speed`` [rad/s]; FAILED where a loss factor holds at all frequencies,
+    which has no equations in time, so that no multipliers exist, and where the computation failed.
     """
     table = assembly.table(len(speed))
     table[:, 0] = speed
@@ -34,10 +33,13 @@ def verdicts_at(assembly: Assembly, speed: Array, *, statically_twisted: bool = 
 
 
 def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:
-    """Only a drive whose torque grows with the speed can make a straight line unstable."""
+    """Only what feeds energy in makes a straight line unstable: negative damping, a drive whose torque grows with the
+    speed."""
     stable = np.full(len(co.speed), Verdict.STABLE, dtype=np.int8)
-    if not np.any((co.viscous < 0) | (co.quadratic < 0)):
+    if not any(np.any(part < 0) for part in (co.damping, co.viscous, co.quadratic)):
         return stable
+    if co.loss.any():
+        return np.full_like(stable, Verdict.FAILED)
     m = line_matrices(assembly.topology, co, np.zeros(1))
     mass, damping, stiffness = m.mass[:, 0], m.damping[:, 0], m.stiffness[:, 0]
     n = mass.shape[-1]

@@ -1,6 +1,9 @@
 """Derivatives by differences of fourth order, from one side where the other is refused.
 
 f′ ≈ (f₋₂ − 8f₋₁ + 8f₁ − f₂)/12h,    f′ ≈ (−25f₀ + 48f₁ − 36f₂ + 16f₃ − 3f₄)/12h
+
+A largest value has kinks, where another place or curve becomes the largest one or a sum cancels: the slopes on the two
+sides differ, and what the central formula gives between them is no derivative.
 """
 
 from __future__ import annotations
@@ -21,6 +24,13 @@ SMOOTH_STEP = 1e-3
 """The same where a function is a low polynomial of it, as coefficients of the equations are."""
 
 
+KINK = 0.05
+"""Share of the steepest change at which the two sides' slopes differ too much for one derivative."""
+
+ROUNDING = 1e-10
+"""Change that may be rounding, of values of order one, in the unit of the function."""
+
+
 def central(values: Array, step: float) -> Array:
     """Derivative of values (4, …) at −2, −1, 1 and 2 steps."""
     return np.asarray(np.tensordot(WEIGHTS, values, 1) / step)
@@ -29,7 +39,8 @@ def central(values: Array, step: float) -> Array:
 def slope(values: Callable[[float], Array | None], step: float = STEP) -> tuple[Array, Array] | None:
     """Derivative of ``values(share)`` at 0 and its error, each as an array; None where both sides are refused.
 
-    The error is the distance to the derivative of second order, which is the larger error of the two.
+    The error is the distance to the derivative of second order, which is the larger error of the two, and at least half
+    of what the slopes on the two sides differ by; where these are those of a kink, the derivative is NaN.
     """
     here = values(0.0)
     if here is None:
@@ -39,7 +50,9 @@ def slope(values: Callable[[float], Array | None], step: float = STEP) -> tuple[
         if all(one is not None for one in found):
             rows = np.array(found, dtype=float)
             fine = np.tensordot(WEIGHTS, rows, 1) / step
-            return fine, np.abs(fine - (rows[2] - rows[1]) / (2 * step))
+            error = np.abs(fine - (rows[2] - rows[1]) / (2 * step))
+            apart = np.abs(_gap(here, rows)) / step
+            return np.where(_kinked(here, rows), np.nan, fine), np.maximum(error, apart / 2)
     for side in (step, -step):
         found = [values(side * k) for k in FORWARD]
         if all(one is not None for one in found):
@@ -47,3 +60,18 @@ def slope(values: Callable[[float], Array | None], step: float = STEP) -> tuple[
             fine = np.tensordot(FORWARD_WEIGHTS, rows, 1) / side
             return fine, np.abs(fine - (-3 * rows[0] + 4 * rows[1] - rows[2]) / (2 * side))
     return None
+
+
+def _kinked(here: Array, rows: Array) -> NDArray[np.bool_]:
+    """Whether the function bends at once: its bend over two steps is twice that over one, where a smooth one's is four
+    times it and rounding's is anything."""
+    far, near = rows[0] + rows[3] - 2 * here, rows[1] + rows[2] - 2 * here
+    rise = np.abs(rows - here).max(axis=0)
+    large = (np.abs(_gap(here, rows)) > KINK * rise) & (rise > ROUNDING * np.maximum(np.abs(here), 1.0))
+    return np.asarray(large & (np.abs(far - 2 * near) < 0.2 * np.abs(near)))
+
+
+def _gap(here: Array, rows: Array) -> Array:
+    """What the slopes of second order on the two sides differ by, times the step; ``rows`` as in ``central``."""
+    far_back, back, ahead, far_ahead = rows
+    return np.asarray(((4 * ahead - far_ahead) + (4 * back - far_back) - 6 * here) / 2)

@@ -68,10 +68,12 @@ def radius_slope(
     run = propagated(system, TOLERANCE)
     co = assembly.coefficients(row)
     values, bounds = judged_multipliers(run, rigid_motions(assembly.topology, co))
-    radius = float(spectral_radius(values, bounds)[0])
-    critical = complex(values[int(np.argmax(np.abs(values)))])
     every = [(one, True) for one in directions] + [(one, False) for one in axes]
     none = np.full(len(every), np.nan)
+    if not len(values):
+        return RadiusSlope(1.0, 1.0, system.period, none, none, "the line can only turn as a whole")
+    radius = float(spectral_radius(values, bounds)[0])
+    critical = complex(values[int(np.argmax(np.abs(values)))])
 
     def without(why: str) -> RadiusSlope:
         return RadiusSlope(critical, radius, system.period, none, none, why)

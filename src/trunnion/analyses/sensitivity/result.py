@@ -74,7 +74,8 @@ class Sensitivities(Result):
     """Derivatives of quantities by the parameters of a description.
 
     quantities: what follows; parameters: names, with value and unit; derivative (quantity, parameter) in SI units,
-    error likewise, NaN where there is none; findings: what was left out; unit: of speeds in print.
+    error likewise, NaN where there is none; at a kink the derivative alone is NaN and the error half of what the slopes
+    on its two sides differ by; findings: what was left out; unit: of speeds in print.
     """
 
     quantities: tuple[Quantity, ...]
@@ -120,7 +121,10 @@ class Sensitivities(Result):
         change, logarithmic, step = self.change[q], self.logarithmic[q], self.step
         largest = max(abs(self.value[q]), float(np.abs(np.nan_to_num(change)).max(initial=0.0)))
         order = np.argsort(-np.abs(np.nan_to_num(change)), kind="stable")
-        felt = [p for p in order if np.abs(change[p]) > NEGLIGIBLE * largest]
+        felt = [
+            p for p in order
+            if np.abs(change[p]) > NEGLIGIBLE * largest and np.abs(self.derivative[q, p]) > self.error[q, p]
+        ]  # fmt: skip
         return tuple(
             Effect(
                 self.parameters[p],
@@ -137,6 +141,12 @@ class Sensitivities(Result):
     def derivatives(self, name: str) -> dict[str, float]:
         """Derivatives of the quantity called ``name`` by parameter."""
         return dict(zip(self.parameters, self.derivative[self._place(name)].tolist(), strict=True))
+
+    def kinks(self, name: str) -> tuple[str, ...]:
+        """Parameters at which the quantity called ``name`` has a kink: its slopes on the two sides differ."""
+        q = self._place(name)
+        found = np.isnan(self.derivative[q]) & np.isfinite(self.error[q])
+        return tuple(np.array(self.parameters)[found].tolist())
 
     def table(self, name: str) -> list[dict[str, object]]:
         """One row a parameter that the quantity called ``name`` follows, strongest first."""
@@ -157,6 +167,9 @@ class Sensitivities(Result):
         if quantity.refused:
             return f"{head}: no derivative, {quantity.refused}"
         parts = [effect_words(quantity, one) for one in self.ranked(quantity.name, most)]
+        kinks = self.kinks(quantity.name)
+        if kinks:
+            parts.append(f"no derivative by {', '.join(kinks)}, where it has a kink")
         return f"{head}: {', '.join(parts) if parts else FLAT}"
 
     def declared(self) -> Iterator[Held]:

@@ -12,6 +12,7 @@ from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.quantities import DEGREE
+from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
 
 Array = NDArray[np.float64]
@@ -117,7 +118,8 @@ class Remedies(Result):
 
     def __str__(self) -> str:
         rows = [
-            f"remedies: {len(self.remedies)} single changes for {len(self.checks)} checks, {self.lines} lines judged"
+            f"remedies: {counted(len(self.remedies), 'single change')} for {counted(len(self.checks), 'check')}, "
+            f"{counted(self.lines, 'line')} judged"
         ]
         rows += [f"  {sentence}" for sentence in self.sentences]
         for check in self.checks:
