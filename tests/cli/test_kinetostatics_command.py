@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +24,28 @@ def test_text_and_files(run, here):
         "line-kinetostatics-polar.png",
         "line-kinetostatics-sketch.png",
     }
+
+
+def test_a_joint_behind_gears_is_drawn(run, here):
+    """The example, whose one joint stands behind a mesh."""
+    text = (Path(__file__).parents[2] / "examples" / "gear-stage.toml").read_text(encoding="utf-8")
+    (here / "gears.toml").write_text(text, encoding="utf-8")
+    result = run("kinetostatics", "gears.toml")
+    assert result.exit_code == 0, result.stderr
+    assert (here / "trunnion-out" / "gears-kinetostatics-sketch.png").exists()
+
+
+def test_what_cannot_be_drawn_takes_no_answer_away(run, here):
+    """Two joints on one shaft have no sketch, but a turn."""
+    joint = '[[element]]\ntype = "HookeJoint"\nangle = 0.1\n{}[[element]]\ntype = "Shaft"\nstiffness = 1e4\n'
+    disk = '[[element]]\ntype = "Disk"\ninertia = 1\n'
+    text = "format = 1\n" + '[[element]]\ntype = "ConstantSpeed"\n' + disk + 'name = "hub"\n'
+    text += joint.format("") + disk + joint.format('after = "hub"\n') + disk
+    (here / "two-ways.toml").write_text(text, encoding="utf-8")
+    result = run("kinetostatics", "two-ways.toml", "--speed", "900 rpm")
+    assert result.exit_code == 0, result.stderr
+    assert "no sketch: driveline: branches to two joints" in result.stderr
+    assert "irregularity of the output" in result.stdout
 
 
 def test_json_against_the_function(run, here):

@@ -206,9 +206,13 @@ def _files(result: Kinetostatics, stem: str, unit: str) -> list[Path]:
         save(draw_polar(result, unit=unit), polar := base.with_name(f"{base.name}-polar.png"))
         written.append(polar)
         if result.joints:
-            drawing = sketch(result.line)
-            save(drawing, drawn := base.with_name(f"{base.name}-sketch.png"))
-            written.append(drawn)
+            try:
+                drawing = sketch(result.line)
+            except InputError as error:  # the turn itself is known, whatever cannot be drawn
+                output.note(f"no sketch: {error}")
+            else:
+                save(drawing, drawn := base.with_name(f"{base.name}-sketch.png"))
+                written.append(drawn)
     return [DEFAULT_FOLDER / path.name for path in written]
 
 

@@ -78,7 +78,7 @@ class _Scene:
 def sketch(
     subject: Driveline | Layout, *, input_angle: float = 0.0, lengths: Mapping[str, float] | None = None
 ) -> Figure:
-    """Sketch a line up to its first ratio, or a layout with homokinetic fork offsets.
+    """Sketch the first shafts of a line that joints bend, between ratios, or a layout with homokinetic fork offsets.
 
     Parameters
     ----------
@@ -100,7 +100,8 @@ def sketch(
         front = start + (size * _unit(end - start) if k else 0.0)
         back = end - (size * _unit(end - start) if k < len(scene.ends) - 1 else 0.0)
         axes.plot(*np.stack([front, back], axis=1), color=colour, linewidth=4, solid_capstyle="butt")
-        labels.append(_Label((start + end) / 2, name, colour, -1.0))
+        if name:
+            labels.append(_Label((start + end) / 2, name, colour, -1.0))
     for k, joint in enumerate(scene.joints):
         _plane(axes, joint, size)
         if joint.arms:
@@ -134,10 +135,11 @@ def _figure() -> Figure:
 def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> _Scene:
     train = chain(line, lengths)
     frames = member_frames(train)
-    members = [m for m, member in enumerate(train.members) if member.train == 0]
-    joints = [train.members[m].joint for m in members if train.members[m].joint >= 0]
-    if not joints:
+    bent = [member.train for member in train.members if member.joint >= 0]
+    if not bent:
         raise InputError("has no joint to draw", element="driveline", remedy="add a HookeJoint")
+    members = [m for m, member in enumerate(train.members) if member.train == bent[0]]
+    joints = [train.members[m].joint for m in members if train.members[m].joint >= 0]
     known = [m.length for m in train.members if np.isfinite(m.length)]
     usual = float(np.mean(known)) if known else UNKNOWN_LENGTH
     fronts = [train.steps[train.steps[j].parent].member for j in joints]
@@ -155,7 +157,9 @@ def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> 
     drawn = _joints(train, joints, points[1:-1], frames, input_angle)
     names = [", ".join(train.members[m].shafts[:2]) for m in members]
     guessed = not all(np.isfinite(x) for x in inner)
-    return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed)
+    turning = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 1)).angle[train.steps[joints[0]].parent]
+    sense = float(np.sign(turning[1, 0]))  # behind a ratio
+    return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed, sense)
 
 
 def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float) -> list[_Joint]:
