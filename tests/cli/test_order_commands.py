@@ -141,3 +141,14 @@ def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
     assert result.stdout == "" and words in result.stderr
     assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
     assert not (here / "trunnion-out").exists()
+
+
+def test_a_line_that_nothing_excites_has_no_largest_order(run, here):
+    shaft = '[[element]]\ntype = "Shaft"\nname = "shaft"\nstiffness = 1e3\n'
+    text = '[[element]]\ntype = "ConstantSpeed"\n' + shaft + '[[element]]\ntype = "Disk"\ninertia = 1\n'
+    text = 'format = 1\n[operation]\nspeed = "900 rpm"\nspeed_range = ["600 rpm", "1200 rpm"]\n' + text
+    (here / "still.toml").write_text(text, encoding="utf-8")
+    result = run("order-response", "still.toml")
+    assert result.exit_code == 0 and "nan" not in result.stdout
+    (spring,) = json.loads(run("order-response", "still.toml", "--json").stdout)["springs"]
+    assert [value for value in spring.values() if value is None] == [None, None]

@@ -46,15 +46,15 @@ def heading(out: Console, text: str) -> None:
 
 
 def table(out: Console, rows: Sequence[Mapping[str, object]]) -> None:
-    """Rows with common keys; numbers right-aligned with six figures."""
+    """Rows with common keys; numbers right-aligned with six figures, nothing for None."""
     from rich import box
     from rich.table import Table
 
     drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for key, value in rows[0].items():
-        drawn.add_column(key, justify="right" if isinstance(value, int | float) else "left")
+        drawn.add_column(key, justify="right" if value is None or isinstance(value, int | float) else "left")
     for row in rows:
-        drawn.add_row(*(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()))
+        drawn.add_row(*("" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()))
     out.print(drawn)
 
 

@@ -283,16 +283,18 @@ class OrderResponse(Result):
             column = self.peak_torque[:, s]
             at = int(np.nanargmax(column)) if np.any(np.isfinite(column)) else 0
             order, speed, size = self.leading_order(spring)
-            factor = speed_factor(unit)
+            factor, vibrates = speed_factor(unit), bool(size > 0)
             rows.append(
                 {
                     "spring": spring,
                     "peak torque [N m]": float(column[at]),
                     f"at [{unit}]": float(self.speed[at] * factor),
                     "vibratory [N m]": float(self.vibratory_torque[at, s]),
-                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0)),
-                    "of it [N m]": size,
-                    f"at [{unit}] ": speed * factor,
+                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0))
+                    if vibrates
+                    else "none",
+                    "of it [N m]": size if vibrates else None,
+                    f"at [{unit}] ": speed * factor if vibrates else None,
                 }
             )
         return rows
