@@ -82,3 +82,14 @@ def test_the_period_and_its_double_pass() -> None:
     """A multiple of the least period is a period."""
     assert _forced(period=2 * np.pi).forcing_period == 2 * np.pi
     assert _forced(period=4 * np.pi).forcing_period == 4 * np.pi
+
+
+def test_a_line_without_springs_does_not_move():
+    line = tn.Driveline([tn.Disk(inertia=1.0), tn.Disk(inertia=2.0)])
+    for ask in (
+        lambda: tn.simulate(line, 1.0, speed=50.0),
+        lambda: tn.periodic_response(line, 50.0),
+        lambda: tn.linearity_check(line, 50.0),
+    ):
+        with pytest.raises(tn.InputError, match="driveline: has no spring, so that nothing twists; add a Shaft"):
+            ask()

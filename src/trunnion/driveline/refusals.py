@@ -14,9 +14,9 @@ MOST_WORDS = 20
 """Most known words that a remedy lists."""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: object, known: Iterable[str]) -> str:
     """Remedy for a word that is not known: the one it probably means, or all there are."""
-    words = list(known)
+    words, word = list(known), str(word)
     by_lower = {candidate.lower(): candidate for candidate in words}
     near = difflib.get_close_matches(short(word).lower(), by_lower, n=1, cutoff=0.5)
     if near:

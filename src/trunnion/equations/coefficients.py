@@ -165,6 +165,8 @@ def assemble(line: Driveline) -> Assembly:
 
     Lines do not change, so the last few are kept: what is asked of a line is mostly asked of it again.
     """
+    if not isinstance(line, Driveline):
+        raise InputError("is no driveline", key="line", value=line, remedy='tn.load("line.toml"), say')
     for known in tuple(_RECENT):
         if known.line is line:
             return known

@@ -355,10 +355,12 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
 
     Raises
     ------
-    InputError : a second prescribed speed; what ``assemble`` refuses.
+    InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
     assembly = line if isinstance(line, Assembly) else assemble(line)
     refuse_second_speed(assembly)
+    if not assembly.topology.compliances:
+        raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     return LineSystem(assembly, float(speed))
 
 

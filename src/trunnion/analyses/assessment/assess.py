@@ -18,6 +18,7 @@ from trunnion.analyses.assessment.ship_shafts import ship_shafts
 from trunnion.analyses.assessment.subject import POINTS, Case, Subject, cases_of
 from trunnion.analyses.assessment.uniformity import uniformity
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
+from trunnion.driveline.arguments import numbers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.errors import InputError
@@ -90,7 +91,7 @@ def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, 
     if speeds is None:
         one = operating_speed(line, None)
         return one, one, one
-    ends = tuple(speeds)
+    ends = tuple(numbers(speeds, "speeds", "speeds=(tn.rpm(300), tn.rpm(2400)), say").tolist())
     if len(ends) != 2 or not 0 <= ends[0] <= ends[1] or not 0 < ends[1] < float("inf"):
         remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"
         raise InputError("must be a lowest and a highest speed", key="speeds", value=speeds, remedy=remedy)

@@ -136,7 +136,7 @@ class Chain:
         InputError : no such element, or several branches leave behind it.
         """
         ends = {self.steps[i].name: i for i in self.ends}
-        if name in ends:
+        if isinstance(name, str) and name in ends:
             return ends[name]
         if name not in self.line.names:
             raise InputError("is not an element of this driveline", key=key, value=name, remedy=nearest(name, ends))

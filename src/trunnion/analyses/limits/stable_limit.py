@@ -24,6 +24,7 @@ from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, tur
 from trunnion.analyses.tongues.rows import Row, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.analyses.tongues.windows import StableWindows, stable_windows
+from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter
@@ -79,9 +80,12 @@ def stable_limit(
     >>> print(found.sentence)
     Stable at 1.60191 rad/s up to angle of HookeJoint 1 17.1887°, set at 1.60191 rad/s.
     """
-    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if speed.ndim != 1 or not len(speed) or not np.all(np.isfinite(speed)) or not np.all(speed > 0):
-        raise InputError("must be positive numbers", key="speeds", remedy="tn.rpm(np.linspace(300, 3000, 200))")
+    remedy = "tn.rpm(np.linspace(300, 3000, 200))"
+    speed = numbers(speeds, "speeds", remedy)
+    if not np.all(np.isfinite(speed)) or not np.all(speed > 0):
+        raise InputError("must be positive numbers", key="speeds", remedy=remedy)
+    if not 0 < one_number(tolerance, "tolerance", "1e-11, say") < 1:
+        raise InputError("must lie between 0 and 1", key="tolerance", value=tolerance, remedy="1e-11, say")
     if isinstance(scan, bool) or not isinstance(scan, int | np.integer) or scan < 2:
         raise InputError("must be a whole number of steps, 2 or more", key="scan", value=scan)
     require_pixels(len(speed), int(scan) + 1)

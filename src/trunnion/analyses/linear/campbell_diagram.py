@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
@@ -238,13 +239,13 @@ def campbell_diagram(
     if load_case is not None:
         line = (line.line if isinstance(line, Assembly) else line).with_load(load_case)
     assembly = line if isinstance(line, Assembly) else assemble(line)
-    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if speed.ndim != 1 or len(speed) < 2 or not np.all(np.isfinite(speed)) or not np.all(np.diff(speed) > 0):
-        remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 101)"
+    remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 101)"
+    speed = numbers(speeds, "speeds", remedy)
+    if len(speed) < 2 or not np.all(np.isfinite(speed)) or not np.all(np.diff(speed) > 0):
         raise InputError("must be two or more, ascending", key="speeds", remedy=remedy)
     if not speed[0] >= 0:
         raise InputError("must not be negative", key="speeds", value=speed[0], remedy="start at 0 or above")
-    if not 0 < margin < 1:
+    if not 0 < one_number(margin, "margin", "0.1 for ten per cent") < 1:
         raise InputError("must lie between 0 and 1", key="margin", value=margin, remedy="0.1 for ten per cent")
     values, shapes = loaded_modes(assembly, speed)
     frequency = values.imag

@@ -28,6 +28,7 @@ from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.orbit_result import speed_in_words
 from trunnion.analyses.orders.response import without_excitation
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -186,6 +187,8 @@ def stability(
     InputError : no speed; a line without inertia, period or steady base motion.
     ComputationError : the integration did not settle.
     """
+    if not 0 < one_number(tolerance, "tolerance", "1e-10, say") < 1:
+        raise InputError("must lie between 0 and 1", key="tolerance", value=tolerance, remedy="1e-10, say")
     if isinstance(line, PeriodicLinearSystem):
         if speed is not None:
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)

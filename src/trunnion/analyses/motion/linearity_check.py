@@ -20,6 +20,7 @@ from trunnion.analyses.orbits.periodic_orbit import TOLERANCE
 from trunnion.analyses.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -74,7 +75,7 @@ def linearity_check(
     >>> check.holds, bool(check.departure < 1e-3)
     (True, True)
     """
-    if not 0 < allowed < 1:
+    if not 0 < one_number(allowed, "allowed", "0.05 is 5 %") < 1:
         raise InputError("must be between 0 and 1", key="allowed", value=float(allowed), remedy="0.05 is 5 %")
     loaded = line if load_case is None else line.with_load(load_case)
     clutches = [name for name, e in zip(loaded.names, loaded.elements, strict=True) if isinstance(e, Clutch)]

@@ -30,6 +30,7 @@ from trunnion.analyses.motion.simulate import LineSimulation, simulate_line
 from trunnion.analyses.orbits.free_orbit import closes, kept_speed_orbit
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
@@ -254,6 +255,8 @@ def run_up(
         starts free without a drive_share; more than 20 000 turns.
     """
     _check(first, last, acceleration)
+    if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
+        raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)
     prepared = line_system(line, first)
     require_share(prepared.assembly)
     length = _ramp(prepared.assembly, first, last, acceleration, ramp)
@@ -304,7 +307,7 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
 
 def _check(first: float, last: float, acceleration: float) -> None:
     for key, value in (("first", first), ("last", last), ("acceleration", acceleration)):
-        if not (np.isfinite(value) and value > 0):
+        if not 0 < one_number(value, key, "tn.rpm(500), say") < np.inf:
             raise InputError(
                 "must be positive", element="run_up", key=key, value=float(value), remedy="tn.rpm(500), say"
             )
@@ -325,7 +328,7 @@ def _ramp(assembly: Assembly, first: float, last: float, acceleration: float, as
     if asked is None:
         slow = [w for w in natural_frequencies(assembly).frequency if w > 0]
         return min(RAMP_PERIODS * 2 * np.pi / float(min(slow)), longest) if slow else 0.0
-    if not 0 <= asked < 2 * longest:
+    if not 0 <= one_number(asked, "ramp", "2.0 seconds, say") < 2 * longest:
         raise InputError(
             "does not fit in the run", element="run_up", key="ramp", value=float(asked),
             remedy=f"give 0 to {2 * longest:.4g} s, or leave it out",

@@ -24,6 +24,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.stable_speeds import verdicts_at
+from trunnion.driveline.arguments import numbers
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -126,18 +127,19 @@ def _assembled(line: Driveline | Assembly, load_case: str | None) -> Assembly:
 
 
 def _checked_speeds(speeds: ArrayLike) -> Array:
-    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
-        raise InputError(
-            "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
-        )
+    remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+    speed = numbers(speeds, "speeds", remedy)
+    if not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
+        raise InputError("must be positive and finite", key="speeds", remedy=remedy)
     return speed
 
 
 def _checked_orders(orders: Iterable[float]) -> Array:
-    wanted = np.atleast_1d(np.asarray(list(orders) if isinstance(orders, Iterable) else orders, dtype=float))
-    if not len(wanted) or not (np.all(np.isfinite(wanted)) and np.all(wanted > 0)):
-        raise InputError("must be positive and finite", key="orders", remedy="orders=[0.5, 1, 2], say")
+    remedy = "orders=[0.5, 1, 2], say"
+    given = list(orders) if isinstance(orders, Iterable) and not isinstance(orders, str) else orders
+    wanted = numbers(given, "orders", remedy)  # type: ignore[arg-type]
+    if not (np.all(np.isfinite(wanted)) and np.all(wanted > 0)):
+        raise InputError("must be positive and finite", key="orders", remedy=remedy)
     return np.unique(wanted)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.driveline.arguments import several
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, Columns, PackedLine, Parameter
 from trunnion.equations.aligned import aligned_matrices, frequencies
@@ -47,9 +48,8 @@ def directions_of(assembly: Assembly, parameters: Iterable[str | Parameter] | No
     InputError : no such parameter; the speed, which belongs to the analysis.
     """
     packed = assembly.packed
-    if isinstance(parameters, str | Parameter):
-        parameters = (parameters,)
-    every = tuple(_stated(packed)) if parameters is None else tuple(parameters)
+    given = (parameters,) if isinstance(parameters, Parameter) else parameters
+    every = tuple(_stated(packed)) if given is None else several(given, "parameters", '["Shaft 1.stiffness"], say')
     if not every:
         raise InputError("names no parameter", key="parameters", remedy='parameters=["Shaft 1.stiffness"], say')
     found = []

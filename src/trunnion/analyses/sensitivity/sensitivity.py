@@ -28,6 +28,7 @@ from trunnion.analyses.sensitivity.result import (
 from trunnion.analyses.sensitivity.tips import tip_slopes
 from trunnion.analyses.sensitivity.torques import own_growth, slopes, torques
 from trunnion.analyses.tongues.result import Tongues
+from trunnion.driveline.arguments import numbers, several
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.parameters import Parameter
@@ -113,6 +114,8 @@ def sensitivity(
                 raise
             refusals.append(error)
     if tips is not None:
+        if not isinstance(tips, Tongues):
+            raise InputError("are no tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
         rows += _tips(question, tips)
     if not rows and refusals:
         raise refusals[0]
@@ -159,7 +162,7 @@ def _tell_part(progress: Callable[[float], None] | None, part: int, parts: int, 
 
 
 def _kinds(of: Iterable[str]) -> tuple[str, ...]:
-    asked = (of,) if isinstance(of, str) else tuple(of)
+    asked = several(of, "of", f"use {', '.join(KINDS)}")
     for one in asked:
         if one not in KINDS:
             raise InputError("is nothing to differentiate", key="of", value=one, remedy=f"use {', '.join(KINDS)}")
@@ -172,9 +175,7 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
         if operation is None or (operation.speed is None and not operation.speed_range):
             return np.zeros(0)
         return np.array([operation.speed] if operation.speed is not None else operation.speed_range, dtype=float)
-    at = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if at.ndim != 1 or not len(at):
-        raise InputError("must be a speed or several", key="speeds", value=speeds, remedy="tn.rpm(1500)")
+    at = numbers(speeds, "speeds", "tn.rpm(1500)")
     return np.array([operating_speed(line, float(one)) for one in at])
 
 
@@ -299,7 +300,7 @@ def _chosen(every: tuple[Check, ...], names: Iterable[str] | None) -> list[Check
         return judged[:MOST_CHECKS]
     known = {check.name: check for check in judged}
     chosen = []
-    for name in (names,) if isinstance(names, str) else names:
+    for name in several(names, "checks", 'checks=["uniformity"], say'):
         if name not in known:
             problem = "is not judged" if any(c.name == name for c in every) else "is not a check of this line"
             remedy = f"there are {', '.join(known)}" if known else "nothing is judged; state limits"

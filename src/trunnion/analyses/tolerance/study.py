@@ -20,6 +20,7 @@ from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
+from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -163,14 +164,16 @@ def tolerance_study(
     InputError : see ``read_tolerances`` and ``stability_chart``; speeds that are not positive; fewer than 256 samples.
     """
     description = line.line if isinstance(line, Assembly) else line
-    at = np.atleast_1d(np.asarray(operating_speed(description, None) if speeds is None else speeds, dtype=float))
-    if at.ndim != 1 or not len(at) or not np.all(np.isfinite(at)) or not np.all(at > 0):
+    at = numbers(operating_speed(description, None) if speeds is None else speeds, "speeds", "tn.rpm(1500)")
+    if not np.all(np.isfinite(at)) or not np.all(at > 0):
         raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
     if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 256:
         raise InputError("must be a whole number, 256 or more", key="samples", value=samples)
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError("must be a whole number, 0 or more", key="seed", value=seed)
     if not isinstance(checks, bool | int | np.integer) or checks < 0:
         raise InputError("must be True, False or a number of lines", key="checks", value=checks)
-    if not 0.5 <= confidence < 1:
+    if not 0.5 <= one_number(confidence, "confidence", "0.95, say") < 1:
         raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
     assembly = line if isinstance(line, Assembly) else assemble(line)
     spreads = read_tolerances(assembly, tolerances)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.tongues import ROWS, tongues
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter
@@ -145,7 +146,7 @@ def stable_windows(
     ------
     InputError : see ``tongues``; a margin outside 0 to 0.9.
     """
-    if not np.isfinite(margin) or not 0 <= margin < 0.9:
+    if not 0 <= one_number(margin, "margin", "0.1 for 10 %") < 0.9:
         raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
     _require_speeds(speeds)
     assembly = line if isinstance(line, Assembly) else assemble(line)
@@ -184,6 +185,8 @@ def minimum_damping(
     """
     if not any(word in damping for word in ("damping", "loss_factor")):
         raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')
+    if not 0 < one_number(maximum, "maximum", "100, say") < np.inf:
+        raise InputError("must be positive and finite", key="maximum", value=maximum, remedy="100, say")
     return stable_windows(
         line, damping, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows, progress=progress
     )  # fmt: skip

@@ -16,6 +16,7 @@ from trunnion.analyses.assessment.remedies.variables import Design
 from trunnion.analyses.assessment.result import verdict_of
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
@@ -94,7 +95,7 @@ margin 1.52 %
 
 
 def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) -> dict[str, float]:
-    if not 0 <= near < 1:
+    if not 0 <= one_number(near, "near", "near=0.1, say") < 1:
         raise InputError("must be at least 0 and below 1", key="near", value=near, remedy="near=0.1, say")
     if asked is None:
         return goals_of(base, near)
