@@ -16,6 +16,7 @@ from trunnion._version import __version__
 
 if TYPE_CHECKING:
     from trunnion.analyses.assessment.assess import assess
+    from trunnion.analyses.assessment.envelope import envelope
     from trunnion.analyses.assessment.remedies.remedies import remedies
     from trunnion.analyses.chaos.bifurcation_diagram import bifurcation_diagram
     from trunnion.analyses.chaos.certify_chaos import certify_chaos
@@ -83,6 +84,7 @@ if TYPE_CHECKING:
         Ratio,
         Ripple,
         RzeppaJoint,
+        Schedule,
         Shaft,
         Slider,
         StiffnessVariation,
@@ -143,6 +145,7 @@ _HOME = {
     "Driveline": "trunnion.driveline",
     "Operation": "trunnion.driveline",
     "LoadCase": "trunnion.driveline",
+    "Schedule": "trunnion.driveline",
     "Limit": "trunnion.driveline",
     "Tolerance": "trunnion.driveline",
     "load": "trunnion.driveline",
@@ -165,6 +168,7 @@ _HOME = {
     "pack": "trunnion.driveline.parameters",
     # analyse
     "assess": "trunnion.analyses.assessment.assess",
+    "envelope": "trunnion.analyses.assessment.envelope",
     "remedies": "trunnion.analyses.assessment.remedies.remedies",
     "campbell_diagram": "trunnion.analyses.linear.campbell_diagram",
     "natural_frequencies": "trunnion.analyses.linear.natural_frequencies",

@@ -36,6 +36,39 @@ def test_tolerance_study(run, here):
     assert shown["parameter"] == ["Shaft 1.stiffness", "Disk 1.inertia"] and 0 <= shown["probability"] <= 1
 
 
+def test_envelope(run, here):
+    (here / "line.toml").write_text(
+        """format = 1
+operation = { speed_range = [100.0, 101.0], schedule = [{ name = "axle", travel = [0, 1], angles = { j = [0, 0.2] } }] }
+[[element]]
+type = "ConstantSpeed"
+[[element]]
+type = "Shaft"
+stiffness = 1e4
+damping = 5
+[[element]]
+type = "Disk"
+inertia = 1
+[[element]]
+type = "HookeJoint"
+name = "j"
+angle = 0.1
+[[element]]
+type = "Shaft"
+stiffness = 1e4
+damping = 5
+[[element]]
+type = "Disk"
+inertia = 1
+""",
+        encoding="utf-8",
+    )
+    done = run("envelope", "line.toml", "--points", "2", "-o", "e.png", "-o", "e.nc")
+    assert done.exit_code == 0 and "at axle 1000 mm" in done.stdout and (here / "e.png").exists()
+    shown = json.loads(run("envelope", "line.toml", "--points", "2", "--json").stdout)
+    assert shown["place"] == ["as stated", "at axle 0 mm", "at axle 1000 mm"]
+
+
 def test_certificate(run, here):
     call = (
         "certify-stability",

@@ -17,6 +17,7 @@ from trunnion.driveline import (
     LoadCase,
     Operation,
     Ratio,
+    Schedule,
     Shaft,
     Tolerance,
     dump,
@@ -46,6 +47,8 @@ def free(**engine):
         ]
     )
 
+
+AXLE = Schedule(name="axle", travel=[0, 1], angles={"joint": [0, 1]})
 
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
@@ -669,6 +672,63 @@ PYTHON = [
         "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
         "Disk 1",
     ),
+    (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
+    (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: goes over nothing", "or speed"),
+    (
+        lambda: Schedule(name="x", travel=[0, 1], speed=[1, 2], angles={"a": [0, 1]}),
+        "schedule x.travel = [0, 1]: goes over travel and speed at once",
+        "or speed",
+    ),
+    (lambda: Schedule(name="x", travel=[0, 1]), "schedule x.angles: lets nothing follow", "loads by element"),
+    (lambda: Schedule(name="x", travel=3), "schedule x.travel = 3: is no list of values", "76 mm"),
+    (lambda: Schedule(name="x", travel=[1, 0]), "schedule x.travel = [1, 0]: does not rise", "lowest first"),
+    (
+        lambda: Schedule(name="x", speed=[0, 9], loads={"a": [0, 1]}),
+        "schedule x.speed = [0, 9]: must be positive",
+        "still",
+    ),
+    (
+        lambda: Schedule(name="x", travel=[0, 1], loads=[1]),
+        "schedule x.loads = [1]: is not a table of lists",
+        "250 N*m",
+    ),
+    (
+        lambda: Schedule(name="x", travel=[0, 1], loads={"a": ["1 kg", 2]}),
+        "schedule x.a = ['1 kg', 2]: kg is not",
+        "N*m",
+    ),
+    (lambda: Schedule(name="x", travel=[0, 1], loads={"a": 5}), "schedule x.a = 5: is no list of values", "250 N*m"),
+    (
+        lambda: Schedule(name="x", travel=[0, 1], loads={"a": [1, 2, 3]}),
+        "schedule x.loads.a: has 3 values for 2 points",
+        "one value for each",
+    ),
+    (lambda: Operation(schedules=[AXLE, AXLE]), "operation.schedule = 'axle': names two schedules", "rename one"),
+    (
+        lambda: line(operation=Operation(schedules=[AXLE])),
+        "schedule axle.joint: is no joint with an angle of this driveline",
+        "there are none",
+    ),
+    (
+        lambda: line(operation=Operation(schedules=[Schedule(name="p", speed=[1, 2], loads={"Dsk 1": [1, 2]})])),
+        "schedule p.Dsk 1: is not a Disk of this driveline",
+        'did you mean "Disk 1"?',
+    ),
+    (
+        lambda: line(
+            ConstantSpeed(),
+            Shaft(stiffness=1e4),
+            Disk(inertia=1),
+            HookeJoint(angle=0.1, name="joint"),
+            Shaft(stiffness=1e4),
+            Disk(inertia=1),
+            operation=Operation(schedules=[Schedule(name="p", travel=[0, 1], angles={"joint": [0, 2]})]),
+        ),
+        "schedule p, joint.angle = 2",
+        "deg",
+    ),
+    (lambda: line().at_schedule("axle", 0.0), "schedule = 'axle': is not a schedule", "there are none"),
+    (lambda: tn.envelope(line(), points=1), "points = 1: must be a whole number, 2 or more", ""),
     (lambda: starter("tow-shaft"), "new = 'tow-shaft': is not a starter", 'did you mean "two-shaft"?'),
 ]
 
@@ -837,6 +897,17 @@ FILES = [
         HEAD + '[[operation.load_case]]\nname = "a"\nloads = { "Disk 2" = 1 }\n' + DISK,
         "bad.toml: load case a.Disk 2 = 1: is not a Disk of this driveline",
         'did you mean "Disk 1"?',
+    ),
+    (
+        HEAD + "[operation.schedule]\n" + DISK,
+        "bad.toml: operation.schedule: is a single table",
+        "double brackets",
+    ),
+    (HEAD + "[operation]\nschedule = [1]\n" + DISK, "bad.toml: schedule 1 = 1: is not a table", "schedule]]"),
+    (
+        HEAD + '[[operation.schedule]]\ntravel = [0, 1]\nloads = { "Disk 1" = [1, 2] }\n' + DISK,
+        "bad.toml: schedule 1.name: is missing",
+        "axle travel",
     ),
     (
         HEAD + "damping_ratio = 0.02\n" + SHAFT + "damping = 3\n",

@@ -35,6 +35,12 @@ def limited(line: tn.Driveline) -> tn.Driveline:
     return line.model_copy(update={"limits": limits})
 
 
+def scheduled(line: tn.Driveline) -> tn.Driveline:
+    """With a schedule of the angle of a joint that all lines have."""
+    schedule = tn.Schedule(name="travel", travel=[0.0, 0.1], angles={"joint 2": [0.1, 0.4]})
+    return line.model_copy(update={"operation": tn.Operation(schedules=[schedule])})
+
+
 RUN = {
     "natural_frequencies": tn.natural_frequencies,
     "resonance_speeds": tn.resonance_speeds,
@@ -49,6 +55,7 @@ RUN = {
     "tolerance_study": lambda line: tn.tolerance_study(line, {"hub.inertia": 0.1}, SPEED, samples=256),
     "campbell_diagram": lambda line: tn.campbell_diagram(line, [20.0, 100.0, 180.0]),
     "assess": lambda line: tn.assess(limited(line), (SPEED, SPEED)),
+    "envelope": lambda line: tn.envelope(scheduled(limited(line)), (SPEED, SPEED), points=2),
     "certify_stability": lambda line: tn.certify_stability(line, {"hub.inertia": 1e-4}, (100.0, 100.001), most_boxes=1),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
@@ -112,6 +119,7 @@ QUICK = {
     **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
     "certify_stability": ("load torque", "stiffness", "ratio", "prescribed far end"),
     "assess": tuple(key for key in feature_lines.CHANGES if key != "mesh-stiffness variation"),
+    "envelope": ("load torque", "Hooke's joint", "prescribed far end", "dry friction"),
     "periodic_response": ("load torque", "prescribed far end"),
     "periodic_branch": ("viscous load", "free start"),
     "harmonic_balance": ("excitation by order", "free start"),
@@ -251,7 +259,7 @@ def test_every_analysis_has_a_row() -> None:
 
 def test_every_field_belongs_to_a_feature() -> None:
     models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation, tn.Ripple, tn.Slider]
-    models += [tn.Driveline, tn.Limit, Operation, LoadCase]
+    models += [tn.Driveline, tn.Limit, Operation, LoadCase, tn.Schedule]
     common = set(Element.model_fields)
     fields = {
         f"{model.__name__}.{key}"

@@ -23,6 +23,7 @@ from trunnion.driveline import (
     LoadCase,
     Operation,
     Ratio,
+    Schedule,
     Shaft,
     Tolerance,
     dump,
@@ -102,12 +103,16 @@ def drivelines(draw):
         if draw(st.booleans()):
             cases.append(LoadCase(name="none", loads={}))
         low = draw(st.just(0.0) | st.floats(1e-9, 100))
+        over, first = draw(st.sampled_from(["travel", "speed"])), draw(st.floats(1e-9, 10))
+        pull = {n: [draw(torque), draw(torque)] for n in loaded}
+        schedules = [Schedule(name="pull", **{over: [first, first + 1.0]}, loads=pull)] if pull else []
         rest["operation"] = Operation(
             speed=draw(st.none() | positive),
             speed_range=draw(st.none() | st.just((low, low + 50.0))),
             angle_range=draw(st.none() | st.just((0.0, math.radians(15)))),
             speed_unit=draw(st.sampled_from(["rpm", "Hz", "rad/s"])),
             load_cases=cases if draw(st.booleans()) else (),
+            schedules=schedules if draw(st.booleans()) else (),
         )
     sprung = [n for n, e in zip(line.names, elements, strict=True) if isinstance(e, Shaft)]
     if sprung and draw(st.booleans()):

@@ -252,6 +252,12 @@ TABLE: dict[str, Row] = {
         not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
         inert=_EVEN,
     ),
+    "envelope": _row(
+        refused=_RUBBING,
+        said=_BY_PLACE,
+        not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
+        inert=_EVEN,
+    ),
     "certify_stability": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(

@@ -23,6 +23,7 @@ from trunnion.cli.assess import assess, campbell_diagram
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.compare import compare
 from trunnion.cli.crash import crash_line
+from trunnion.cli.envelope import envelope
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import minimum_damping, stable_windows, tongues
 from trunnion.cli.linearity import linearity_check
@@ -179,6 +180,7 @@ def _root(
 app.command("analyze")(study.analyze)
 app.command("assess")(assess)
 app.command("campbell-diagram")(campbell_diagram)
+app.command("envelope")(envelope)
 app.command("stability")(study.stability)
 app.command("stability-chart")(study.stability_chart)
 app.command("natural-frequencies")(study.natural_frequencies)

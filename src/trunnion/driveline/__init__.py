@@ -14,6 +14,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
+from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
@@ -37,6 +38,7 @@ __all__ = [
     "Coupling",
     "PiecewiseShaft",
     "Ratio",
+    "Schedule",
     "Shaft",
     "StiffnessVariation",
     "Tolerance",

@@ -102,7 +102,8 @@ class Driveline(BaseModel):
         wrong = [*_wrong_names(self.names), *_wrong_parents(self)]
         if not wrong:
             wrong += _wrong_ends(self, self.parents)
-        wrong += [*_wrong_damping(self), *_wrong_loads(self), *_wrong_drives(self)]
+        wrong += [*_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
+        wrong += _wrong_drives(self)
         wrong += wrong_limits(self.limits, self.names, self.elements)
         wrong += wrong_tolerances(self.tolerances, self.names, self.elements)
         if wrong:
@@ -151,6 +152,10 @@ class Driveline(BaseModel):
             for e, n in zip(self.elements, self.names, strict=True)
         ]
         return self._but(elements=changed)
+
+    def at_schedule(self, name: str, value: float) -> Driveline:
+        """The same line with the angles and loads of one of its schedules at a travel [m] or a speed [rad/s]."""
+        return self.replace_all((self.operation or Operation()).schedule(name).changes_at(value))
 
     def replace(self, name: str, **changes: Any) -> Driveline:
         """The same line with fields of the element called `name` changed; None takes a field away.
@@ -297,6 +302,24 @@ def _wrong_loads(line: Driveline) -> Iterator[InputError]:
                     problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
                 where = f"load case {case.name}"
                 yield InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
+
+
+def _wrong_schedules(line: Driveline) -> Iterator[InputError]:
+    having = {"angle": "no joint with an angle", "load_torque": "not a Disk"}
+    for schedule in line.operation.schedules if line.operation else ():
+        for name, key in schedule.elements:
+            known = [n for n, e in zip(line.names, line.elements, strict=True) if key in type(e).model_fields]
+            if name not in known:
+                problem = f"is {having[key]} of this driveline"
+                yield InputError(problem, element=f"schedule {schedule.name}", key=name, remedy=nearest(name, known))
+                continue
+            for point in schedule.points:
+                try:
+                    old = line.elements[line.index(name)]
+                    type(old)(**{**old.stated, **schedule.changes_at(point)[name]})
+                except InputError as error:
+                    yield about(error, f"schedule {schedule.name}, {name}")
+                    break
 
 
 def _wrong_drives(line: Driveline) -> Iterator[InputError]:

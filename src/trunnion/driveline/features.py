@@ -217,6 +217,12 @@ NOT_FEATURES = {
     "Operation.angle_range": "the default range of charts in reports",
     "Operation.speed_unit": "how speeds are read and printed",
     "Operation.load_cases": "line.with_load(case) puts a case's torques into the line",
+    "Operation.schedules": "line.at_schedule(name, value) puts a point's angles and torques into the line",
+    "Schedule.name": "a label",
+    **dict.fromkeys(
+        (f"Schedule.{key}" for key in ("travel", "speed", "angles", "loads")),
+        "line.at_schedule(name, value) puts them into angle and load_torque; envelope judges every point",
+    ),
     "LoadCase.name": "a label",
     "LoadCase.loads": "line.with_load(case) puts them into load_torque",
 }

@@ -39,6 +39,7 @@ from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
 from trunnion.driveline.refusals import about, nearest
+from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, problems_of, short
 from trunnion.writing import written_whole
@@ -282,33 +283,36 @@ def _operation(table: Any) -> Operation:
     if not isinstance(table, dict):
         raise InputError("is not a table", key="operation", value=table, remedy="write [operation] on its own line")
     data = dict(table)
-    if "load_cases" in data:  # the name in Python; a file repeats [[operation.load_case]]
-        raise InputError("unknown key", element="operation", key="load_cases", remedy='did you mean "load_case"?')
-    cases = data.pop("load_case", [])
-    if not isinstance(cases, list):
-        remedy = "write [[operation.load_case]] with double brackets"
-        raise InputError("is a single table", element="operation", key="load_case", remedy=remedy)
-    made: list[LoadCase] = []
     wrong: list[InputError] = []
-    for place, case in enumerate(cases, start=1):
-        try:
-            made.append(_load_case(case, place))
-        except InputError as error:
-            wrong += error.problems
-    wrong += problems_of([lambda: Operation(**data, load_cases=[] if wrong else made)])
+    made: dict[str, list[Any]] = {}
+    for key, make in (("load_case", LoadCase), ("schedule", Schedule)):
+        many = f"{key}s"
+        if many in data:  # the name in Python; a file repeats [[operation.load_case]]
+            raise InputError("unknown key", element="operation", key=many, remedy=f'did you mean "{key}"?')
+        tables = data.pop(key, [])
+        if not isinstance(tables, list):
+            remedy = f"write [[operation.{key}]] with double brackets"
+            raise InputError("is a single table", element="operation", key=key, remedy=remedy)
+        made[many] = []
+        for place, one in enumerate(tables, start=1):
+            try:
+                made[many].append(_named(one, place, key, make))
+            except InputError as error:
+                wrong += error.problems
+    wrong += problems_of([lambda: Operation(**data, **({} if wrong else made))])
     if wrong:
         raise InputError.together(wrong)
-    return Operation(**data, load_cases=made)
+    return Operation(**data, **made)
 
 
-def _load_case(case: Any, place: int) -> LoadCase:
-    label = f"load case {place}"
-    if not isinstance(case, dict):
-        raise InputError("is not a table", element=label, value=case, remedy="write [[operation.load_case]]")
+def _named(table: Any, place: int, key: str, make: Callable[..., Made]) -> Made:
+    label = f"{key.replace('_', ' ')} {place}"
+    if not isinstance(table, dict):
+        raise InputError("is not a table", element=label, value=table, remedy=f"write [[operation.{key}]]")
     try:
-        return LoadCase(**case)
+        return make(**table)
     except InputError as error:
-        if is_name(case.get("name")):
+        if is_name(table.get("name")):
             raise
         raise about(error, label) from None
 
@@ -396,6 +400,14 @@ def _operation_blocks(operation: Operation) -> list[str]:
     for case in operation.load_cases:
         blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
         blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
+    for one in operation.schedules:
+        unit = operation.speed_unit if one.over == "speed" else None
+        points = [written(value, OVER[one.over], unit) for value in one.points]
+        blocks.append(_block("[[operation.schedule]]", {"name": one.name, one.over: points}))
+        for key, kind in FOLLOWING.items():
+            columns = {n: [written(v, kind) for v in numbers] for n, numbers in getattr(one, key).items()}
+            if columns:
+                blocks.append(_block(f"[operation.schedule.{key}]", columns))
     return blocks
 
 

@@ -29,6 +29,7 @@ from trunnion.driveline.quantities import (
     parse,
 )
 from trunnion.driveline.refusals import nearest, refuse
+from trunnion.driveline.schedules import Schedule
 from trunnion.errors import InputError
 
 SPEED_UNITS = ("rpm", "Hz", "rad/s")
@@ -119,6 +120,7 @@ class Operation(BaseModel):
     angle_range : smallest and largest joint angle of interest [rad].
     speed_unit : unit that speeds are printed in: "rpm", "Hz" or "rad/s".
     load_cases : named sets of load torques.
+    schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -130,6 +132,7 @@ class Operation(BaseModel):
         default="rpm", description="unit that speeds are printed in"
     )
     load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
+    schedules: tuple[Schedule, ...] = Field(default=(), description="angles over travel and torques over speed")
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -152,10 +155,14 @@ class Operation(BaseModel):
         if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
             remedy = 'write ["0 deg", "15 deg"], say'
             wrong.append(InputError("must stay below 90 deg", key="angle_range", remedy=remedy))
-        for name, count in Counter(case.name for case in self.load_cases).items():
-            if count > 1:
-                problem = "names two load cases" if count == 2 else f"names {count} load cases"
-                wrong.append(InputError(problem, key="load_case", value=name, remedy="rename one of them"))
+        for key, what, named in (
+            ("load_case", "load cases", self.load_cases),
+            ("schedule", "schedules", self.schedules),
+        ):
+            for name, count in Counter(one.name for one in named).items():
+                if count > 1:
+                    problem = f"names two {what}" if count == 2 else f"names {count} {what}"
+                    wrong.append(InputError(problem, key=key, value=name, remedy="rename one of them"))
         if wrong:
             raise InputError.together(wrong)
         return self
@@ -167,3 +174,11 @@ class Operation(BaseModel):
                 return case
         remedy = nearest(name, [case.name for case in self.load_cases])
         raise InputError("is not a load case of this driveline", key="load_case", value=name, remedy=remedy)
+
+    def schedule(self, name: str) -> Schedule:
+        """The schedule called `name`; InputError with the nearest name where there is none."""
+        for one in self.schedules:
+            if one.name == name:
+                return one
+        remedy = nearest(name, [one.name for one in self.schedules])
+        raise InputError("is not a schedule of this driveline", key="schedule", value=name, remedy=remedy)

@@ -15,6 +15,7 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, Kind, json_schema_of
+from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
@@ -64,12 +65,13 @@ def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of a driveline file read as TOML; quantities carry "unit", their SI unit."""
     definitions = {name: _element(name) for name in KINDS}
     operation = _model(Operation)
-    cases = operation["properties"].pop("load_cases")
-    operation["properties"]["load_case"] = {
-        "type": "array",
-        "items": {"$ref": "#/$defs/LoadCase"},
-        "description": cases["description"],
-    }
+    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule")):
+        stated = operation["properties"].pop(many)
+        operation["properties"][many[:-1]] = {
+            "type": "array",
+            "items": {"$ref": f"#/$defs/{name}"},
+            "description": stated["description"],
+        }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Trunnion driveline",
@@ -115,6 +117,7 @@ def json_schema() -> dict[str, Any]:
             **definitions,
             "Operation": operation,
             "LoadCase": _model(LoadCase),
+            "Schedule": _model(Schedule),
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),

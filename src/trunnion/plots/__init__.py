@@ -9,6 +9,7 @@ DRAWINGS = {
     "StabilityChart.plot": "trunnion.plots.stability_chart:draw",
     "StableLimit.plot": "trunnion.plots.stable_limit:draw",
     "StableWindows.plot": "trunnion.plots.tongues:draw_windows",
+    "Envelope.plot": "trunnion.plots.envelope:draw",
     "Comparison.plot": "trunnion.plots.comparison:draw",
     "Optimum.plot": "trunnion.plots.optimum:draw",
     "Sensitivities.plot": "trunnion.plots.sensitivity:draw",

@@ -1,0 +1,238 @@
+"""Every load case and every point of the schedules: the worst of each check, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.assessment.assess import assess
+from trunnion.analyses.assessment.check import Check, Status, in_order, worst
+from trunnion.analyses.assessment.result import Assessment, verdict_of
+from trunnion.analyses.limits.stable_limit import HIGHEST, stable_limit
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operation import Operation
+from trunnion.driveline.schedules import Schedule
+from trunnion.equations.coefficients import assemble
+from trunnion.errors import InputError
+from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.drawing import drawing
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+POINTS = 5
+LIMIT_SPEEDS = 60
+"""Speeds of the range at which a stable limit is solved for."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """One point of a schedule ("" for the line as stated), over "travel" [m] or "speed" [rad/s]; what it is called, and
+    the line there."""
+
+    schedule: str
+    over: str
+    value: float
+    label: str
+    line: Driveline
+
+
+@dataclass(frozen=True, repr=False)
+class Envelope(Result):
+    """A line judged under its load cases at every point of its schedules.
+
+    places: points of schedules, the line as stated first; checks: the worst of each, the binding one first, load case
+    within; where: the place of each; margin (places, checks); limit (places,): largest stable value of ``parameter``,
+    NaN where none was asked for; verdict, low, high, unit: as of ``Assessment``.
+    """
+
+    verdict: Status
+    places: tuple[Place, ...]
+    checks: tuple[Check, ...]
+    where: tuple[int, ...]
+    margin: Array
+    parameter: str
+    limit: Array
+    parameter_unit: str
+    low: float
+    high: float
+    unit: str
+    findings: tuple[Finding, ...] = ()
+
+    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+        """Margins of the worst checks along a schedule; see ``plots.envelope.draw``."""
+        return drawing(self, "plot")(self, axes, **options)
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one sentence, and where the worst stands."""
+        bind = next(iter(self.checks), None)
+        if bind is None or bind.status not in (Status.EXCEEDED, Status.SATISFIED):
+            return f"{self.verdict}: nothing could be judged"
+        place = self.places[self.where[0]].label
+        return f"{self.verdict} over {len(self.places)} places: {bind.name} binds {place}: {bind.because}"
+
+    def declared(self) -> Iterator[Held]:
+        """Margins over places and checks, and the stable limit over places."""
+        yield axis("place", [p.label for p in self.places])
+        yield axis("check", [c.name for c in self.checks])
+        yield over("place", "schedule", [p.schedule for p in self.places])
+        yield over("place", "schedule_value", [p.value for p in self.places], about="travel [m] or speed [rad/s]")
+        yield over("place check", "margin", self.margin, "1", "distance to the limit over the limit")
+        yield over("check", "status", [str(c.status) for c in self.checks])
+        yield over("check", "worst_place", [self.places[k].label for k in self.where])
+        yield over("check", "load_case", [c.load_case for c in self.checks])
+        yield over("check", "value", [c.value for c in self.checks], about="in the unit of its check")
+        yield over("check", "speed", [c.speed for c in self.checks], "rad/s", "input speed where it binds")
+        yield over("check", "because", [c.because for c in self.checks])
+        yield over("place", "stable_limit", self.limit, self.parameter_unit, f"largest stable {self.parameter}")
+        yield remark("verdict", str(self.verdict))
+        yield remark("sentence", self.sentence)
+        yield remark("parameter", self.parameter)
+        yield remark("findings", [str(f) for f in self.findings])
+
+    def __str__(self) -> str:
+        span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
+        rows = [f"envelope from {span}: {self.sentence}"]
+        for check, k in zip(self.checks, self.where, strict=True):
+            judged = check.status in (Status.SATISFIED, Status.EXCEEDED)
+            where = f" {self.places[k].label}" if judged and len(self.places) > 1 else ""
+            rows.append(f"  {check.status}: {check.name}{where}: {check.because}")
+        if self.parameter and np.isfinite(self.limit).any():
+            k = int(np.nanargmin(self.limit))
+            rows.append(f"  stable up to {self.parameter} = {self.limit[k]:.6g}, least {self.places[k].label}")
+        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+
+
+def envelope(
+    line: Driveline,
+    speeds: tuple[float, float] | None = None,
+    *,
+    points: int = POINTS,
+    parameter: str = "",
+    low: float = 0.0,
+    high: float = HIGHEST,
+    unit: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Envelope:
+    """The worst of every check of ``assess`` over all load cases and all points of the schedules, and where it stands.
+
+    Parameters
+    ----------
+    line : with ``operation.schedules`` and load cases; with neither it is ``assess``.
+    speeds : lowest and highest input speed [rad/s]; default the description's. A schedule over speed is judged at its
+        own speeds within.
+    points : of each schedule at least, evenly from end to end, beside the points that it states.
+    parameter, low, high : also asks for the largest stable value of a parameter (as of ``stable_limit``) at every place
+        and under every load case, over the range of speeds.
+    unit : of speeds in sentences; default the one of the description.
+
+    Raises
+    ------
+    InputError : as ``assess``; a number of points below 2; a line at a point of a schedule that is refused.
+    """
+    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 2:
+        raise InputError("must be a whole number, 2 or more", key="points", value=points)
+    tell = progress or (lambda share: None)
+    stated = _stripped(line, line.operation, {})
+    first = assess(stated, speeds, unit=unit)
+    shown = unit or speed_unit(line)
+    places = [Place("", "", nan, "as stated", stated)]
+    for schedule in line.operation.schedules if line.operation else ():
+        places += _places(line, schedule, int(points), (first.low, first.high), shown)
+    judged, limits = [first], []
+    for k, place in enumerate(places):
+        if k:
+            judged.append(assess(place.line, _span(place, first), unit=unit))
+        limits.append(_limit(place, parameter, (low, high), _span(place, first)))
+        tell((k + 1) / len(places))
+    return _together(places, judged, limits, parameter, shown)
+
+
+def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, dict[str, float]]) -> Driveline:
+    """The line with numbers changed and without its schedules; without load cases too where loads are changed."""
+    if operation is None:
+        return line
+    loaded = any("load_torque" in fields for fields in changes.values())
+    left = {"schedules": (), **({"load_cases": ()} if loaded else {})}
+    return line.replace_all(changes, operation=operation.model_copy(update=left))
+
+
+def _places(line: Driveline, schedule: Schedule, points: int, span: tuple[float, float], unit: str) -> Iterator[Place]:
+    for value in schedule.between(points):
+        at_speed = schedule.over == "speed"
+        if at_speed and not span[0] <= value <= span[1]:
+            continue
+        shown = show_speed(value, unit) if at_speed else f"{1e3 * value:.4g} mm"
+        changed = _stripped(line, line.operation, schedule.changes_at(value))
+        yield Place(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
+
+
+def _span(place: Place, first: Assessment) -> tuple[float, float]:
+    """The speeds that a place is judged at: its own where the schedule goes over speed."""
+    return (place.value, place.value) if place.over == "speed" else (first.low, first.high)
+
+
+def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[float, float]) -> float:
+    """The least over load cases and speeds of the largest stable value."""
+    if not parameter:
+        return nan
+    operation = place.line.operation
+    cases = [place.line, *(place.line.with_load(c.name) for c in (operation.load_cases if operation else ()))]
+    speeds = np.unique(np.linspace(*span, LIMIT_SPEEDS))
+    speeds = speeds[speeds > 0]
+    found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1]).limit for case in cases]
+    return float(np.nanmin(np.concatenate(found)))
+
+
+def _together(
+    places: list[Place],
+    judged: list[Assessment],
+    limits: list[float],
+    parameter: str,
+    unit: str,
+) -> Envelope:
+    every = [check for one in judged for check in one.checks]
+    checks = in_order(worst(every))
+    verdict = verdict_of(checks, judged[0].speed)[0]
+    if any(one.verdict is Status.EXCEEDED for one in judged):
+        verdict = Status.EXCEEDED
+    where = tuple(next(k for k, one in enumerate(judged) if check in one.checks) for check in checks)
+    known = [{check.name: check.margin for check in one.checks} for one in judged]
+    margin = np.array([[one.get(check.name, nan) for check in checks] for one in known])
+    findings = [
+        replace(finding, sentence=f"{place.label.capitalize()}: {finding.sentence}") if place.schedule else finding
+        for place, one in zip(places, judged, strict=True)
+        for finding in one.findings
+        if not place.schedule or finding not in judged[0].findings
+    ]
+    if len(places) > 1:
+        said = f"schedules are judged at {len(places) - 1} points; between them nothing is looked at"
+        findings.append(Finding(Gravity.NOTE, said))
+    operation = places[0].line.operation
+    if len(places) == 1 and not (operation and operation.load_cases):
+        said = "the description has no load cases and no schedules: judged as stated alone"
+        findings.append(Finding(Gravity.NOTE, said))
+    return Envelope(
+        verdict=verdict,
+        places=tuple(places),
+        checks=checks,
+        where=where,
+        margin=margin.reshape(len(places), len(checks)),
+        parameter=parameter,
+        limit=np.array(limits),
+        parameter_unit=assemble(places[0].line).packed.resolve(parameter).unit if parameter else "",
+        low=judged[0].low,
+        high=judged[0].high,
+        unit=unit,
+        findings=by_gravity(findings),
+    )

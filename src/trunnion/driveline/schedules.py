@@ -1,0 +1,185 @@
+"""Joint angles over suspension travel, torques over speed: how numbers of a line go together in service.
+
+::
+
+    [[operation.schedule]]
+    name = "axle travel"
+    travel = ["-60 mm", "0 mm", "90 mm"]                    # rising
+    angles = { "joint 2" = ["1 deg", "3 deg", "7 deg"] }    # one value for each travel
+
+    [[operation.schedule]]
+    name = "full throttle"
+    speed = ["800 rpm", "1400 rpm", "2400 rpm"]
+    loads = { "vehicle" = ["5 kN*m", "6.2 kN*m", "4 kN*m"] }
+
+Between the points stated, numbers follow straight lines; beyond them a schedule says nothing. A schedule changes no
+motion by itself; ``envelope`` goes by it, and ``Driveline.at_schedule`` gives the line at one of its points.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
+
+from trunnion.driveline.elements import Name, is_name
+from trunnion.driveline.quantities import ANGLE, LENGTH, SPEED, TORQUE, Kind, json_schema_of, parse
+from trunnion.driveline.refusals import refuse
+from trunnion.errors import InputError
+
+OVER = {"travel": LENGTH, "speed": SPEED}
+FOLLOWING = {"angles": ANGLE, "loads": TORQUE}
+KEYS = {"angles": "angle", "loads": "load_torque"}
+"""Which number of an element follows."""
+
+
+def _list_of(kind: Kind, value: object) -> tuple[float, ...]:
+    remedy = f'write two values or more, as ["{kind.example}", …]'
+    if not isinstance(value, list | tuple) or len(value) < 2:
+        raise InputError("is no list of values", value=value, remedy=remedy)
+    return tuple(parse(one, kind) for one in value)
+
+
+def _rising(kind: Kind) -> tuple[BeforeValidator, WithJsonSchema]:
+    def read(value: Any) -> tuple[float, ...] | None:
+        if value is None:
+            return None
+        found = _list_of(kind, value)
+        if not all(a < b for a, b in zip(found, found[1:], strict=False)):
+            raise InputError("does not rise from value to value", value=value, remedy="put the lowest first")
+        return found
+
+    return BeforeValidator(read), WithJsonSchema({"type": "array", "items": json_schema_of(kind), "minItems": 2})
+
+
+def _columns(kind: Kind, key: str, owner: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    example = f'write {key} = {{ "{owner}" = ["{kind.example}", …] }}'
+
+    def read(value: Any) -> dict[str, tuple[float, ...]]:
+        if not isinstance(value, dict):
+            raise InputError("is not a table of lists", value=value, remedy=example)
+        found, wrong = {}, []
+        for name, numbers in value.items():
+            try:
+                found[str(name)] = _list_of(kind, numbers)
+            except InputError as error:
+                wrong.append(InputError(error.problem, key=str(name), value=numbers, remedy=error.remedy))
+        if wrong:
+            raise InputError.together(wrong)
+        return found
+
+    items = {"type": "array", "items": json_schema_of(kind), "minItems": 2}
+    return BeforeValidator(read), WithJsonSchema({"type": "object", "additionalProperties": items})
+
+
+_READ_TRAVEL, _TRAVEL = _rising(LENGTH)
+_READ_SPEED, _SPEED = _rising(SPEED)
+_READ_ANGLES, _ANGLES = _columns(ANGLE, "angles", "HookeJoint 1")
+_READ_LOADS, _LOADS = _columns(TORQUE, "loads", "Disk 2")
+
+
+class Schedule(BaseModel):
+    """Numbers of elements over suspension travel or over speed.
+
+    Parameters
+    ----------
+    name : what it is called.
+    travel, speed : the points, rising: travel [m] of a suspension, or input speed [rad/s]; one of the two.
+    angles : joint angles [rad] at the points, by the name of the joint.
+    loads : load torques [N m] at the points, by the name of the Disk; positive resists rotation.
+
+    Raises
+    ------
+    InputError : neither or both of travel and speed; nothing that follows; lists of another length.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: Name = Field(description="what the schedule is called")
+    travel: Annotated[tuple[float, ...] | None, _READ_TRAVEL, _TRAVEL] = Field(
+        default=None, description="points of suspension travel, rising"
+    )
+    speed: Annotated[tuple[float, ...] | None, _READ_SPEED, _SPEED] = Field(
+        default=None, description="points of input speed, rising"
+    )
+    angles: Annotated[dict[str, tuple[float, ...]], _READ_ANGLES, _ANGLES] = Field(
+        default={}, description="joint angles at the points, by the name of the joint"
+    )
+    loads: Annotated[dict[str, tuple[float, ...]], _READ_LOADS, _LOADS] = Field(
+        default={}, description="load torques at the points, by the name of the Disk; positive resists rotation"
+    )
+
+    def __init__(self, **data: Any) -> None:
+        label = f"schedule {data['name']}" if is_name(data.get("name")) else "schedule"
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            example = 'name = "axle travel", travel = ["-60 mm", "90 mm"] and angles'
+            raise refuse(error, type(self), data, element=label, example=example) from None
+
+    @model_validator(mode="after")
+    def _whole(self) -> Schedule:
+        if (self.travel is None) == (self.speed is None):
+            problem = "goes over travel and speed at once" if self.travel is not None else "goes over nothing"
+            raise InputError(problem, key="travel", remedy='write travel = ["-60 mm", "90 mm"], or speed')
+        if not self.angles and not self.loads:
+            raise InputError("lets nothing follow", key="angles", remedy="write angles or loads by element")
+        if self.speed is not None and self.speed[0] <= 0:
+            raise InputError("must be positive", key="speed", remedy="begin above standstill")
+        wrong = [
+            InputError(
+                f"has {len(numbers)} values for {len(self.points)} points", key=f"{key}.{name}",
+                remedy="give one value for each point",
+            )
+            for key in FOLLOWING
+            for name, numbers in getattr(self, key).items()
+            if len(numbers) != len(self.points)
+        ]  # fmt: skip
+        if wrong:
+            raise InputError.together(wrong)
+        return self
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.travel, self.speed, frozenset(self.angles.items()), frozenset(self.loads.items())))
+
+    @property
+    def over(self) -> str:
+        """ "travel" or "speed"."""
+        return "travel" if self.travel is not None else "speed"
+
+    @property
+    def points(self) -> tuple[float, ...]:
+        """Points of travel [m] or speed [rad/s] that it states."""
+        return self.travel if self.travel is not None else self.speed or ()
+
+    @property
+    def elements(self) -> tuple[tuple[str, str], ...]:
+        """Names of the elements that follow, and their key there."""
+        return tuple((name, KEYS[key]) for key in FOLLOWING for name in getattr(self, key))
+
+    def changes_at(self, value: float) -> dict[str, dict[str, float]]:
+        """Fields by element at a travel [m] or speed [rad/s], between the points along straight lines.
+
+        Raises
+        ------
+        InputError : beyond the first or the last point.
+        """
+        first, last = self.points[0], self.points[-1]
+        if not first <= value <= last:
+            unit = OVER[self.over].unit
+            problem = f"lies beyond the schedule, which goes from {first:g} to {last:g} {unit}"
+            remedy = f"stay between {first:g} and {last:g} {unit}"
+            raise InputError(problem, element=f"schedule {self.name}", key=self.over, value=value, remedy=remedy)
+        found: dict[str, dict[str, float]] = {}
+        for key in FOLLOWING:
+            for name, numbers in getattr(self, key).items():
+                found.setdefault(name, {})[KEYS[key]] = float(np.interp(value, self.points, numbers))
+        return found
+
+    def between(self, points: int) -> tuple[float, ...]:
+        """Its own points and as many more evenly between as make ``points`` or more over the whole."""
+        even = np.linspace(self.points[0], self.points[-1], points)
+        apart = 1e-9 * (self.points[-1] - self.points[0])
+        new = [float(x) for x in even if min(abs(x - p) for p in self.points) > apart]
+        return tuple(sorted([*self.points, *new]))

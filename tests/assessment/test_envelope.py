@@ -1,0 +1,95 @@
+"""Envelopes: the worst over load cases and schedules is what assess says at the worst place."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+
+TRAVEL = tn.Schedule(name="axle", travel=[-0.05, 0.0, 0.1], angles={"joint": ["1 deg", "4 deg", "14 deg"]})
+PULL = tn.Schedule(name="pull", speed=[40.0, 60.0, 90.0], loads={"load": [20.0, 80.0, 10.0]})
+
+
+def line(schedules: list[tn.Schedule], cases: tuple[tn.LoadCase, ...] = ()) -> tn.Driveline:
+    parts = [
+        tn.ConstantSpeed(),
+        tn.Shaft(stiffness=2e3, damping=2.0, name="front"),
+        tn.Disk(inertia=0.1, name="hub"),
+        tn.HookeJoint(angle="4 deg", name="joint"),
+        tn.Shaft(stiffness=1e3, damping=1.0, name="rear"),
+        tn.Disk(inertia=0.2, load_torque=30.0, name="load"),
+    ]
+    operation = tn.Operation(speed_range=(40.0, 60.0), speed_unit="rad/s", load_cases=cases, schedules=schedules)
+    limits = [tn.Limit(of="rear", max_torque=200.0, vibratory_torque=60.0)]
+    return tn.Driveline(parts, operation=operation, limits=limits)
+
+
+def test_a_line_at_a_point_of_a_schedule() -> None:
+    one = line([TRAVEL, PULL])
+    assert one.at_schedule("axle", 0.05).elements[3].angle == pytest.approx(np.radians(9))
+    assert one.at_schedule("pull", 50.0).elements[5].load_torque == pytest.approx(50.0)
+    with pytest.raises(tn.InputError, match="lies beyond the schedule, which goes from -0.05 to 0.1 m"):
+        one.at_schedule("axle", 0.2)
+    with pytest.raises(tn.InputError, match="did you mean"):
+        one.at_schedule("axel", 0.0)
+
+
+def test_the_worst_is_what_assess_says_there() -> None:
+    """Angles over travel, crossed with load cases: by hand, every place and case apart."""
+    cases = (tn.LoadCase(name="hill", loads={"load": 90.0}),)
+    one = line([TRAVEL], cases)
+    found = tn.envelope(one, points=4)
+    assert [round(p.value, 4) for p in found.places[1:]] == [-0.05, 0.0, 0.05, 0.1]
+    for name in ("max torque of rear", "vibratory torque of rear", "parametric stability"):
+        k = next(i for i, c in enumerate(found.checks) if c.name == name)
+        margins = []
+        for value in (-0.05, 0.0, 0.05, 0.1):
+            there = one.replace("joint", angle=np.interp(value, [-0.05, 0.0, 0.1], np.radians([1, 4, 14])))
+            margins.append(tn.assess(there, load_case="hill").check(name).margin)
+        assert found.checks[k].margin <= min(margins) + 1e-12
+        assert found.checks[k].margin == np.nanmin(found.margin[:, k])
+        assert found.places[found.where[k]].schedule in ("axle", "")
+    torque = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
+    assert found.checks[torque].load_case == "hill" and found.places[found.where[torque]].value == 0.1
+    assert found.verdict is tn.analyses.assessment.check.Status.EXCEEDED and "at axle 100 mm" in str(found)
+    assert "between them nothing is looked at" in str(found)
+
+
+def test_torques_over_speed_are_judged_at_their_own_speeds() -> None:
+    found = tn.envelope(line([PULL]), points=2)
+    assert [p.value for p in found.places[1:]] == [40.0, 60.0]  # 90 rad/s lies outside the range
+    k = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
+    direct = tn.assess(line([]).replace("load", load_torque=80.0), (60.0, 60.0)).check("max torque of rear")
+    assert found.margin[2, k] == pytest.approx(direct.margin, rel=1e-12)
+    assert found.checks[k].speed == 60.0
+
+
+def test_the_stable_limit_of_every_place() -> None:
+    found = tn.envelope(line([PULL]), (55.0, 60.0), points=2, parameter="joint.angle", high=1.2)
+    assert found.limit.shape == (len(found.places),) and found.parameter_unit == "rad"
+    direct = tn.stable_limit(line([]), "joint.angle", np.linspace(55.0, 60.0, 60), high=1.2).limit
+    assert found.limit[0] == pytest.approx(np.nanmin(direct), rel=1e-9)
+
+
+def test_without_anything_to_go_over_it_is_assess() -> None:
+    one = line([])
+    found, direct = tn.envelope(one), tn.assess(one)
+    assert [c.margin for c in found.checks] == pytest.approx([c.margin for c in direct.checks], nan_ok=True)
+    assert "no load cases and no schedules" in str(found)
+    with pytest.raises(tn.InputError, match="no schedule is judged"):
+        found.plot()
+
+
+def test_file_data_and_picture() -> None:
+    one = line([TRAVEL, PULL])
+    assert tn.loads(tn.dumps(one)) == one
+    found = tn.envelope(one, points=3)
+    assert found.data.margin.dims == ("place", "check")
+    assert json.loads(found.to_json())["verdict"] == str(found.verdict)
+    assert "travel [mm]" in found.plot(schedule="axle").get_xlabel()
+    assert "rad/s" in found.plot(schedule="pull").get_xlabel()
+    with pytest.raises(tn.InputError, match="points = 1"):
+        tn.envelope(one, points=1)
