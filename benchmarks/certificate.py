@@ -38,7 +38,8 @@ def main() -> None:
     for share, count, most in ((0.02, 3, 1000), (0.03, 3, 1000), (0.02, 8, 1000)):
         print(measured(RIM, list(NUMBERS[:count]), share, (1.2, 1.5), most), flush=True)
     print(measured(RIM, list(NUMBERS), 0.01, (0.5, 2.0), 20_000), flush=True)
-    print(measured(THREE, NINE, 0.01, (1.2, 1.3), 300), flush=True)
+    for count, speeds in ((3, (1.2, 1.25)), (9, (1.2, 1.22))):
+        print(measured(THREE, NINE[-count:], 0.003, speeds, 100), flush=True)
 
 
 if __name__ == "__main__":
