@@ -303,7 +303,7 @@ def _sweep_json(result: SpeedSweep, unit: str, written: Sequence[Path]) -> dict[
             for shaft, (torque, at) in peaks.items()
         ],
         "linear": bool(result.linear.all()),
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
+        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings_in(unit)],
         "written": [str(path) for path in written],
     }
 

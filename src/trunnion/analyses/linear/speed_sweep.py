@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.orders.response import order_response, without_excitation
+from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import relative_ratio
@@ -37,8 +39,9 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
-from trunnion.results.finding import Finding
+from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
+from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -69,6 +72,7 @@ class SpeedSweep(Result):
     to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
     stays within the range in which the linear response can be trusted; cut_off (speed,): relative change of
     the amplitudes when a third of the harmonics is left out; ``findings`` say what of the line is left out.
+    ``judged`` gives the stability of the motion at every speed, None where it is not judged.
     """
 
     speed: Array
@@ -80,6 +84,13 @@ class SpeedSweep(Result):
     shafts: tuple[str, ...]
     findings: tuple[Finding, ...] = ()
     unit: str = "rad/s"
+    judged: Callable[[], NDArray[np.int8]] | None = None
+    lossy: bool = False
+
+    @cached_property
+    def verdict(self) -> NDArray[np.int8]:
+        """Stability of the motion (speed,), codes of ``Verdict``; FAILED where it is not judged."""
+        return np.full(len(self.speed), Verdict.FAILED, dtype=np.int8) if self.judged is None else self.judged()
 
     @property
     def linear(self) -> NDArray[np.bool_]:
@@ -108,6 +119,10 @@ class SpeedSweep(Result):
         """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
         return drawing(self, "plot")(self, axes, **options)
 
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``: where the motion is unstable, what is left out."""
+        return by_gravity([*where_unstable(self.speed, self.verdict, unit, lossy=self.lossy), *self.findings])
+
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
         unit = unit or self.unit
@@ -121,7 +136,7 @@ class SpeedSweep(Result):
                 f"  at {counted(beyond, 'speed')} a joint's input deviates by more than {LINEAR_RANGE} rad: indication "
                 "only"
             )
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings_in(unit))])
 
     def __str__(self) -> str:
         return self.describe()
@@ -153,6 +168,8 @@ def speed_sweep(
             found.springs,
             found.remarks,
             found.unit,
+            found.judged,
+            bool(found.spectrum.loss.any()),
         )
     speed = np.atleast_1d(np.asarray(speeds, dtype=float))
     if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
+from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.results.declared import Held, Result, along, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -26,7 +27,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 WAVE_POINTS = 64
 """Points of a wave form per cycle of its highest order."""
-MOST_STRETCHES = 4
 WORTH_SHOWING = 1e-6
 """Share of the largest torque below which an order is counted in the sums, but not listed by itself."""
 
@@ -335,36 +335,6 @@ def order_name(order: float, frequency: float) -> str:
     return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
 
 
-def _stability(result: OrderResponse, unit: str) -> Iterable[Finding]:
-    """Where the steady motion is not reached, in stretches of neighbouring speeds."""
-    if np.any(failed := result.verdict == Verdict.FAILED):
-        where = "" if failed.all() else f" at {failed.sum()} of {len(failed)} speeds"
-        why = (
-            "a loss factor that holds at all frequencies has no equations in time; give a loss_factor_frequency and "
-            "ask stability()."
-            if result.spectrum.loss.any()
-            else "the computation failed; stability() at such a speed says why."
-        )
-        yield Finding(Gravity.NOTE, f"Whether the motion is stable was not judged{where}: {why}")
-    order = np.argsort(result.speed)
-    speed, unstable = result.speed[order], result.unstable[order]
-    if not unstable.any():
-        return
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], unstable, [False]]).astype(int)))
-    stretches = [
-        show_speed(speed[a], unit)
-        if b == a + 1
-        else f"{speed[a] * speed_factor(unit):.6g} to {show_speed(speed[b - 1], unit)}"
-        for a, b in zip(edges[::2], edges[1::2], strict=True)
-    ]
-    more = f" and {len(stretches) - MOST_STRETCHES} more stretches" if len(stretches) > MOST_STRETCHES else ""
-    yield Finding(
-        Gravity.DANGER,
-        f"The steady motion is unstable at {', '.join(stretches[:MOST_STRETCHES])}{more}: a small disturbance grows, "
-        "and the amplitudes given there are not reached; ask stability() why, or tn.periodic_branch where it goes.",
-    )
-
-
 def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
     lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
     for speed in result.speed[lost][:3]:
@@ -374,7 +344,8 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
             Gravity.DANGER,
             f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
         )
-    yield from _stability(result, unit)
+    lossy = bool(result.spectrum.loss.any())
+    yield from where_unstable(result.speed, result.verdict, unit, lossy=lossy)
     if result.sum_is_bound:
         yield Finding(
             Gravity.NOTE,
