@@ -285,6 +285,18 @@ class System:
         """∂f/∂x (n, n)."""
         return self.jacobian_times(time, state, np.eye(self.size), regime).T
 
+    def divergence_at(self, times: Array, states: Array, regimes: NDArray[np.integer[Any]]) -> Array:
+        """tr ∂f/∂x (m,) [1/s] at times (m,), states (m, n) and in regimes (m,); NaN where it cannot be evaluated."""
+        n, p = self.size, self.numbers.copy()
+        block, out = np.vstack([np.zeros(n), np.eye(n)]), np.empty((n + 1, n))
+        flat, result, call, address = block.reshape(-1), out.reshape(-1), kernel().call_rate, self.rate.address
+        traces = np.full(len(times), np.nan)
+        for i, (time, state, regime) in enumerate(zip(times.tolist(), states, regimes.tolist(), strict=True)):
+            block[0] = state
+            if not call(address, time, flat, p, n, regime, result):
+                traces[i] = out[1:].trace()
+        return traces
+
     def regime_at(self, time: float, state: ArrayLike) -> int:
         """The regime a motion through ``state`` goes on in; 0 for a smooth system.
 

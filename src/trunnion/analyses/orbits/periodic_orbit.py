@@ -226,9 +226,6 @@ def _divergence(system: System, run: Trajectory) -> float:
     known = system.divergence
     if known is not None:
         return float(known(system.parameters) if callable(known) else known) * (run.time - float(run.start[0]))
-    total = 0.0
-    for start, length, regime in zip(run.start, run.length, run.regime, strict=True):
-        times = start + length * (_NODES + 1) / 2
-        traces = [np.trace(system.jacobian(t, x, int(regime))) for t, x in zip(times, run.at(times), strict=True)]
-        total += length / 2 * float(_WEIGHTS @ np.array(traces))
-    return total
+    times = (run.start[:, None] + run.length[:, None] * (_NODES + 1) / 2).ravel()
+    traces = system.divergence_at(times, run.at(times), np.repeat(run.regime, len(_NODES)))
+    return float(run.length / 2 @ (traces.reshape(-1, len(_NODES)) @ _WEIGHTS))
