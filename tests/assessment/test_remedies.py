@@ -151,6 +151,7 @@ def test_where_nothing_helps_it_is_said():
     assert helped.sentences[0].startswith("max torque of shaft: no single change of up to a factor of two")
 
 
+@pytest.mark.slow
 def test_angles_and_phases_of_bent_lines():
     """Two joints whose forks stand a quarter turn apart: turning them in line is the remedy."""
     line = tn.Driveline(

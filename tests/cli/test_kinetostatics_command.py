@@ -139,10 +139,10 @@ def test_phasing(run, here):
         ]
     )
     tn.dump(steering, here / "steering.toml")
-    data = json.loads(run("kinetostatics", "steering.toml", "--phase", "--json").stdout)
+    data = json.loads(run("kinetostatics", "steering.toml", "--phase", "--json", "-o", "turn.nc").stdout)
     assert data["phasing"]["fork_offsets"]["Shaft 2"] == pytest.approx(tn.deg(40), abs=1e-9)
     assert data["phasing"]["irregularity"] < 1e-12
-    text = run("kinetostatics", "steering.toml", "--pitch", "15 deg").stdout
+    text = run("kinetostatics", "steering.toml", "--pitch", "15 deg", "-o", "turn.nc").stdout
     assert "Shaft 2: fork offset 45.0000 deg" in text
 
 

@@ -274,17 +274,17 @@ def test_one_sided_where_a_number_cannot_be_negative():
 
 
 def test_it_introduces_itself(tmp_path):
-    found = tn.sensitivity(chain(), 170.0)
+    found = tn.sensitivity(common(), 1.1)
     assert str(found).startswith("sensitivity of ") and "\n" not in repr(found)
-    ranked = found.ranked("growth rate at 170 rad/s")
+    ranked = found.ranked("growth rate at 1.1 rad/s")
     assert [abs(one.change) for one in ranked] == sorted((abs(one.change) for one in ranked), reverse=True)
     assert {one.step_words for one in ranked} <= {"+1 %", "+1 deg", "+10 deg"}
-    assert found.table("growth rate at 170 rad/s")[0]["parameter"] == ranked[0].parameter
+    assert found.table("growth rate at 1.1 rad/s")[0]["parameter"] == ranked[0].parameter
     save_dataset(found.data.assign_attrs(format="s"), tmp_path / "s.nc")
     again = read_dataset(tmp_path / "s.nc", "s")
     assert again["derivative"].shape == found.derivative.shape
     assert json.loads(found.to_json())["kind"][0] in ("frequency", "check")
-    axes = found.plot("growth rate at 170 rad/s")
+    axes = found.plot("growth rate at 1.1 rad/s")
     assert ranked[0].parameter in axes.get_yticklabels()[0].get_text()
 
 

@@ -53,7 +53,7 @@ def linear_change(load: float, beta: float, speed: float, damping: float = 1.0) 
 FREQUENCIES = tn.natural_frequencies(chain(0.0, 0.1, 1.0).line()).frequency
 
 
-@pytest.mark.parametrize("modes", [(0, 1), (1, 2)])
+@pytest.mark.parametrize("modes", [(0, 1), pytest.param((1, 2), marks=pytest.mark.slow)])
 def test_agreement_inside_a_combination_tongue(modes: tuple[int, int]) -> None:
     """Relative error of the load's effect: per cent at β = 0.4, below 2e-4 at β = 0.2."""
     speed = float(FREQUENCIES[list(modes)].sum() / 2)
@@ -77,7 +77,7 @@ def test_either_effect_alone_is_wrong() -> None:
     assert linear_change(load, beta, speed) / truth == pytest.approx(1, abs=2e-4)
 
 
-@pytest.mark.parametrize("speed", [0.45, 0.9])
+@pytest.mark.parametrize("speed", [pytest.param(0.45, marks=pytest.mark.slow), 0.9])
 def test_order_of_magnitude_between_resonances(speed: float) -> None:
     """Away from tongues the two effects are of one order and partly cancel; the static state gives the sign
     and the size of the true change, never better than some ten per cent however small the angle."""

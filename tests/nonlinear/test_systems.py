@@ -72,7 +72,7 @@ def jacobian(t, x, p):
 @pytest.mark.parametrize(
     ("function", "exact"),
     [
-        (array_style, False),
+        pytest.param(array_style, False, marks=pytest.mark.slow),
         (tuple_style, True),
         (interpreted_style, False),
         (interpreted_style, True),

@@ -103,7 +103,9 @@ def two_masses(kind: str) -> SecondOrder:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("kind", "harmonics", "near"), [("cubic", 24, 1e-7), ("backlash", 100, 2e-5)])
+@pytest.mark.parametrize(
+    ("kind", "harmonics", "near"), [("cubic", 24, 1e-7), pytest.param("backlash", 100, 2e-5, marks=pytest.mark.slow)]
+)
 def test_two_masses_close_and_have_the_multipliers_of_their_motion(kind: str, harmonics: int, near: float) -> None:
     s = two_masses(kind)
     found = balance_springs(s, 0.7, 0.9, harmonics=harmonics, longest_step=0.1)
