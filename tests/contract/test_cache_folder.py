@@ -86,3 +86,64 @@ def test_machine_code_belongs_to_all_sources_it_comes_from(tmp_path):
     assert found[0] == found[2] != found[1]
     kept = Path(characteristic.coefficients_from_matrices._cache.cache_path)
     assert f"package-{jit.digest_of(jit.SOURCES)}" in kept.parts
+
+
+TWINS = """
+import sys, time
+from pathlib import Path
+from numba.core import event
+from trunnion.numerics.jit import njit
+
+class Heard(event.Listener):
+    compiled = 0
+    def on_start(self, event):
+        Heard.compiled += 1
+    def on_end(self, event):
+        pass
+
+@njit()
+def area(x):
+    total = 0.0
+    for i in range(10):
+        total += x[i] * x[i]
+    return total
+
+import numpy as np
+here = Path(sys.argv[1])
+(here / sys.argv[2]).touch()
+while not ((here / "one").exists() and (here / "two").exists()):
+    time.sleep(0.001)
+with event.install_listener("numba:compile", Heard()):
+    assert area(np.ones(10)) == 10.0
+print(Heard.compiled)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks of this kind there: each compiles for itself")
+def test_two_processes_do_not_compile_the_same_function(tmp_path):
+    script = tmp_path / "twins.py"
+    script.write_text(TWINS, encoding="utf-8")
+    env = {**os.environ, "TRUNNION_CACHE": str(tmp_path / "kept"), "PYTHONPATH": os.pathsep.join(sys.path)}
+    both = [
+        subprocess.Popen([sys.executable, script, tmp_path, name], env=env, stdout=subprocess.PIPE, text=True)
+        for name in ("one", "two")
+    ]
+    assert sorted(process.communicate(timeout=300)[0].strip() for process in both) == ["0", "1"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no locks of this kind there")
+def test_who_waits_too_long_compiles_for_itself(tmp_path, monkeypatch):
+    from trunnion.numerics import compile_lock
+
+    monkeypatch.setattr(compile_lock, "PATIENCE", 0.2)
+    first, second = compile_lock.CompileLock(tmp_path / "lock"), compile_lock.CompileLock(tmp_path / "lock")
+    first.take()
+    first.take()  # as often as it likes
+    second.take()
+    assert first.held and not second.held
+    first.release()
+    second.take()
+    assert second.held
+    nowhere = compile_lock.CompileLock(tmp_path / "missing" / "lock")
+    nowhere.take()
+    assert not nowhere.held

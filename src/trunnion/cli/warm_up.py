@@ -87,7 +87,7 @@ def _side_by_side(names: list[str], processes: int) -> None:
             process.communicate()
 
 
-def _charts_of_two() -> None:
+def _charts_of_plain_lines() -> None:
     from trunnion.analyses.charts.stability_chart import stability_chart
     from trunnion.studies.entries import catalogue
 
@@ -95,22 +95,14 @@ def _charts_of_two() -> None:
     stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint 1.angle", 0.0, 1.2, 120), tolerance=1e-8)
 
 
-def _charts_of_three() -> None:
-    from trunnion.analyses.charts.stability_chart import stability_chart
-    from trunnion.studies.entries import catalogue
-
-    line = catalogue("three-shaft-cardan")
-    stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint *.angle", 0.0, 1.0, 120), tolerance=1e-8)
-
-
-def _charts_of_longer_lines() -> None:
+def _charts_of_loaded_lines() -> None:
     from trunnion.analyses.charts.stability_chart import stability_chart
     from trunnion.driveline import ConstantSpeed, Disk, Driveline, Element, HookeJoint, Shaft
 
     elements: list[Element] = [ConstantSpeed()]
     for i in range(4):
         elements += [HookeJoint(angle=0.2)] if i else []
-        elements += [Shaft(stiffness=1.0, damping=0.01), Disk(inertia=1.0)]
+        elements += [Shaft(stiffness=1.0, damping=0.01), Disk(inertia=1.0, load_torque=0.01)]
     stability_chart(Driveline(elements), ("speed", 0.5, 2.0, 12), ("HookeJoint *.angle", 0.0, 0.3, 8))
 
 
@@ -123,9 +115,8 @@ def _reports() -> None:
 
 
 PARTS: dict[str, Callable[[], None]] = {
-    "charts of two shafts": _charts_of_two,
-    "charts of three shafts": _charts_of_three,
-    "charts of longer lines": _charts_of_longer_lines,
+    "charts of plain lines": _charts_of_plain_lines,
+    "charts of loaded lines": _charts_of_loaded_lines,
     "reports and motions": _reports,
 }
 """What is compiled, each in a process of its own."""

@@ -1,4 +1,4 @@
-"""Generated kernels: written once into a cache folder, compiled once, loaded from there ever after.
+"""Files of kernels that import nothing of the package: copied into a cache folder, compiled once, loaded ever after.
 
 The folder's name is a hash of every source that goes into a kernel and of the versions that compile it, so
 an edit or an upgrade starts a new folder and nothing stale is ever run. ``TRUNNION_CACHE`` moves it. Where it
@@ -21,23 +21,7 @@ import numpy as np
 import scipy
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
-from trunnion.numerics.chain import chain_driver_source, chain_tables, half_period
 from trunnion.numerics.jit import keep_module_if_possible
-
-SMALL = 3
-"""Largest number of unknowns whose step is written out as straight-line code."""
-
-
-def chain_kernel(parent: tuple[int, ...], extra: bool) -> ModuleType:
-    """The compiled module for a tree of unknowns; its ``integrate`` fills Z, error and ∫tr(M⁻¹C)dτ."""
-    return _load(*_name(parent, extra))
-
-
-def _name(parent: tuple[int, ...], extra: bool) -> tuple[str, tuple[tuple[int, ...], bool] | None]:
-    if len(parent) > SMALL:
-        return "chain_wide", None
-    tree = "_".join("root" if p < 0 else str(p) for p in parent)
-    return f"chain_{tree}{'_extra' if extra else ''}", (parent, extra)
 
 
 @cache
@@ -57,16 +41,6 @@ def kernel_file(source: str, *used: str) -> ModuleType:
     versions = f"{numba.__version__} {np.__version__} {scipy.__version__} {sys.version}"
     digest = hashlib.sha256((whole + versions).encode()).hexdigest()[:16]
     return _module(Path(source).stem, text, digest)
-
-
-@cache
-def _load(name: str, small: tuple[tuple[int, ...], bool] | None) -> ModuleType:
-    source = chain_driver_source.lane_module_source(*small) if small else chain_driver_source.wide_module_source()
-    # In a console or a notebook somebody waits; programs and commands say so in their own way.
-    folder = cache_folder(_digest())
-    if hasattr(sys, "ps1") and not (folder and any((folder / "__pycache__").glob(f"{name}.integrate-*.nbi"))):
-        print("trunnion: compiling once, some seconds", file=sys.stderr, flush=True)
-    return _module(name, source, _digest())
 
 
 def _module(name: str, source: str, digest: str) -> ModuleType:
@@ -105,16 +79,3 @@ def _write(path: Path, source: str) -> None:
     except OSError:
         os.unlink(temporary)
         raise
-
-
-@cache
-def _digest() -> str:
-    hashed = hashlib.sha256()
-    for module in (chain_tables, half_period):
-        assert module.__file__ is not None
-        hashed.update(Path(module.__file__).read_bytes())
-    hashed.update(chain_driver_source.wide_module_source().encode())
-    for extra in (False, True):
-        hashed.update(chain_driver_source.lane_module_source((-1, 0), extra).encode())
-    hashed.update(f"{numba.__version__} {np.__version__} {sys.version}".encode())
-    return hashed.hexdigest()[:16]

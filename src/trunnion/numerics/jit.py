@@ -21,6 +21,7 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
+from trunnion.numerics.compile_lock import CompileLock
 
 SOURCES = Path(__file__).parent
 """The folder below which all functions decorated here stand."""
@@ -42,12 +43,18 @@ def njit(
     nogil: bool = False,
     fastmath: bool | set[str] = False,
     error_model: Literal["python", "numpy"] = "python",
+    inner: bool = False,
 ) -> Callable[[Callable[..., Any]], Any]:
-    """As numba's decorator of that name; ``cache`` is a wish."""
+    """As numba's decorator of that name; ``cache`` is a wish.
+
+    ``inner``: only compiled code calls it; the entrance for Python takes half the time to compile of a small function.
+    """
 
     def decorate(function: Callable[..., Any]) -> Any:
         folder = cache_folder(f"package-{digest_of(SOURCES)}") if cache else None
-        made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model)(function)
+        made: Any = numba.njit(
+            nogil=nogil, fastmath=fastmath, error_model=error_model, no_cpython_wrapper=inner, no_cfunc_wrapper=inner
+        )(function)
         if folder is not None:
             _keep_in(str(folder), made)
         return made
@@ -68,19 +75,32 @@ def _keep_in(folder: str, function: Any) -> None:
 
 
 def keep_if_possible(function: Any) -> None:
-    """Let a failure to keep the machine code of a compiled ``function`` end in a remark, not in an error."""
+    """Let one process compile ``function`` while others wait for it, and a failure to keep its machine code end in a
+    remark, not in an error."""
     kept = getattr(function, "_cache", None)
-    save = getattr(kept, "save_overload", None)
-    if kept is None or save is None:
+    save, load = getattr(kept, "save_overload", None), getattr(kept, "load_overload", None)
+    if save is None or load is None or kept.cache_path is None:
         return
+    lock = CompileLock(Path(kept.cache_path) / f"{function.py_func.__module__}.{function.py_func.__qualname__}.lock")
+
+    def load_overload(signature: Any, context: Any) -> Any:
+        found = load(signature, context)
+        if found is None:
+            lock.take()
+            found = load(signature, context)  # whoever held it may have kept it meanwhile
+            if found is not None:
+                lock.release()
+        return found
 
     def save_overload(signature: Any, data: Any) -> None:
         try:
             save(signature, data)
         except OSError as error:
             without_a_cache(error)
+        finally:
+            lock.release()
 
-    kept.save_overload = save_overload
+    kept.load_overload, kept.save_overload = load_overload, save_overload
 
 
 def keep_module_if_possible(module: ModuleType) -> None:

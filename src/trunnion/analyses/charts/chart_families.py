@@ -35,7 +35,6 @@ from trunnion.numerics.chain.chain_monodromy import (
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
-from trunnion.numerics.compiled import SMALL
 from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
 from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
 from trunnion.results.verdict import verdicts
@@ -237,11 +236,11 @@ class LineFamily:
 
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""
-        return SMALL < self.size <= LARGEST_DENSE and told_apart(self.rates(x, y))
+        return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and told_apart(self.rates(x, y))
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
-        if self.set_aside or not SMALL < self.size <= LARGEST_DENSE:
+        if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE:
             return None
         rates = self.rates(x, y)
         found = exponential_monodromies(

@@ -6,8 +6,6 @@ accuracy.
 
 from __future__ import annotations
 
-from trunnion.numerics.compiled import SMALL
-
 SLAB_NODES = 4000
 """Nodes at which the propagators of slabs are sampled, and what multiplying them takes, in integrations."""
 HALVINGS = 2
@@ -16,7 +14,7 @@ HALVINGS = 2
 
 def kernel_price(size: int, phase: float) -> float:
     """One integration of ``size`` unknowns over ``phase`` radians of the highest mode."""
-    return 1 + (0.07 if size <= SMALL else 0.2) * 2 * size**2 * phase
+    return 1 + 0.07 * 2 * size**2 * phase
 
 
 def pixel_price(coefficients: int) -> float:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,6 +61,30 @@ SET_ASIDE = {
 }
 
 
+@dataclass(frozen=True)
+class Forced:
+    """The linear forced response of a line at a rate [rad/s], which takes as long as its stability: found when asked."""
+
+    assembly: Assembly
+    rate: float
+    statically_twisted: bool
+
+    def response(self) -> LinearResponse:
+        """The response."""
+        return linear_response(self.assembly, self.rate, statically_twisted=self.statically_twisted)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A response that is known already."""
+
+    known: LinearResponse | None
+
+    def response(self) -> LinearResponse | None:
+        """The response."""
+        return self.known
+
+
 @dataclass(frozen=True, repr=False)
 class Stability(Result):
     """Floquet stability at one speed.
@@ -69,8 +94,7 @@ class Stability(Result):
     line, and its speed where no torque depends on it; period [rad of input angle]; speed [rad/s]
     (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
     floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
-    resonance: the one the critical multiplier names; response: the linear forced response (None for a system
-    of your own, whose periodic solution is in ``states``); states (time, 2n) at tau (time,); extra_torque: of a bent
+    resonance: the one the critical multiplier names; forced: where ``response`` comes from; extra_torque: of a bent
     line that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
     beyond the balance of the loads (None elsewhere); speed_sentence: of such a line none of whose torques depends on
     the speed, what becomes of a change of its mean speed; left_out: findings about what the line has and this does
@@ -86,7 +110,7 @@ class Stability(Result):
     period: float
     speed: float
     resonance: Resonance | None
-    response: LinearResponse | None
+    forced: Forced | Found
     liouville_defect: float
     names: tuple[str, ...]
     set_aside: int
@@ -94,6 +118,16 @@ class Stability(Result):
     unit: str = "rad/s"
     extra_torque: float | None = None
     speed_sentence: str = ""
+
+    @cached_property
+    def response(self) -> LinearResponse | None:
+        """The linear forced response, computed when it is first asked for; None for a system of your own.
+
+        Raises
+        ------
+        InputError, ComputationError : as ``linear_response``.
+        """
+        return self.forced.response()
 
     @property
     def exponents(self) -> NDArray[np.complex128]:
@@ -194,7 +228,7 @@ def stability(
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
         run = propagated(line, tolerance)
-        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, np.zeros((2 * line.size, 0)))
+        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, Found(None), np.zeros((2 * line.size, 0)))
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
@@ -205,10 +239,10 @@ def stability(
     run = propagated(system, tolerance)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     topo = assembly.topology
-    response = linear_response(assembly, system.rate, statically_twisted=statically_twisted)
+    forced = Forced(assembly, system.rate, statically_twisted)
     turns, frequency = require_period(assembly.line, topo), np.array(system.frequencies)
     aside = rigid_motions(topo, coefficients)
-    found = _judge(system, run, sources(assembly), turns, frequency, response, aside)
+    found = _judge(system, run, sources(assembly), turns, frequency, forced, aside)
     return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
 
 
@@ -244,7 +278,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
         period=2 * np.pi * float(turns),
         speed=speed,
         resonance=named,
-        response=motion.response,
+        forced=Found(motion.response),
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
         set_aside=1,
@@ -259,7 +293,7 @@ def _judge(
     excited: tuple[Source, ...],
     turns: Fraction,
     frequency: Array,
-    response: LinearResponse | None,
+    forced: Forced | Found,
     aside: Array,
 ) -> Stability:
     matrix = run.scaled_monodromy
@@ -293,7 +327,7 @@ def _judge(
         period=system.period,
         speed=system.rate,
         resonance=named,
-        response=response,
+        forced=forced,
         liouville_defect=float(abs(log_det + run.damping_trace)) if sign > 0 else float("inf"),
         names=system.names,
         set_aside=aside.shape[1],

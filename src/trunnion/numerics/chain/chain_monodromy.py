@@ -1,7 +1,7 @@
 """Monodromy matrices of many jointed chains (or trees) at once, each with its own error estimate.
 
 Sixteen *lanes*, points of a chart whose motion is about equally fast, are integrated together with common,
-error-controlled steps, by Taylor series (small chains) or the order-8 pair of Dormand and Prince; every lane
+error-controlled steps, by Taylor series (plain chains) or the order-8 pair of Dormand and Prince; every lane
 has its own stiffness, damping, inertia, joint angles and phases. Unknowns are absolute rotations scaled by √J
 and rates are in units of a typical frequency ν, so entries of Z are comparable and one number measures their
 error. Half a period suffices where the joints allow (see ``half_period``).
@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from trunnion.numerics.chain.chain_tables import LANES, ChainLanes, ChainProgram
 from trunnion.numerics.chain.half_period import whole_periods
-from trunnion.numerics.compiled import chain_kernel
+from trunnion.numerics.chain.series_driver import integrate_series
+from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
@@ -58,13 +59,11 @@ def chain_propagator(
     n, count = lanes.stiffness.shape
     matrix = np.empty((count, 2 * n, 2 * n))
     error, trace = np.empty(count), np.empty(count)
-    extra, order = has_extra(program, lanes), _fast_ones_together(lanes.frequency)
-    kernel = chain_kernel(tuple(map(int, program.parent)), extra)
+    order = _fast_ones_together(lanes.frequency)
+    integrate = integrate_stages if has_extra(program, lanes) else integrate_series
 
     def run(first: int, last: int) -> None:
-        kernel.integrate(
-            program, lanes, order, first, last, begin, length, tolerance, extra, MOST_STEPS, matrix, error, trace
-        )
+        integrate(program, lanes, order, first, last, begin, length, tolerance, MOST_STEPS, matrix, error, trace)
 
     _in_pieces(run, count, threads)
     return matrix, error, trace

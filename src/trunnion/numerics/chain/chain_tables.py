@@ -130,7 +130,7 @@ class Block(NamedTuple):
     alike: bool
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     """The lanes ``picked`` (LANES,) of the given ones as a block."""
     joints, n = lanes.cosine.shape[0], len(program.parent)
@@ -181,7 +181,7 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     return Block(joint, unknown, inertia, load, viscous, quadratic, wave_cosine, wave_sine, ripple, ripple_phase, alike)
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def empty_table(program, block):  # type: ignore[no-untyped-def]
     """A table with everything filled in that does not depend on time."""
     n = len(program.parent)
@@ -197,13 +197,10 @@ def empty_table(program, block):  # type: ignore[no-untyped-def]
     return table
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-untyped-def]
-    """Coefficients at input angles ``begin + nodes · step`` into the stages of ``table``.
-
-    ``extra``: static torque on bent joints or angle-dependent inertia act, so those rows are filled too.
-    """
-    w, unknown, parent = block.joint, block.unknown, program.parent
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def fill(program, block, begin, step, nodes, table):  # type: ignore[no-untyped-def]
+    """Coefficients at input angles ``begin + nodes · step`` into the stages of ``table``."""
+    w, unknown, parent, count = block.joint, block.unknown, program.parent, len(nodes)
     speed_source, rates = program.joint_speed_source, program.joint_rate
     ratio_source, ratios = program.joint_ratio_source, program.joint_ratio
     near_source, near_speed_source = program.near_source, program.near_speed_source
@@ -217,109 +214,45 @@ def fill(program, block, begin, step, nodes, extra, table):  # type: ignore[no-u
         driven = speed_source[j] < 0
         source, within = max(speed_source[j], 0) * PER_JOINT, max(ratio_source[j], 0) * PER_JOINT
         before = w[source : source + PER_JOINT]
-        if ratio_source[j] < 0 and not curved and not unwrapped:
-            if driven:
-                _plain_joint_on_drive(own, used, begin, step, nodes, rates[j], ratios[j])
-            else:
-                _plain_joint_on_joint(own, before, used, len(nodes), rates[j], ratios[j])
-            continue
         if driven:
-            _input_from_drive(own, begin, step, nodes, rates[j])
+            _input_from_drive(own, used, begin, step, nodes, rates[j])
         else:
-            _input_from_joint(own, before, len(nodes), rates[j])
+            _input_from_joint(own, before, used, count, rates[j])
         if unwrapped:
-            _unwrap(own, before, begin, step, nodes, driven, rates[j])
-        if ratio_source[j] < 0:
-            _first_in_group(own, len(nodes), ratios[j])
-        else:
-            _behind_in_group(own, w[within : within + PER_JOINT], len(nodes), ratios[j])
+            _unwrap(own, before, used, begin, step, nodes, driven, rates[j])
+        _ratio_in_front(own, w[within : within + PER_JOINT], used, count, ratio_source[j] < 0, ratios[j])
         first, last = program.ripple_first[j], program.ripple_first[j + 1]
         if last > first:
-            angles = before if not driven else own
-            _pass_ripple(own, angles, begin, step, nodes, driven, rates[j], program, block, first, last)
-            continue
-        if curved:
-            _curve(own, len(nodes))
-        _pass_joint(own, len(nodes))
-    if extra:
-        for i in range(len(parent)):
-            rows = table[i * PER_TABLE : (i + 1) * PER_TABLE]
-            for m in range(len(nodes)):
-                for lane in range(LANES):
-                    rows[m * PER_ROW + EXTRA_STIFFNESS * LANES + lane] = 0.0
+            _pass_ripple(own, before, begin, step, nodes, driven, rates[j], program, block, first, last)
+        else:
+            _pass_joint(own, used, count)
+    for i in range(len(parent)):
+        for m in range(count):
+            for lane in range(LANES):
+                table[i * PER_TABLE + m * PER_ROW + EXTRA_STIFFNESS * LANES + lane] = 0.0
     if len(program.wave_unknown) > 0:
         _waves(program, block, begin, step, nodes, table)
     for i in range(len(parent)):
         if near_source[i] >= 0 and parent[i] >= 0:
             shaft = unknown[i * PER_UNKNOWN : (i + 1) * PER_UNKNOWN]
             joint = w[near_source[i] * PER_JOINT : (near_source[i] + 1) * PER_JOINT]
+            driven = near_speed_source[i] < 0
+            driver = joint if driven else w[near_speed_source[i] * PER_JOINT : (near_speed_source[i] + 1) * PER_JOINT]
             rows = table[i * PER_TABLE : (i + 1) * PER_TABLE]
-            _shaft_behind_joint(joint, shaft, used == 1, len(nodes), rows)
-            if near_speed_source[i] >= 0:
-                driver = w[near_speed_source[i] * PER_JOINT : (near_speed_source[i] + 1) * PER_JOINT]
-                _times_speed(driver, used == 1, len(nodes), rows)
-            if extra:
-                above = table[parent[i] * PER_TABLE : (parent[i] + 1) * PER_TABLE]
-                _torque_on_joint(joint, shaft, used == 1, len(nodes), rows, above)
+            above = table[parent[i] * PER_TABLE : (parent[i] + 1) * PER_TABLE]
+            _shaft_behind_joint(joint, driver, driven, shaft, used == 1, count, rows, above)
     if curved:
-        _members(program, block, len(nodes), table)
+        _members(program, block, count, table)
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _plain_joint_on_drive(own, used, begin, step, nodes, rate, factor):  # type: ignore[no-untyped-def]
-    """A joint alone in its group and driven by the input: all of its law in one pass."""
-    for m in range(len(nodes)):
-        angle = 2 * rate * (begin + nodes[m] * step)
-        c0, s0 = math.cos(angle), math.sin(angle)
-        o = MOVING * LANES + m * PER_STAGE
-        for lane in range(used):
-            turn_c, turn_s, cb = (
-                own[TURN_COS * LANES + lane],
-                own[TURN_SIN * LANES + lane],
-                own[COSINE * LANES + lane],
-            )
-            c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
-            cb2 = cb * cb
-            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
-            eta = cb * over
-            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
-            own[o + SIN2 * LANES + lane] = eta * s
-            own[o + SPEED * LANES + lane] = rate * eta
-            own[o + RATIO * LANES + lane] = factor * eta
-            own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
-
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _plain_joint_on_joint(own, before, used, count, rate, factor):  # type: ignore[no-untyped-def]
-    """The same behind another joint, at its speed or reversed."""
-    for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
-        for lane in range(used):
-            turn_c, turn_s, cb = (
-                own[TURN_COS * LANES + lane],
-                own[TURN_SIN * LANES + lane],
-                own[COSINE * LANES + lane],
-            )
-            c0, s0 = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
-            c, s = c0 * turn_c - s0 * turn_s, s0 * turn_c + c0 * turn_s
-            cb2 = cb * cb
-            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
-            eta = cb * over
-            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
-            own[o + SIN2 * LANES + lane] = eta * s
-            own[o + SPEED * LANES + lane] = rate * eta * before[o + SPEED * LANES + lane]
-            own[o + RATIO * LANES + lane] = factor * eta
-            own[o + RATIO1 * LANES + lane] = factor * factor * eta * (cb2 - 1.0) * s * over
-
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _input_from_drive(own, begin, step, nodes, rate):  # type: ignore[no-untyped-def]
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _input_from_drive(own, used, begin, step, nodes, rate):  # type: ignore[no-untyped-def]
     """cos 2χ, sin 2χ, speed and acceleration at a joint's input, left where its output will stand."""
     for m in range(len(nodes)):
         angle = 2 * rate * (begin + nodes[m] * step)
         c, s = math.cos(angle), math.sin(angle)
         o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
+        for lane in range(used):
             turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
             own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
             own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
@@ -327,33 +260,33 @@ def _input_from_drive(own, begin, step, nodes, rate):  # type: ignore[no-untyped
             own[o + ACCELERATION * LANES + lane] = 0.0
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _input_from_joint(own, before, count, rate):  # type: ignore[no-untyped-def]
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _input_from_joint(own, before, used, count, rate):  # type: ignore[no-untyped-def]
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
         if rate == 1.0 or rate == -1.0:
-            for lane in range(LANES):
+            for lane in range(used):
                 turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
                 c, s = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
                 own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
                 own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
         else:
             # Behind such a ratio multiples of 2ψ do not suffice; ψ itself was kept.
-            for lane in range(LANES):
+            for lane in range(used):
                 chi2 = 2 * (rate * before[o + ANGLE * LANES + lane] + own[PHASE * LANES + lane])
                 own[o + COS2 * LANES + lane] = math.cos(chi2)
                 own[o + SIN2 * LANES + lane] = math.sin(chi2)
-        for lane in range(LANES):
+        for lane in range(used):
             own[o + SPEED * LANES + lane] = rate * before[o + SPEED * LANES + lane]
             own[o + ACCELERATION * LANES + lane] = rate * before[o + ACCELERATION * LANES + lane]
 
 
-@njit(cache=True, nogil=True)
-def _unwrap(own, before, begin, step, nodes, driven, rate):  # type: ignore[no-untyped-def]
+@njit(nogil=True, inner=True)
+def _unwrap(own, before, used, begin, step, nodes, driven, rate):  # type: ignore[no-untyped-def]
     """ψ, continuous over the period."""
     for m in range(len(nodes)):
         o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
+        for lane in range(used):
             angle = begin + nodes[m] * step if driven else before[o + ANGLE * LANES + lane]
             chi = rate * angle + own[PHASE * LANES + lane]
             cosine = own[COSINE * LANES + lane]
@@ -361,55 +294,39 @@ def _unwrap(own, before, begin, step, nodes, driven, rate):  # type: ignore[no-u
             own[o + ANGLE * LANES + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _first_in_group(own, count, factor):  # type: ignore[no-untyped-def]
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _ratio_in_front(own, before, used, count, first, factor):  # type: ignore[no-untyped-def]
+    """r and its derivatives in front of a joint: that of the joint before it in the group, if there is one."""
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
-            own[o + RATIO * LANES + lane] = factor
-            own[o + RATIO1 * LANES + lane] = 0.0
-            own[o + RATIO2 * LANES + lane] = 0.0
+        for lane in range(used):
+            r, r1, r2 = 1.0, 0.0, 0.0
+            if not first:
+                r, r1 = before[o + RATIO * LANES + lane], before[o + RATIO1 * LANES + lane]
+                r2 = before[o + RATIO2 * LANES + lane]
+            own[o + RATIO * LANES + lane] = factor * r
+            own[o + RATIO1 * LANES + lane] = factor * r1
+            own[o + RATIO2 * LANES + lane] = factor * r2
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _behind_in_group(own, before, count, factor):  # type: ignore[no-untyped-def]
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _pass_joint(own, used, count):  # type: ignore[no-untyped-def]
+    """A cross: from speed, acceleration and r in front of it to those behind, cos 2ψ and sin 2ψ."""
     for m in range(count):
         o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
-            own[o + RATIO * LANES + lane] = factor * before[o + RATIO * LANES + lane]
-            own[o + RATIO1 * LANES + lane] = factor * before[o + RATIO1 * LANES + lane]
-            own[o + RATIO2 * LANES + lane] = factor * before[o + RATIO2 * LANES + lane]
-
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _curve(own, count):  # type: ignore[no-untyped-def]
-    """Second derivative of r behind the joint; before ``_pass_joint`` overwrites what it needs."""
-    for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
-            cb, c, s = own[COSINE * LANES + lane], own[o + COS2 * LANES + lane], own[o + SIN2 * LANES + lane]
-            r, r1 = own[o + RATIO * LANES + lane], own[o + RATIO1 * LANES + lane]
-            sb2 = 1.0 - cb * cb
-            over = 1.0 / (1.0 - 0.5 * sb2 * (1.0 + c))
-            eta = cb * over
-            slope = -eta * sb2 * s * over
-            curvature = -2 * eta * sb2 * over * (c - sb2 * s * s * over)
-            before = own[o + RATIO2 * LANES + lane]
-            own[o + RATIO2 * LANES + lane] = eta * before + 3 * slope * r * r1 + curvature * r * r * r
-
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _pass_joint(own, count):  # type: ignore[no-untyped-def]
-    for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
+        for lane in range(used):
             cb, c, s = own[COSINE * LANES + lane], own[o + COS2 * LANES + lane], own[o + SIN2 * LANES + lane]
             speed, r = own[o + SPEED * LANES + lane], own[o + RATIO * LANES + lane]
             acceleration, r1 = own[o + ACCELERATION * LANES + lane], own[o + RATIO1 * LANES + lane]
             cb2 = cb * cb
-            over = 1.0 / (1.0 - 0.5 * (1.0 - cb2) * (1.0 + c))
+            sb2 = 1.0 - cb2
+            over = 1.0 / (1.0 - 0.5 * sb2 * (1.0 + c))
             eta = cb * over
-            slope = eta * (cb2 - 1.0) * s * over
+            slope = -eta * sb2 * s * over
+            curvature = -2.0 * eta * sb2 * over * (c - sb2 * s * s * over)
+            own[o + RATIO2 * LANES + lane] = (
+                eta * own[o + RATIO2 * LANES + lane] + 3.0 * slope * r * r1 + curvature * r * r * r
+            )
             own[o + ACCELERATION * LANES + lane] = slope * speed * speed + eta * acceleration
             own[o + SPEED * LANES + lane] = eta * speed
             own[o + RATIO1 * LANES + lane] = eta * r1 + slope * r * r
@@ -418,7 +335,7 @@ def _pass_joint(own, count):  # type: ignore[no-untyped-def]
             own[o + SIN2 * LANES + lane] = eta * s
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _pass_ripple(own, before, begin, step, nodes, driven, rate, program, block, first, last):  # type: ignore[no-untyped-def]
     """A joint with harmonics: from speed, acceleration and r in front of it to those behind, and its ψ."""
     for m in range(len(nodes)):
@@ -446,47 +363,25 @@ def _pass_ripple(own, before, begin, step, nodes, driven, rate, program, block, 
             own[o + ANGLE * LANES + lane] = psi
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _shaft_behind_joint(joint, shaft, alike, count, rows):  # type: ignore[no-untyped-def]
-    for m in range(count):
-        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
-        if alike:
-            r, r1 = joint[o + RATIO * LANES], joint[o + RATIO1 * LANES]
-            for lane in range(LANES):
-                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * r
-                rows[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1
-        else:
-            for lane in range(LANES):
-                rows[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * joint[o + RATIO * LANES + lane]
-                slope = shaft[SLOPE_SCALE * LANES + lane] * joint[o + RATIO1 * LANES + lane]
-                rows[t + NEAR_SLOPE * LANES + lane] = slope
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _shaft_behind_joint(joint, driver, driven, shaft, alike, count, own, above):  # type: ignore[no-untyped-def]
+    """Coupling of a shaft to its joint, and −r₁T̄ of its static torque on the unknown in front of the joint.
 
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _times_speed(driver, alike, count, rows):  # type: ignore[no-untyped-def]
-    for m in range(count):
-        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
-        first = driver[o + SPEED * LANES]
-        if alike:
-            for lane in range(LANES):
-                rows[t + NEAR_SLOPE * LANES + lane] *= first
-        else:
-            for lane in range(LANES):
-                rows[t + NEAR_SLOPE * LANES + lane] *= driver[o + SPEED * LANES + lane]
-
-
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
-def _torque_on_joint(joint, shaft, alike, count, own, rows):  # type: ignore[no-untyped-def]
-    """−r₁T̄ of the shaft with rows ``own``, on the unknown in front of the joint."""
+    driver: the joint whose speed the group's reference has, unless that is ``driven`` by the input itself.
+    """
     for m in range(count):
         o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
         for lane in range(LANES):
-            slope = joint[o + RATIO1 * LANES] if alike else joint[o + RATIO1 * LANES + lane]
+            from_lane = 0 if alike else lane
+            r, r1 = joint[o + RATIO * LANES + from_lane], joint[o + RATIO1 * LANES + from_lane]
+            speed = 1.0 if driven else driver[o + SPEED * LANES + from_lane]
+            own[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * r
+            own[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1 * speed
             torque = shaft[TORQUE * LANES + lane] * own[t + WAVE * LANES + lane]
-            rows[t + EXTRA_STIFFNESS * LANES + lane] -= slope * torque
+            above[t + EXTRA_STIFFNESS * LANES + lane] -= r1 * torque
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _members(program, block, count, table):  # type: ignore[no-untyped-def]
     """Inertia that depends on the angle and loads that depend on the speed, in groups that have such members."""
     w, owner = block.joint, program.member_unknown
@@ -527,7 +422,7 @@ def _members(program, block, count, table):  # type: ignore[no-untyped-def]
             done = owner[k]
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _waves(program, block, begin, step, nodes, table):  # type: ignore[no-untyped-def]
     """Stiffness that varies over its mean: gear meshes."""
     for i in program.wave_unknown:
@@ -543,7 +438,7 @@ def _waves(program, block, begin, step, nodes, table):  # type: ignore[no-untype
                 table[o + lane] += c * block.wave_cosine[k, lane] - s * block.wave_sine[k, lane]
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def add_damping_trace(parent, unknown, table, weights, step, trace):  # type: ignore[no-untyped-def]
     """∫ tr(M⁻¹C) dτ over one step, by the weights of its stages, added to ``trace`` per lane."""
     for i in range(len(parent)):

@@ -25,7 +25,7 @@ LARGEST = 6
 """Largest matrix treated by coefficients; beyond, they are too ill-conditioned (interpolate Z itself)."""
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(nogil=True, fastmath=True)
 def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[no-untyped-def]
     """Fill ``values`` (count, m) with e₁…e_m of each matrix and ``bounds`` with their errors.
 
@@ -34,8 +34,10 @@ def coefficients_from_matrices(matrix, error, values, bounds):  # type: ignore[n
     """
     m = matrix.shape[1]
     for p in range(matrix.shape[0]):
-        n = np.eye(m)
-        product = np.empty((m, m))
+        n, product = np.empty((m, m)), np.empty((m, m))
+        for i in range(m):
+            for j in range(m):
+                n[i, j] = 1.0 if i == j else 0.0
         for k in range(1, m + 1):
             square, trace = 0.0, 0.0
             for i in range(m):
@@ -65,17 +67,19 @@ def radii(values: Array, bounds: Array) -> tuple[Array, Array, Complex]:
     return radius, error, critical.view(np.complex128)[:, 0]
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True)
 def _radii_of_columns(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
     m, count = values.shape
     e, off, work = np.ones((m, CHUNK)), np.ones((m, CHUNK)), np.ones(ROWS * CHUNK)
     for at in range(0, count, CHUNK):
         end = min(at + CHUNK, count)
-        e[:, : end - at], off[:, : end - at] = values[:, at:end], bounds[:, at:end]
+        for k in range(m):
+            for p in range(at, end):
+                e[k, p - at], off[k, p - at] = values[k, p], bounds[k, p]
         _chunk(e, off, work, radius[at:end], error[at:end], critical[at:end])
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True)
 def radii_on_rows(up, along, errors, row_block, column_block, radius, error, critical):  # type: ignore[no-untyped-def]
     """The same on rows of pixels whose coefficients are Σ_i up[v, i] along[k, i, u], with errors by block.
 
@@ -101,12 +105,13 @@ def radii_on_rows(up, along, errors, row_block, column_block, radius, error, cri
             count = (top - low) * wide
             _chunk(e, off, work, found[:count], bound[:count], root[:count])
             for v in range(low, top):
-                first = (v - low) * wide
-                radius[v, at:end], error[v, at:end] = found[first : first + wide], bound[first : first + wide]
-                critical[v, at:end] = root[first : first + wide]
+                first = (v - low) * wide - at
+                for u in range(at, end):
+                    radius[v, u], error[v, u] = found[first + u], bound[first + u]
+                    critical[v, u, 0], critical[v, u, 1] = root[first + u, 0], root[first + u, 1]
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _chunk(values, bounds, work, radius, error, critical):  # type: ignore[no-untyped-def]
     """A chunk of columns, of which the first len(radius) count; roots start from those of the neighbour."""
     m = len(values)
@@ -123,7 +128,7 @@ def _chunk(values, bounds, work, radius, error, critical):  # type: ignore[no-un
             before = p
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # type: ignore[no-untyped-def]
     """The same for one column; ``warm``: ``roots`` are those of its neighbour."""
     m = values.shape[0]
@@ -134,7 +139,9 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
         radius[p], error[p] = math.nan, math.nan
         critical[p, 0] = critical[p, 1] = roots[0] = math.nan
         return
-    e, size = values[:, p].copy(), np.empty(m)
+    e, size = np.empty(m), np.empty(m)
+    for k in range(m):
+        e[k] = values[k, p]
     if m == 2:
         _quadratic(e[0], e[1], roots, 0)
     elif m == 4 or not _aberth(e, roots, warm and math.isfinite(roots[0].real)):
@@ -156,7 +163,7 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
     radius[p], error[p] = size[which], upper - size[which]
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _pair_error(total, product, total_error, product_error, radius):  # type: ignore[no-untyped-def]
     """How far the larger modulus of two roots can lie from ``radius``: its extremes over both intervals.
 
@@ -169,14 +176,14 @@ def _pair_error(total, product, total_error, product_error, radius):  # type: ig
     return max(upper - radius, radius - lower) + 4e-16 * radius
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _larger_of_pair(total, product):  # type: ignore[no-untyped-def]
     """The larger modulus of the roots of x² − total x + product, total ≥ 0."""
     under = total * total / 4 - product
     return total / 2 + math.sqrt(under) if under >= 0 else math.sqrt(product)
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _moved(size, bounds, b, m):  # type: ignore[no-untyped-def]
     """E, how far the polynomial may be off at a root of this modulus."""
     moved = 0.0
@@ -185,7 +192,7 @@ def _moved(size, bounds, b, m):  # type: ignore[no-untyped-def]
     return moved
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _far_inside(size, largest, bounds, b, m):  # type: ignore[no-untyped-def]
     """Whether a root cannot become the largest whatever its neighbours: |δσ| ≤ 2E^{1/m} at worst."""
     margin = 0.5 * (largest - size)
@@ -195,7 +202,7 @@ def _far_inside(size, largest, bounds, b, m):  # type: ignore[no-untyped-def]
     return power > _moved(size, bounds, b, m)
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
     m = len(roots)
     moved = _moved(size[i], bounds, b, m)
@@ -224,7 +231,7 @@ def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
     return 2 * (min(bound, moved ** (1 / m)) if bound > 1e-3 else bound)
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _quadratic(total, product, roots, at):  # type: ignore[no-untyped-def]
     """Roots of x² − total x + product into two places of ``roots``."""
     half = total / 2
@@ -238,7 +245,7 @@ def _quadratic(total, product, roots, at):  # type: ignore[no-untyped-def]
         roots[at], roots[at + 1] = complex(half, rise), complex(half, -rise)
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _aberth(e, roots, warm):  # type: ignore[no-untyped-def]
     """All roots at once by Aberth's iteration, from the neighbouring pixel's roots where there are any."""
     m = len(e)
@@ -288,7 +295,7 @@ def _aberth(e, roots, warm):  # type: ignore[no-untyped-def]
     return largest < 1e-14
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def _companion(e, roots):  # type: ignore[no-untyped-def]
     m = len(e)
     companion = np.zeros((m, m), dtype=np.complex128)

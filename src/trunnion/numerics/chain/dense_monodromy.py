@@ -218,29 +218,44 @@ class _Problem:
 def _march(q, d, g, frequency, step, a, b, state, kept):  # type: ignore[no-untyped-def]
     """Carry ``state`` (2n, columns) in place; the last column is forced, and kept (steps + 1, 2n) unless empty."""
     steps, stages, n, wide = q.shape[0], q.shape[1], q.shape[2], state.shape[1]
-    slopes = np.zeros((stages, 2 * n, wide))
-    here = np.zeros((2 * n, wide))
+    slopes, here = np.empty((stages, 2 * n, wide)), np.empty((2 * n, wide))
     largest = 0.0
     for s in range(steps):
         for m in range(stages):
-            here[:] = state
-            for p in range(m):
-                if a[m, p] != 0.0:
-                    here += (step * a[m, p]) * slopes[p]
+            _weighted(state, slopes, step, a[m], m, here)
             for i in range(n):
-                slopes[m, i] = frequency[i] * here[n + i]
-                row = slopes[m, n + i]
-                row[:] = 0.0
+                rate, out = slopes[m, i], slopes[m, n + i]
+                for c in range(wide):
+                    rate[c] = frequency[i] * here[n + i, c]
+                    out[c] = 0.0
                 for j in range(n):
-                    row -= q[s, m, i, j] * here[j] + d[s, m, i, j] * here[n + j]
-                row[wide - 1] += g[s, m, i]
-        for m in range(stages):
-            if b[m] != 0.0:
-                state += (step * b[m]) * slopes[m]
-        largest = max(largest, np.abs(state).max())
+                    by_angle, by_rate, x, v = q[s, m, i, j], d[s, m, i, j], here[j], here[n + j]
+                    for c in range(wide):
+                        out[c] -= by_angle * x[c] + by_rate * v[c]
+                out[wide - 1] += g[s, m, i]
+        _weighted(state, slopes, step, b, stages, state)
+        for i in range(2 * n):
+            for c in range(wide):
+                largest = max(largest, abs(state[i, c]))
         if len(kept) > 0:
-            kept[s + 1] = state[:, wide - 1]
+            for i in range(2 * n):
+                kept[s + 1, i] = state[i, wide - 1]
     return largest
+
+
+@njit(nogil=True, inner=True)
+def _weighted(state, slopes, step, weights, stages, out):  # type: ignore[no-untyped-def]
+    """out = state + step · Σ weights · slopes, by loops: to set one slice to another takes the compiler seconds."""
+    for i in range(state.shape[0]):
+        row = out[i]
+        for c in range(state.shape[1]):
+            row[c] = state[i, c]
+        for p in range(stages):
+            weight = step * weights[p]
+            if weight != 0.0:
+                slope = slopes[p, i]
+                for c in range(state.shape[1]):
+                    row[c] += weight * slope[c]
 
 
 def _march_by_products(

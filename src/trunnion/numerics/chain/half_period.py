@@ -11,99 +11,120 @@ S₀, S₁ at the two ends of the half. Needs constant inertia and no static tor
 odd). Here rates are in units of ν, so S stands as S/ν.
 """
 
+# mypy: ignore-errors
+# Types are inferred by the compiler of this code, from its arguments.
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import (
-    DAMPING,
-    FREQUENCY,
-    LANES,
-    NEAR,
-    PER_ROW,
-    PER_TABLE,
-    PER_UNKNOWN,
-    empty_table,
-    fill,
-    gather,
-)
+from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, LANES, NEAR_SCALE, PER_UNKNOWN, gather
+from trunnion.numerics.chain.joint_series import ROWS, couplings, empty_series
+from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
 
-_ENDS = np.array([0.0, 1.0])
 
-
-@njit(cache=True, nogil=True)
-def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):  # type: ignore[no-untyped-def]
+@njit(nogil=True)
+def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):
     """Z of lanes first…last from their propagators ``phi`` over ``half``, and their errors in place."""
     n = len(program.parent)
     wide = 2 * n
-    half_phi, z = np.empty((wide, wide, LANES)), np.empty((wide, wide, LANES))
-    spare, factor = np.empty((2, wide, wide, LANES)), np.empty(LANES)
-    picked = np.empty(LANES, np.int64)
+    size = wide * wide * LANES
+    half_phi, b, c, z = np.empty(size), np.empty(size), np.empty(size), np.empty(size)
+    ends, factor, picked = np.empty(2 * n * LANES), np.empty(LANES), np.empty(LANES, np.int64)
     for at in range(first, last, LANES):
         count = min(LANES, last - at)
         for lane in range(LANES):
             picked[lane] = at + min(lane, count - 1)
         block = gather(program, lanes, picked)
-        table = empty_table(program, block)
-        fill(program, block, begin, half, _ENDS, False, table)
+        _at_both_ends(program, block, begin, half, ends)
         for lane in range(LANES):
             own = phi[picked[lane]]
-            for i in range(2 * n):
-                for j in range(2 * n):
-                    half_phi[i, j, lane] = own[i, j]
-        _whole_from_half(program.parent, block.unknown, table, half_phi, spare, z, factor)
+            for i in range(wide):
+                for j in range(wide):
+                    half_phi[(i * wide + j) * LANES + lane] = own[i, j]
+        _whole_from_half(program.parent, block.unknown, ends, half_phi, b, c, z, factor)
         for lane in range(count):
             error[at + lane] *= factor[lane]
             own = matrix[at + lane]
-            for i in range(2 * n):
-                for j in range(2 * n):
-                    own[i, j] = z[i, j, lane]
+            for i in range(wide):
+                for j in range(wide):
+                    own[i, j] = z[(i * wide + j) * LANES + lane]
 
 
-@njit(cache=True, nogil=True)
-def _whole_from_half(parent, unknown, table, phi, spare, z, factor):  # type: ignore[no-untyped-def]
+@njit(nogil=True, inner=True)
+def _at_both_ends(program, block, begin, half, ends):
+    """The couplings e (2, n, LANES) at both ends of the half: order 0 of their series."""
+    parent, n = program.parent, len(program.parent)
+    series, start = empty_series(program)
+    near, bent = np.zeros(n * ROWS), np.zeros(n, np.bool_)
+    for i in range(n):
+        bent[i] = parent[i] >= 0 and program.near_source[i] >= 0
+        for lane in range(LANES):
+            near[i * ROWS + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
+    for end in range(2):
+        if block.alike:
+            couplings(program, block, bent, begin + end * half, 0.0, series, start, near, 0.0)
+        else:
+            couplings(program, block, bent, begin + end * half, 0.0, series, start, near, spread(0.0))
+        for i in range(n):
+            for lane in range(LANES):
+                ends[(end * n + i) * LANES + lane] = near[i * ROWS + lane]
+
+
+@njit(nogil=True, inner=True)
+def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
     """Fill ``z`` (2n, 2n, lanes) of a block and the factors (lanes,) by which an error of φ enters it.
 
-    table: coefficients at the two ends of the half; spare (2, 2n, 2n, lanes) is scratch. The loops over lanes are
-    innermost so that the compiler can do them side by side.
+    ends: couplings e at the two ends of the half (2, n, lanes); b, c are scratch of the shape of φ and z. All flat.
     """
     n = len(parent)
-    b, c = spare[0], spare[1]
-    b[:n], b[n:] = phi[n:], phi[:n]
-    _add_damped(parent, unknown, table, 1, 1.0, phi, 0, b, 0)
-    factor[:] = 0.0
-    for i in range(2 * n):
-        for j in range(2 * n):
-            for lane in range(LANES):
-                factor[lane] += phi[i, j, lane] ** 2
-                c[i, j, lane] = 0.0
-            for k in range(2 * n):
-                for lane in range(LANES):
-                    c[i, j, lane] += phi[k, i, lane] * b[k, j, lane]
-    z[:n], z[n:] = c[n:], c[:n]
-    _add_damped(parent, unknown, table, 0, -1.0, c, n, z, n)
+    wide, zero = 2 * n, spread(0.0)
+    line = wide * LANES
+    _halves_swapped(phi, n * line, b)
+    _add_damped(parent, unknown, ends, n * LANES, 1.0, phi, 0, b, 0, line)
+    square = zero
+    for i in range(0, line, LANES):
+        for j in range(0, line, LANES):
+            own, total = load(phi, i * wide + j, zero), zero
+            square = square + own * own
+            for k in range(0, wide * line, line):
+                total = total + load(phi, k + i, zero) * load(b, k + j, zero)
+            store(c, i * wide + j, total)
+    store(factor, 0, square)
+    _halves_swapped(c, n * line, z)
+    _add_damped(parent, unknown, ends, 0, -1.0, c, n * line, z, n * line, line)
     for lane in range(LANES):
         weight = 0.0
         for i in range(n):
-            o = i * PER_TABLE + NEAR * LANES + lane
-            steepest = max(table[o] ** 2, table[o + PER_ROW] ** 2)
+            first, last = ends[i * LANES + lane], ends[(n + i) * LANES + lane]
+            steepest = max(first * first, last * last)
             weight += abs(unknown[i * PER_UNKNOWN + DAMPING * LANES + lane]) * (1 + steepest)
         weight /= unknown[FREQUENCY * LANES + lane]
-        factor[lane] = 2 * max(1.0, np.sqrt(factor[lane] / (2 * n))) * (1 + weight) ** 2
+        factor[lane] = 2 * max(1.0, math.sqrt(factor[lane] / (2 * n))) * (1 + weight) * (1 + weight)
 
 
-@njit(cache=True, nogil=True)
-def _add_damped(parent, unknown, table, end, sign, x, row, out, to):  # type: ignore[no-untyped-def]
+@njit(nogil=True, inner=True)
+def _halves_swapped(x, half, out):
+    """The upper half of the rows of ``x`` below its lower half."""
+    for at in range(half):
+        out[at], out[half + at] = x[half + at], x[at]
+
+
+@njit(nogil=True, inner=True)
+def _add_damped(parent, unknown, ends, end, sign, x, row, out, to, line):
     """Add ± S x/ν at one ``end`` of the half to n rows of ``out`` from ``to`` on; x are n rows from ``row`` on."""
+    zero = spread(0.0)
     for i in range(len(parent)):
-        p, near, own = parent[i], i * PER_TABLE + end * PER_ROW + NEAR * LANES, i * PER_UNKNOWN + DAMPING * LANES
-        for j in range(x.shape[1]):
-            for lane in range(LANES):
-                d = sign * unknown[own + lane] / unknown[FREQUENCY * LANES + lane]
-                if p >= 0:
-                    twist = x[row + i, j, lane] - table[near + lane] * x[row + p, j, lane]
-                    out[to + i, j, lane] += d * twist
-                    out[to + p, j, lane] -= table[near + lane] * d * twist
-                else:
-                    out[to + i, j, lane] += d * x[row + i, j, lane]
+        p, e = parent[i], load(ends, end + i * LANES, zero)
+        d = sign * load(unknown, i * PER_UNKNOWN + DAMPING * LANES, zero) / load(unknown, FREQUENCY * LANES, zero)
+        for j in range(0, line, LANES):
+            own = i * line + j
+            if p >= 0:
+                above = p * line + j
+                pull = d * (load(x, row + own, zero) - e * load(x, row + above, zero))
+                store(out, to + own, load(out, to + own, zero) + pull)
+                store(out, to + above, load(out, to + above, zero) - e * pull)
+            else:
+                store(out, to + own, load(out, to + own, zero) + d * load(x, row + own, zero))

@@ -27,7 +27,7 @@ A, B, C, SCALE, SCALE2, W, P, S, Q, T, LEFT, RADIUS, ERROR, REAL, IMAGINARY = ra
 ROWS = 15
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True, inner=True)
 def quartic_chunk(values, bounds, work):  # type: ignore[no-untyped-def]
     """Spectral radius, its error bound and the critical multiplier of ``CHUNK`` columns of e₁…e₄.
 
@@ -45,7 +45,7 @@ def quartic_chunk(values, bounds, work):  # type: ignore[no-untyped-def]
     _radii(bounds[0], bounds[1], bounds[2], bounds[3], work)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _scale(e1, e2, e3, e4, w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
         scale2 = math.sqrt(e4[l])
@@ -56,7 +56,7 @@ def _scale(e1, e2, e3, e4, w):  # type: ignore[no-untyped-def]
         w[C * CHUNK + l] = e3[l] / (scale2 * scale)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _largest_resolvent_root(w):  # type: ignore[no-untyped-def]
     """From 2 where the cubic rises there, else from a bound of all roots, beyond which it is convex."""
     for l in range(CHUNK):
@@ -70,14 +70,14 @@ def _largest_resolvent_root(w):  # type: ignore[no-untyped-def]
         w[W * CHUNK + l] = x
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _factor(w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
         p, s, q, t = _factors(w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l], w[W * CHUNK + l])
         w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l] = p, s, q, t
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _polish(w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
         a, b, c = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l]
@@ -86,7 +86,7 @@ def _polish(w):  # type: ignore[no-untyped-def]
         w[P * CHUNK + l], w[S * CHUNK + l], w[Q * CHUNK + l], w[T * CHUNK + l] = p, s, q, t
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _residual(w):  # type: ignore[no-untyped-def]
     for l in range(CHUNK):
         a, b, c = w[A * CHUNK + l], w[B * CHUNK + l], w[C * CHUNK + l]
@@ -94,7 +94,7 @@ def _residual(w):  # type: ignore[no-untyped-def]
         w[LEFT * CHUNK + l] = _left(a, b, c, p, s, q, t)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(nogil=True, error_model="numpy", inner=True)
 def _settle(w):  # type: ignore[no-untyped-def]
     """The few for which some steps were too few, as long as it takes: from beyond all roots Newton only descends."""
     for l in range(CHUNK):
@@ -115,7 +115,7 @@ def _settle(w):  # type: ignore[no-untyped-def]
         w[LEFT * CHUNK + l] = _left(a, b, c, p, s, q, t)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _factors(a, b, c, x):  # type: ignore[no-untyped-def]
     """p, s, q, t from the root x of the resolvent."""
     spread = math.sqrt(max(0.25 * a * a - b + x, 0.0))
@@ -126,7 +126,7 @@ def _factors(a, b, c, x):  # type: ignore[no-untyped-def]
     return p, s, t if swapped else q, q if swapped else t
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _polished(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
     """One Newton step on p + s = a, q + t + ps = b, pt + sq = c, qt = 1, if it is a small one."""
     r1, r2, r3, r4 = a - p - s, b - q - t - p * s, c - p * t - s * q, 1 - q * t
@@ -146,14 +146,14 @@ def _polished(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _left(a, b, c, p, s, q, t):  # type: ignore[no-untyped-def]
     """What the factors leave of the polynomial, over its size."""
     left = abs(p + s - a) + abs(q + t + p * s - b) + abs(p * t + s * q - c) + abs(q * t - 1)
     return left / (1 + abs(a) + abs(b) + abs(c))
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _radii(b1, b2, b3, b4, w):  # type: ignore[no-untyped-def]
     """The largest modulus, how far the four moduli may be off, and the root itself."""
     for l in range(CHUNK):
@@ -174,7 +174,7 @@ def _radii(b1, b2, b3, b4, w):  # type: ignore[no-untyped-def]
         w[LEFT * CHUNK + l] += 0.0 * off
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _pair(total, product):  # type: ignore[no-untyped-def]
     """Roots of x² − total·x + product: real parts of the larger and the smaller, imaginary part of the first
     (minus that of the second), their moduli, their distance."""
@@ -194,18 +194,18 @@ def _pair(total, product):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _distance(x, y):  # type: ignore[no-untyped-def]
     return math.sqrt(x * x + y * y)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _moved(b1, b2, b3, b4, size):  # type: ignore[no-untyped-def]
     """How far the polynomial may be off at a root of this modulus."""
     return ((b1 * size + b2) * size + b3) * size + b4 + 1e-300
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "arcp"}, error_model="numpy")
+@njit(nogil=True, fastmath={"contract", "arcp"}, error_model="numpy", inner=True)
 def _bound(moved, d1, d2, d3):  # type: ignore[no-untyped-def]
     """As in ``characteristic``: one root moves alone, or two together, or all four, whichever binds best."""
     low, high = min(d1, d2), max(d1, d2)

@@ -55,6 +55,9 @@ MOST_QUICK_EVENTS = 60
 LARGEST = 1e100
 EPS = 2.220446049250313e-16
 
+INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""For functions that compiled code alone calls: their entrances for Python take longer to compile than they do."""
+
 
 @intrinsic
 def _call_rate(typing: Any, address: Any, t: Any, y: Any, p: Any, count: Any, regime: Any, out: Any) -> Any:
@@ -106,6 +109,13 @@ def _call_jump(
     return signature, generate
 
 
+@njit(cache=True, nogil=True, **INNER)
+def _copy(source, out):
+    """``source`` into ``out``: the compiler takes seconds for each slice that is set to another."""
+    for i in range(source.size):
+        out[i] = source[i]
+
+
 @njit(cache=True, nogil=True)
 def call_rate(address, t, y, p, count, regime, out):
     """Right-hand side of a system, for callers outside this file."""
@@ -118,11 +128,11 @@ def call_guard(address, t, x, p, regime, g, slope):
     return _call_guard(address, t, x, p, regime, 1, g, slope)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _stages(rate, t, h, y, p, count, regime, k, out):
     """Stages 1–11 from k[0] = f(t, y), and the state of order 8 after the step in ``out``."""
     for s in range(1, STAGES):
-        out[:] = y
+        _copy(y, out)
         for j in range(s):
             a = h * A[s, j]
             if a != 0.0:
@@ -131,7 +141,7 @@ def _stages(rate, t, h, y, p, count, regime, k, out):
         refused = _call_rate(rate, t + C[s] * h, out, p, count, regime, k[s])
         if refused != 0:
             return refused
-    out[:] = y
+    _copy(y, out)
     for j in range(STAGES):
         b = h * B[j]
         if b != 0.0:
@@ -140,7 +150,7 @@ def _stages(rate, t, h, y, p, count, regime, k, out):
     return 0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _error(h, y, new, k, n, count, tolerance, weight):
     """Largest error of the state and of each tangent vector over what is allowed; NaN where not finite.
 
@@ -171,7 +181,7 @@ def _error(h, y, new, k, n, count, tolerance, weight):
     return worst
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _dense(rate, t, h, y, new, p, n, regime, k, spare, q):
     """Coefficients q (8, n) of the interpolant of order 7 of the state over an accepted step."""
     for s in range(STAGES + 1, ALL_STAGES):
@@ -217,7 +227,7 @@ def evaluate(times, steps, coefficients, at, out):
         interpolate(coefficients[i], (at[j] - times[i]) / steps[i], out[j])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _watched(functions, t, x, p, asked, n, regime, own, sloped, g, slope):
     """All switching functions: the system's own first, then those the caller asks for; gradients if sloped."""
     if own > 0:
@@ -228,18 +238,18 @@ def _watched(functions, t, x, p, asked, n, regime, own, sloped, g, slope):
     return 0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _crosses(side, value, direction):
     """Whether a function that was on ``side`` has crossed zero in a watched direction (±1; 2 for both)."""
     return side * value < 0 and (direction == 2 or direction == -side)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _bracket(functions, t, h, q, p, asked, n, regime, own, sides, directions, x, g, slope):
     """The first watched crossing within a step, as (function, fraction in front of it, fraction behind it).
 
@@ -247,14 +257,16 @@ def _bracket(functions, t, h, q, p, asked, n, regime, own, sides, directions, x,
     samples is found by following its extremum.
     """
     m = g.size
-    now = sides.copy()
-    last = np.empty((3, m))
+    now, last = np.empty(m), np.empty((3, m))
+    _copy(sides, now)
     # One sample beyond each end, so that an extremum at the end of a step is seen from both sides.
     for j in range(-1, SAMPLES + 2):
         interpolate(q, j / SAMPLES, x)
         if _watched(functions, t + j / SAMPLES * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
             return -2, 0.0, 0.0
-        last[0], last[1], last[2] = last[1], last[2], g
+        _copy(last[1], last[0])
+        _copy(last[2], last[1])
+        _copy(g, last[2])
         if j < 1:
             continue
         found, left, right = -1, 2.0, 2.0
@@ -282,7 +294,7 @@ def _bracket(functions, t, h, q, p, asked, n, regime, own, sides, directions, x,
     return -1, 0.0, 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _lowest(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x, g, slope):
     """A fraction between ``low`` and ``high`` where function i is beyond zero, or −1 (golden section)."""
     golden = 0.6180339887498949
@@ -308,7 +320,7 @@ def _lowest(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
     return -1.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _locate(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x, g, slope):
     """Fraction of the step at which function i leaves ``side``, by bisection on the dense output."""
     for _ in range(60):
@@ -325,7 +337,7 @@ def _locate(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
     return high
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, directions, x, g, slope):
     """Another function that crosses between ``low`` and ``high``, in front of ``which``, and its side; −1 for none.
 
@@ -334,7 +346,8 @@ def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, dir
     interpolate(q, low, x)
     if _watched(functions, t + low * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
         return -1, 0.0
-    before = g.copy()
+    before = np.empty(g.size)
+    _copy(g, before)
     interpolate(q, high, x)
     if _watched(functions, t + high * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
         return -1, 0.0
@@ -345,7 +358,7 @@ def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, dir
     return -1, 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
     """A step to begin with, from the sizes of f and of its change (Hairer et al., section II.4)."""
     size, slope = 0.0, 0.0
@@ -370,7 +383,7 @@ def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
     return min(100 * h, other)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps, g, slope, k, spare):
     """Carry state and tangents across switching surface ``which`` into regime ``then`` (saltation).
 
@@ -405,7 +418,7 @@ def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps,
     return 0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _new_sides(functions, t, y, p, asked, n, regime, own, fired, side, jumped, directions, g, slope, k, sides):
     """On which side of each surface the motion goes on; 1 if it at once crosses ``fired`` again, −1 refused.
 
@@ -431,7 +444,7 @@ def _new_sides(functions, t, y, p, asked, n, regime, own, fired, side, jumped, d
     return again
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _rate_sign(functions, t, y, p, n, regime, slope, i, k):
     """Sign of dg/dt along the motion, or of its own change where that vanishes."""
     if _call_rate(functions[0], t, y[:n], p, 0, regime, k[0, :n]) != 0:
@@ -442,7 +455,7 @@ def _rate_sign(functions, t, y, p, n, regime, slope, i, k):
     return _sign(total)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, **INNER)
 def _directions(transitions, directions, watched, regime, out):
     """Directions in which each function is watched while in ``regime``; 0 where it is not."""
     own = transitions.shape[1]
@@ -579,18 +592,19 @@ def advance(
                 _dense(rate, t, step, y, new, p, n, regime, k, spare, q)
         row = whole[STORED]
         step_start[row], step_length[row], step_regime[row] = t, step, regime
-        step_states[row] = new[:n]
+        _copy(new[:n], step_states[row])
         if dense:
-            coefficients[row] = q
+            for r in range(POWERS):
+                _copy(q[r], coefficients[row, r])
         whole[STORED] += 1
         whole[STEPS] += 1
         if which < 0:
             t = end if step == end - t else t + step
             h = h if step < h else proposed  # a step cut short at the end proves nothing
-            k[0] = k[STAGES]
+            _copy(k[STAGES], k[0])
         else:
             t += step
-        y[:] = new
+        _copy(new, y)
         rejected = False
         if m > 0 and which < 0:
             _watched(functions, t, y[:n], p, asked, n, regime, own, 0, g, slope)
@@ -600,7 +614,7 @@ def advance(
         while which >= 0:
             at = whole[EVENTS]
             event_time[at], event_which[at] = t, which
-            event_before[at] = y[:n]
+            _copy(y[:n], event_before[at])
             then = transitions[regime, which] if which < own else regime
             jumped = which < own and functions[2] != 0
             if (
@@ -612,7 +626,7 @@ def advance(
             ):
                 clock[TIME], clock[STEP] = t, h
                 return REFUSED
-            event_after[at] = y[:n]
+            _copy(y[:n], event_after[at])
             whole[EVENTS] += 1
             near = t - clock[LAST_EVENT] <= 256 * EPS * max(abs(t), 1e-3 * clock[SPAN])
             whole[QUICK] = whole[QUICK] + 1 if near else 0

@@ -29,7 +29,8 @@ def sampled_rates(rate, guard, transitions, directions, times, states, p, regime
     for j in range(n):
         block[(1 + j) * n + j] = 1.0
     for i in range(times.size):
-        block[:n] = states[i]
+        for j in range(n):
+            block[j] = states[i, j]
         if guards > 0:
             for _ in range(MOST_SWITCHES):
                 refused = call_guard(guard, times[i], block[:n], p, regime, g, slope)
@@ -47,8 +48,8 @@ def sampled_rates(rate, guard, transitions, directions, times, states, p, regime
         refused = call_rate(rate, times[i], block, p, n, regime, out)
         if refused != 0:
             return refused
-        rates[i] = out[:n]
         for j in range(n):
+            rates[i, j] = out[j]
             for k in range(n):
                 jacobians[i, k, j] = out[(1 + j) * n + k]
         regimes[i] = regime

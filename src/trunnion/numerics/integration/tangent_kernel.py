@@ -62,14 +62,13 @@ def orthonormalise(frame, weight, growth):
     return lost
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _trace(rate, t, x, p, regime, block, out):
     """tr ∂f/∂x from the images of the unit vectors."""
     n = x.size
-    block[:n] = x
     block[n:] = 0.0
     for i in range(n):
-        block[n + i * n + i] = 1.0
+        block[i], block[n + i * n + i] = x[i], 1.0
     if call_rate(rate, t, block, p, n, regime, out) != 0:
         return np.nan
     total = 0.0
@@ -130,7 +129,8 @@ def follow(
         if code != REACHED:
             clock[TIME] = end - interval
             return code, s
-        states[s] = y[:n]
+        for i in range(n):
+            states[s, i] = y[i]
         if wrap > 0.0:
             clock[TIME] = end - wrap * np.floor(end / wrap + 1e-12)
         else:
