@@ -52,9 +52,8 @@ def njit(
 
     def decorate(function: Callable[..., Any]) -> Any:
         folder = cache_folder(f"package-{digest_of(SOURCES)}") if cache else None
-        made: Any = numba.njit(
-            nogil=nogil, fastmath=fastmath, error_model=error_model, no_cpython_wrapper=inner, no_cfunc_wrapper=inner
-        )(function)
+        options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} if inner else {}
+        made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model, **options)(function)
         if folder is not None:
             _keep_in(str(folder), made)
         return made
@@ -77,7 +76,7 @@ def _keep_in(folder: str, function: Any) -> None:
 def keep_if_possible(function: Any) -> None:
     """Let one process compile ``function`` while others wait for it, and a failure to keep its machine code end in a
     remark, not in an error."""
-    kept = getattr(function, "_cache", None)
+    kept: Any = getattr(function, "_cache", None)
     save, load = getattr(kept, "save_overload", None), getattr(kept, "load_overload", None)
     if save is None or load is None or kept.cache_path is None:
         return
