@@ -228,7 +228,9 @@ def stability(
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
         scaled = np.array(line.frequencies) * line.period / np.pi
         run = propagated(line, tolerance)
-        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, Found(None), np.zeros((2 * line.size, 0)))
+        return _judge(
+            line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, Found(None), np.zeros((2 * line.size, 0))
+        )
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):

@@ -83,7 +83,8 @@ def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
     wide, zero = 2 * n, spread(0.0)
     line = wide * LANES
     _halves_swapped(phi, n * line, b)
-    _add_damped(parent, unknown, ends, n * LANES, 1.0, phi, 0, b, 0, line)
+    top = 0 * n  # numba would compile for each constant anew
+    _add_damped(parent, unknown, ends, n * LANES, 1.0, phi, top, b, top, line)
     square = zero
     for i in range(0, line, LANES):
         for j in range(0, line, LANES):
@@ -94,7 +95,7 @@ def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
             store(c, i * wide + j, total)
     store(factor, 0, square)
     _halves_swapped(c, n * line, z)
-    _add_damped(parent, unknown, ends, 0, -1.0, c, n * line, z, n * line, line)
+    _add_damped(parent, unknown, ends, top, -1.0, c, n * line, z, n * line, line)
     for lane in range(LANES):
         weight = 0.0
         for i in range(n):

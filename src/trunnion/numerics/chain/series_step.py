@@ -56,7 +56,8 @@ def pair_series(parent, bent, unknown, near, w, a, b, spare, squares, h):
     n = len(parent)
     zero = spread(0.0)
     nu = h * load(unknown, FREQUENCY * LANES, zero)
-    _add_squares(w, a, b, 0, 2 * n, squares, LAST_SQUARE)
+    here, at = 0 * n, LAST_SQUARE + 0 * n  # numba would compile for each constant anew
+    _add_squares(w, a, b, here, 2 * n, squares, at)
     for i in range(n):
         if parent[i] >= 0:
             e, o, p = load(near, i * ROWS, zero), i * ROWS, parent[i] * ROWS

@@ -55,13 +55,13 @@ def step_by_stages(parent, table, unknown, h, u, un, spare, squares):
     for column in range(0, wide * wide * LANES, wide * LANES):
         for m in range(STAGES):
             for i in range(0, wide * LANES, LANES):
-                store(spare, here + i, load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, m))
+                store(spare, here + i, load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, FIRST[m:]))
             _slopes(parent, table, unknown, h, spare, here, m)
         for i in range(0, wide * LANES, LANES):
-            z = load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, RESULT)
+            z = load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, FIRST[RESULT:])
             store(un, column + i, z)
-            off5 = _sum_of_stages(spare, i, wide * LANES, FIVE)
-            off3 = _sum_of_stages(spare, i, wide * LANES, THREE)
+            off5 = _sum_of_stages(spare, i, wide * LANES, FIRST[FIVE:])
+            off3 = _sum_of_stages(spare, i, wide * LANES, FIRST[THREE:])
             whole, five, three = whole + z * z, five + off5 * off5, three + off3 * off3
     store(squares, 0, five)
     store(squares, LANES, three)
@@ -69,9 +69,13 @@ def step_by_stages(parent, table, unknown, h, u, un, spare, squares):
 
 
 @njit(nogil=True, fastmath=True, inner=True)
-def _sum_of_stages(slopes, i, line, row):
+def _sum_of_stages(slopes, i, line, first):
+    """Weighted sum of the slopes of row i, by the weights from ``first[0]`` up to ``first[1]``.
+
+    A constant in place of an array would be compiled for once more: numba takes each for a type of its own.
+    """
     total = spread(0.0)
-    for q in range(FIRST[row], FIRST[row + 1]):
+    for q in range(first[0], first[1]):
         total = total + WEIGHT[q] * load(slopes, STAGE[q] * line + i, total)
     return total
 
