@@ -63,7 +63,7 @@ SET_ASIDE = {
 
 @dataclass(frozen=True)
 class Forced:
-    """The linear forced response of a line at a rate [rad/s], which takes as long as its stability: found when asked."""
+    """The linear forced response of a line at a rate [rad/s], which takes as long as its stability does."""
 
     assembly: Assembly
     rate: float

@@ -83,7 +83,7 @@ def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
     wide, zero = 2 * n, spread(0.0)
     line = wide * LANES
     _halves_swapped(phi, n * line, b)
-    top = 0 * n  # numba would compile for each constant anew
+    top = 0 * n  # not a constant: numba would compile for each of them anew
     _add_damped(parent, unknown, ends, n * LANES, 1.0, phi, top, b, top, line)
     square = zero
     for i in range(0, line, LANES):

@@ -56,8 +56,8 @@ def pair_series(parent, bent, unknown, near, w, a, b, spare, squares, h):
     n = len(parent)
     zero = spread(0.0)
     nu = h * load(unknown, FREQUENCY * LANES, zero)
-    here, at = 0 * n, LAST_SQUARE + 0 * n  # numba would compile for each constant anew
-    _add_squares(w, a, b, here, 2 * n, squares, at)
+    now = 0 * n  # not a constant: numba would compile for each of them anew
+    _add_squares(w, a, b, now, 2 * n, squares, LAST_SQUARE + now)
     for i in range(n):
         if parent[i] >= 0:
             e, o, p = load(near, i * ROWS, zero), i * ROWS, parent[i] * ROWS
