@@ -40,7 +40,9 @@ def walled() -> tn.System:
 
 
 @pytest.mark.parametrize(
-    ("method", "options"), [("shooting", {}), ("harmonic balance", {"harmonics": 3})], ids=["shooting", "series"]
+    ("method", "options"),
+    [pytest.param("shooting", {}, marks=pytest.mark.slow), ("harmonic balance", {"harmonics": 3})],
+    ids=["shooting", "series"],
 )
 def test_a_continuation_that_stalls_keeps_its_last_point(method: str, options: dict[str, Any]) -> None:
     found = frequency_response(walled(), 1.1, 1.5, method=method, start=[0.0, 0.0], longest_step=0.05, **options)

@@ -138,6 +138,7 @@ def test_damping_as_the_second_axis() -> None:
     assert two_shafts.radius(one.tip[0], 0.3, zeta=0.001 * one.tip[1]) == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_more_than_three_unknowns_are_sampled() -> None:
     parts = [tn.ConstantSpeed()]
     for k, j in ((1e4, 0.1), (2e4, 0.15), (1.5e4, 0.12), (3e4, 0.2)):
