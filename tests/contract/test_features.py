@@ -56,6 +56,11 @@ RUN = {
     "campbell_diagram": lambda line: tn.campbell_diagram(line, [20.0, 100.0, 180.0]),
     "assess": lambda line: tn.assess(limited(line), (SPEED, SPEED)),
     "envelope": lambda line: tn.envelope(scheduled(limited(line)), (SPEED, SPEED), points=2),
+    "compare": lambda line: tn.compare(line, line.replace("load", inertia=0.21), (SPEED, SPEED)),
+    "sensitivity": lambda line: tn.sensitivity(line, SPEED, ["load.inertia"], of=["frequencies", "growth", "torques"]),
+    "optimise": lambda line: tn.optimise(
+        line, {"load.inertia": (0.15, 0.25)}, "peak torque of rear", (SPEED, SPEED), checks=False, designs=20
+    ),
     "certify_stability": lambda line: tn.certify_stability(line, {"hub.inertia": 1e-4}, (100.0, 100.001), most_boxes=1),
     "speed_sweep": lambda line: tn.speed_sweep(line, [90.0, 100.0]),
     "order_response": lambda line: tn.order_response(line, [90.0, 100.0]),
@@ -119,6 +124,9 @@ QUICK = {
     **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
     "certify_stability": ("load torque", "stiffness", "ratio", "prescribed far end"),
     "assess": tuple(key for key in feature_lines.CHANGES if key != "mesh-stiffness variation"),
+    "compare": ("load torque", "ideal joint", "dry friction", "prescribed far end"),
+    "sensitivity": ("load torque", "ideal joint", "dry friction"),
+    "optimise": ("load torque", "excitation by order", "dry friction"),
     "envelope": ("load torque", "Hooke's joint", "prescribed far end", "dry friction"),
     "periodic_response": ("load torque", "prescribed far end"),
     "periodic_branch": ("viscous load", "free start"),

@@ -258,6 +258,9 @@ TABLE: dict[str, Row] = {
         not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
         inert=_EVEN,
     ),
+    "compare": _row(refused=_RUBBING, said=_BY_PLACE, inert=_EVEN),
+    "sensitivity": _row(refused=_RUBBING, said=_BY_PLACE, inert=_PASSIVE),
+    "optimise": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "certify_stability": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "order_response": _row(
@@ -318,9 +321,6 @@ TABLE: dict[str, Row] = {
 NOT_ANALYSES = {
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
-    "compare": "natural_frequencies, stability, order_response and assess of two lines side by side",
-    "optimise": "judges changed lines as kinetostatics, order_response, stability and assess do",
-    "sensitivity": "derivatives of what the analyses above compute, with what each of them leaves out",
     "report": "shows the analyses above, with what each of them says",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",

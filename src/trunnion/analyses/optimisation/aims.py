@@ -15,6 +15,7 @@ from trunnion.analyses.assessment.subject import POINTS, Subject
 from trunnion.analyses.kinetostatics.chain import chain
 from trunnion.analyses.kinetostatics.phasing import irregularity_of
 from trunnion.analyses.linear.forced_response import shaft_names
+from trunnion.analyses.orders.response import order_response
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import ComputationError, InputError
@@ -69,6 +70,15 @@ class Question:
             return self._answer(line, points)
         except (InputError, ComputationError):
             return Answer(tuple(nan for _ in self.aims), inf, ())
+
+    def require(self, line: Driveline) -> None:
+        """Raise what refuses a line, if anything does.
+
+        Raises
+        ------
+        InputError, ComputationError : as the analyses behind the aims.
+        """
+        self._answer(line, POINTS)
 
     def _answer(self, line: Driveline, points: int) -> Answer:
         subject = None
@@ -149,6 +159,8 @@ def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[
         return min(_margins(aim, checks), default=nan)
     word, _, spring = aim.name.partition(" torque of ")
     cases = [case for case in subject.cases if case.response is not None]
+    if not cases:
+        order_response(subject.cases[0].assembly, subject.cases[0].speeds)  # raises what refuses it
     return max((exact_torque(case, word, shaft_names(case.assembly).index(spring))[0] for case in cases), default=nan)
 
 
