@@ -157,3 +157,43 @@ def test_windows_and_tolerances_are_among_the_limits(look: Look, what: str, begi
         expected = str(tn.stable_windows(line(), "HookeJoint 1.angle", 0.0, tn.deg(45), (tn.rpm(300), tn.rpm(3000))))
         assert look.page.locator("pre", has_text=begins).inner_text().split() == expected.split()
     assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
+
+
+def test_a_question_mark_within_the_address_is_read(look: Look) -> None:
+    """It is allowed in a query, and some programs leave it as it is."""
+    look.at("?view=motion&motion.what=what?&stability.x=?")
+    look.page.locator("pre", has_text="periodic motion at 1500 rpm").wait_for()
+
+
+@pytest.mark.parametrize(("what", "begins"), [("section", "Poincaré map of"), ("run-up", "run from 300 rpm")])
+def test_a_motion_shows_its_own_controls_and_words(look: Look, what: str, begins: str) -> None:
+    look.at(f"?view=motion&motion.what={what}&motion.returns=20&motion.rate=400")
+    look.page.locator("pre", has_text=begins).first.wait_for()
+    assert look.page.get_by_label("Acceleration [rad/s²]", exact=True).count() == (what == "run-up")
+    assert look.page.get_by_label("Points of the map", exact=True).count() == (what == "section")
+    assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
+    assert look.page.evaluate(UNNAMED) == []
+
+
+def test_a_gear_pair_that_rattles_by_every_method(look: Look) -> None:
+    """Each method says what it found on one picture; the sweep in the words of the public function."""
+    text = tn.dumps(rattling())
+    look.at("?view=motion&motion.what=rattle&motion.points=3&line=" + pack(text))
+    for title in ("sweep up", "sweep down", "response: exact", "response: shooting", "response: harmonic balance"):
+        look.page.locator("pre", has_text=re.compile("^" + re.escape(title))).wait_for()
+    shown = look.page.locator("pre", has_text=re.compile("^sweep up")).inner_text()
+    swept = tn.sweep(tn.loads(text), np.linspace(tn.rpm(1450), tn.rpm(1550), 3))
+    assert shown.split() == f"sweep up {swept}".split()
+    assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
+
+
+def rattling() -> tn.Driveline:
+    """A gear pair that crosses its backlash, over a narrow range of speeds."""
+    mesh = tn.GearPair(
+        name="gears", teeth_in=25, teeth_out=40, module=0.003, mesh_stiffness=2e6, mesh_damping=300.0, backlash=2e-4
+    )
+    pinion = tn.Disk(name="pinion", inertia=0.01, excitation=[{"order": 2, "amplitude": 60.0}])
+    shaft = tn.Shaft(name="input shaft", stiffness=2000.0, damping=4.0)
+    operation = tn.Operation(speed="1500 rpm", speed_range=["1450 rpm", "1550 rpm"])
+    wheel = tn.Disk(name="wheel", inertia=0.02, load_torque=10.0)
+    return tn.Driveline([tn.ConstantSpeed(), shaft, pinion, mesh, wheel], operation=operation)

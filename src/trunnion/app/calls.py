@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -55,14 +55,21 @@ THE_LINE = Call("line")
 """The driveline itself, where it is shown as it is."""
 
 
-def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str) -> str:
-    """Python that computes ``results`` for the driveline ``toml``: by name, each call with the file of its line."""
+def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft: Collection[str] = ()) -> str:
+    """Python that computes ``results`` for the driveline ``toml``: by name, each call with the file of its line.
+
+    What is ``soft`` may be refused: the program says so and goes on.
+    """
     body, now = [], toml
     for name, (call, of) in results.items():
         if call == THE_LINE:
             continue
         change = f"line = tn.loads({_block(of)})\n" if of != now else ""
-        body.append(f"{change}{name} = {call.text()}\nprint({name})")
+        asked = f"{name} = {call.text()}\nprint({name})"
+        if name in soft:
+            tried = asked.replace("\n", "\n    ")
+            asked = f"try:\n    {tried}\nexcept tn.errors.TrunnionError as refusal:\n    print(refusal)"
+        body.append(change + asked)
         now = of
     return "\n".join(
         [

@@ -43,12 +43,29 @@ class Curves:
         self.legend.margin = 2
         self.legend.padding = 2
         self.legend.border_line_color = None
+        self.legend.location = "top_left"
         self.figure.add_layout(self.legend, "below")
+        self.marks: dict[str, tuple[ColumnDataSource, LegendItem]] = {}
         self.cursor = Span(location=None, dimension="height", line_color=figures.INK, line_dash="dotted", line_width=2)
         self.figure.add_layout(self.cursor)
         if tap:
             self.figure.on_event(Tap, lambda event: tap(float(event.x)))
         self.panel = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
+
+    def mark(self, name: str, shape: str, colour: str) -> None:
+        """Marks beside the curves, none at first; see ``put_marks``."""
+        source = ColumnDataSource(data={"x": [], "y": []})
+        drawn = self.figure.scatter("x", "y", source=source, marker=shape, size=9, color=colour, fill_alpha=0.2)
+        item = LegendItem(label=name, renderers=[drawn], visible=False)
+        self.legend.items = [*self.legend.items, item]
+        self.marks[name] = source, item
+        figures.hover(self.figure, [drawn], [("", name), ("", "($x, $y)")])
+
+    def put_marks(self, name: str, x: Any, y: Any) -> None:
+        """Marks in place of those of that name; the legend names them where there are any."""
+        source, item = self.marks[name]
+        source.data = {"x": np.asarray(x, dtype=float), "y": np.asarray(y, dtype=float)}
+        item.visible = len(source.data["x"]) > 0
 
     def set(
         self,

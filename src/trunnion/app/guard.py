@@ -43,6 +43,12 @@ class Guard(httputil.HTTPServerConnectionDelegate):
         )
 
 
+def one_question(path: str) -> str:
+    """A request with every "?" behind the first escaped: a query may hold them, but Panel splits at each."""
+    before, mark, query = path.partition("?")
+    return before + mark + query.replace("?", "%3F")
+
+
 class _Looking(httputil.HTTPMessageDelegate):
     def __init__(self, guard: Guard, server_conn: object, request_conn: httputil.HTTPConnection) -> None:
         self.guard, self.server_conn, self.connection = guard, server_conn, request_conn
@@ -50,6 +56,7 @@ class _Looking(httputil.HTTPMessageDelegate):
 
     def headers_received(self, start_line: Any, headers: httputil.HTTPHeaders) -> Any:
         if self.guard.admits(headers):
+            start_line = start_line._replace(path=one_question(start_line.path))
             self.inner = self.guard.application.start_request(self.server_conn, self.connection)
             return self.inner.headers_received(start_line, headers)
         return None

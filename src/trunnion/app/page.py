@@ -78,7 +78,9 @@ class Page:
         )
         self.navigation.param.watch(lambda event: choose(event.new) if not self._quiet else None, "value")
         self.said = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 0), css_classes=["refusal"])
-        self.bar = pn.indicators.Progress(name="progress", value=0, max=100, width=220, active=False, margin=(8, 0))
+        self.bar = pn.indicators.Progress(
+            name="progress", value=0, max=100, width=220, active=False, visible=False, margin=(8, 0)
+        )
         self.state = pn.pane.HTML("", margin=(4, 10))
         self.cancel_button = pn.widgets.Button(name="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
@@ -142,6 +144,7 @@ class Page:
         now = time.monotonic()
         if self.cancel_button.disabled:
             self.cancel_button.disabled = False
+            self.bar.visible = True
         elif now - self._told < MOST_OFTEN:
             return
         self._told = now
@@ -150,7 +153,7 @@ class Page:
 
     def idle(self, text: str = "", remarks: Sequence[str] = ()) -> None:
         """Nothing is under way."""
-        self.bar.value = 0
+        self.bar.value, self.bar.visible = 0, False
         self.cancel_button.disabled = True
         said = html.escape(text or "ready")
         extra = "".join(f"<div>remark: {html.escape(r)}</div>" for r in remarks)

@@ -38,7 +38,7 @@ class Point:
         self.mode.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
         row = pn.Row(
-            pn.pane.Bokeh(self.circle, width=330),
+            pn.pane.Bokeh(self.circle, width=330, height=300),
             pn.pane.Bokeh(self.mode, sizing_mode="stretch_width"),
             sizing_mode="stretch_width",
             margin=0,

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 import panel as pn
+from panel.io.document import unlocked
 from panel.io.state import set_curdoc
 
 from trunnion.app import address
@@ -87,9 +88,10 @@ class Session:
     # -- what the user does ---------------------------------------------------------------------------------------
 
     def guarded(self, action: Callable[[], Any]) -> None:
-        """Do something the user asked for; a refusal or a failure becomes a message."""
+        """Change the page, all of it in one message; a refusal or a failure is said on it."""
         try:
-            action()
+            with unlocked():
+                action()
         except TrunnionError as error:
             self.page.message(str(error))
         except Exception as error:
@@ -258,7 +260,8 @@ class Session:
         steps = {step.name: step for step in view.steps(self.document.line)}
         if (name, ending) == ("view", "py"):
             calls = {step.name: (step.call, step.toml(toml)) for step in steps.values()}
-            return script(toml, calls, f"{view.title} of {self.document.line.name or 'a driveline'}").encode()
+            soft = {step.name for step in steps.values() if step.soft}
+            return script(toml, calls, f"{view.title} of {self.document.line.name or 'a driveline'}", soft).encode()
         step = steps[name]
         drawn = ("png", "svg") if step.picture else ()
         if ending not in (*drawn, *step.files):

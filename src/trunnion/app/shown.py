@@ -308,6 +308,22 @@ def run_up(result: Any) -> Plain:
     }
 
 
+def best(result: Any, path: str) -> Plain:
+    """The best value of a parameter, in SI units, and what it reaches."""
+    return {"value": result.values[path], "text": str(result)}
+
+
+def swept(result: Any, spring: str) -> Plain:
+    """Half peak-to-peak torque of one spring at every step of a sweep."""
+    return {"speed": result.value, "half": result.swing_of(spring) / 2, "text": str(result)}
+
+
+def followed(result: Any, unit: str) -> Plain:
+    """Half peak-to-peak torque along a followed response, and where it is stable; nothing where none was found."""
+    size = {"speed": result.frequency, "half": result.half_peak_to_peak, "stable": result.stable}
+    return {**(size if len(result.frequency) else {}), "text": result.describe(unit)}
+
+
 def plotted(result: Any) -> Plain:
     """The picture that a result draws of itself, and how it prints."""
     return {"svg": drawn(result.plot()), "text": str(result)}

@@ -59,9 +59,9 @@ class Sliders:
         self._quiet = False
         self.which = pn.widgets.Select(name="Parameter to move", options=[], sizing_mode="stretch_width")
         self.slider = pn.widgets.FloatSlider(name="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
-        self.value = pn.widgets.FloatInput(name="Value as a number", width=115)
-        self.low = pn.widgets.FloatInput(name="Slider from", width=75)
-        self.high = pn.widgets.FloatInput(name="to", width=75)
+        self.value = pn.widgets.FloatInput(name="Value as a number", width=105)
+        self.low = pn.widgets.FloatInput(name="Slider from", width=72)
+        self.high = pn.widgets.FloatInput(name="to", width=72)
         self.message = pn.pane.HTML("", css_classes=["refusal"])
         self.which.param.watch(lambda event: self._chosen(), "value")
         self.slider.param.watch(lambda event: self._moved(event.new), "value")

@@ -61,6 +61,7 @@ METHODS = (
     "sweep down",
 )
 OF_SYSTEMS = ("harmonic balance", "shooting")
+REPORTING = ("exact", "shooting")
 BALANCED = 20
 """Harmonics of a piecewise oscillator where none are asked for: folds to 1e-7."""
 SWEPT, SAMPLES = 101, 1024
@@ -260,7 +261,7 @@ def frequency_response(
     harmonics, tail : how many, or how small the last ones have to be (harmonic balance).
     points : frequencies of a sweep; least, most : forcing periods at each.
     epsilon, fit_range : of multiple scales and averaging.
-    progress : called with the share done (exact, shooting).
+    progress : called with the share done (exact, shooting; the others do not call it).
 
     What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
     ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
@@ -282,6 +283,8 @@ def frequency_response(
         "epsilon": epsilon, "fit_range": fit_range, "progress": progress,
     }  # fmt: skip
     options = {name: value for name, value in given.items() if value is not None}
+    if chosen not in REPORTING:
+        options.pop("progress", None)  # it changes no number, so nothing is refused
     _check_options(system, chosen, options, list(given))
     began = perf_counter()
     if isinstance(system, PiecewiseOscillator):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,7 +21,8 @@ from trunnion.results.speeds import speed_factor
 if TYPE_CHECKING:
     from trunnion.app.session import Session
 
-Setting = str | float | int | bool
+Setting = str | float | int | bool | None
+"""Of a view; one whose default is None is a number that is found by itself where none is typed."""
 NAMES = {
     "png": "PNG", "svg": "SVG", "csv": "CSV", "nc": "netCDF", "html": "HTML", "py": "Python", "toml": "TOML",
 }  # fmt: skip
@@ -133,6 +135,15 @@ class View(ABC):
         """Settings that differ from their defaults, for the address."""
         return {k: str(v) for k, v in self.settings.items() if v != self.defaults[k]}
 
+    def typed(self, key: str) -> float | None:
+        """The number of a setting; None where it is to be found by itself."""
+        value = self.settings[key]
+        return None if value is None else float(value)
+
+    def value(self, key: str) -> float:
+        """The number of a setting that always has one."""
+        return float(self.settings[key] or 0.0)
+
     def fill(self) -> None:
         """Show the settings in the controls."""
         self._quiet = True
@@ -160,7 +171,7 @@ class View(ABC):
         self.widgets[key] = widget
 
         def changed(event: Any) -> None:
-            if self._quiet or event.new is None:
+            if self._quiet or (event.new is None and self.defaults[key] is not None):
                 return
             self.settings[key] = event.new
             self.session.setting_chosen()
@@ -204,14 +215,17 @@ def _as(text: str, default: Setting) -> Setting:
         return text == "True"
     if isinstance(default, int):
         return int(text)
-    if isinstance(default, float):
-        return float(text)
+    if default is None or isinstance(default, float):
+        value = float(text)
+        if not math.isfinite(value):
+            raise ValueError
+        return value
     return text[:200]
 
 
 def bounded(value: Setting, least: int, most: int = MOST_POINTS) -> int:
     """A number of points within bounds, whatever an address says."""
-    return min(max(int(value), least), most)
+    return min(max(int(value or 0), least), most)
 
 
 def select(label: str, **more: Any) -> Any:
@@ -219,9 +233,19 @@ def select(label: str, **more: Any) -> Any:
     return pn.widgets.Select(name=label, width=more.pop("width", 220), **more)
 
 
-def number(label: str, value: float, **more: Any) -> Any:
+def number(label: str, value: float | None, **more: Any) -> Any:
     """A field for a number, with its label."""
     return pn.widgets.FloatInput(name=label, value=value, width=more.pop("width", 130), **more)
+
+
+def optional(label: str, **more: Any) -> Any:
+    """A field for a number that is found by itself while the field is empty; ``tell_default`` says what it is then."""
+    return number(label, None, **more)
+
+
+def tell_default(widget: Any, value: float, word: str = "auto") -> None:
+    """Say in an empty field which number stands for it."""
+    widget.placeholder = f"{word}: {value:.4g}"
 
 
 def count(label: str, value: int, start: int, end: int) -> Any:
@@ -244,11 +268,19 @@ def speed_range(line: Driveline) -> tuple[float, float]:
     return max(low, high / 1000), high
 
 
-def at_speed(line: Driveline, typed: float) -> float:
-    """The speed [rad/s] typed in the line's unit; 0 stands for the operating speed, or the middle of the range."""
-    if typed > 0:
+def at_speed(line: Driveline, typed: float | None) -> float:
+    """The speed [rad/s] typed in the line's unit; None stands for the operating speed, or the middle of the range."""
+    if typed:
         return typed / unit_of(line)[1]
     if line.operation and line.operation.speed:
         return line.operation.speed
     low, high = speed_range(line)
     return (low + high) / 2
+
+
+def label_speed(widget: Any, line: Driveline) -> None:
+    """The unit of a field for a speed, and the speed that stands for an empty one."""
+    unit, factor = unit_of(line)
+    widget.name = f"Speed [{unit}]"
+    operating = line.operation is not None and line.operation.speed is not None
+    tell_default(widget, at_speed(line, None) * factor, "operating" if operating else "auto")

@@ -14,7 +14,7 @@ from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
 from trunnion.app.document import Document
-from trunnion.app.views.base import Side, Step, View, at_speed, number, select, unit_of
+from trunnion.app.views.base import Side, Step, View, at_speed, label_speed, number, optional, select, unit_of
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.shafts import Shaft
 
@@ -32,11 +32,11 @@ class JointsView(View):
         "Motion, torques and couples over one turn of the input with rigid shafts; the forks as seen along the line, "
         "turned by sliders; the angle of a joint from its angles in side and top view."
     )
-    defaults = {"speed": 0.0, "torque": 100.0, "turn": 0.0, "shaft": "", "joint": "", "side": 0.0, "top": 0.0}
+    defaults = {"speed": None, "torque": 100.0, "turn": 0.0, "shaft": "", "joint": "", "side": 0.0, "top": 0.0}
 
     def make_controls(self) -> Any:
         """Speed and torque; fork offset; compound angle."""
-        self.speed = self.bind("speed", number("Speed", 0.0, start=0.0, width=170))
+        self.speed = self.bind("speed", optional("Speed", start=0.0, width=150))
         torque = self.bind("torque", number("Torque at the output [N·m]", 100.0, width=190))
         turn = pn.widgets.FloatSlider(name="Input turned by [deg]", start=0, end=360, step=5, value=0, width=260)
         self.bind("turn", turn)
@@ -62,7 +62,7 @@ class JointsView(View):
 
     def adapt(self, line: Driveline) -> None:
         """Joints of the line, and shafts with a fork at their front."""
-        self.speed.name = f"Speed [{unit_of(line)[0]}], 0: operating"
+        label_speed(self.speed, line)
         shafts = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Shaft)]
         self.choose("shaft", shafts)
         self.choose("joint", [name for name, _ in hooke_joints(line)])
@@ -97,7 +97,7 @@ class JointsView(View):
         """Bend and plane [rad] of the angles in side and top view."""
         from trunnion.driveline.layout import combined_angle
 
-        return combined_angle(float(self.settings["side"]) / DEGREES, float(self.settings["top"]) / DEGREES)
+        return combined_angle(self.value("side") / DEGREES, self.value("top") / DEGREES)
 
     def _use(self, document: Document) -> None:
         document.set_numbers(document.line.replace(str(self.settings["joint"]), angle=self.compound_angle()[0]))
@@ -106,10 +106,10 @@ class JointsView(View):
         """A turn, the best phasing, the forks in space."""
         angle, plane = self.compound_angle()
         self.compound.object = f"compound angle {angle * DEGREES:.5g}°, plane {plane * DEGREES:.5g}° from the vertical"
-        speed = at_speed(line, float(self.settings["speed"]))
-        turn = Call("tn.kinetostatics", (LINE, speed), {"output_torque": float(self.settings["torque"])})
+        speed = at_speed(line, self.typed("speed"))
+        turn = Call("tn.kinetostatics", (LINE, speed), {"output_torque": self.value("torque")})
         drawing = {"unit": unit_of(line)[0]}
-        space = Call("tn.sketch", (LINE,), {"input_angle": float(self.settings["turn"]) / DEGREES})
+        space = Call("tn.sketch", (LINE,), {"input_angle": self.value("turn") / DEGREES})
         return [
             Step("turn", turn, "turn", drawing=drawing, title="one turn", files=("csv", "nc"), columns=_COLUMNS),
             Step("phasing", Call("tn.phase_forks", (LINE,)), "phasing", picture="", files=(), soft=True),
@@ -175,7 +175,7 @@ class _Side(Side):
 
     def _turn(self, data: Any) -> None:
         x = data["input_angle"] * DEGREES
-        cursor = float(self.view.settings["turn"])
+        cursor = self.view.value("turn")
         speed = [(n, x, 100 * v) for n, v in zip(data["shafts"], data["deviation"], strict=True)]
         self.speed.set(speed, cursor=cursor, title="speed of the shafts over one turn")
         torque = [(n, x, v) for n, v in zip(data["shafts"], data["torque"], strict=True)]

@@ -7,17 +7,46 @@ from typing import Any
 import numpy as np
 import panel as pn
 
+from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
-from trunnion.app.variants import kind_of, parameters, shown_unit
-from trunnion.app.views.base import MOST_POINTS, Side, Step, View, bounded, count, number, select, speed_range, unit_of
+from trunnion.app.variants import kind_of, parameters, shown_unit, with_number
+from trunnion.app.views.base import (
+    MOST_POINTS,
+    Side,
+    Step,
+    View,
+    bounded,
+    count,
+    number,
+    optional,
+    select,
+    speed_range,
+    tell_default,
+    unit_of,
+)
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import pack
 from trunnion.driveline.quantities import DEGREE
+from trunnion.equations.coefficients import assemble
+from trunnion.errors import InputError
 
 STABLE, WINDOWS, TOLERANCES = "stable limit of a parameter", "stable windows of a parameter", "tolerances"
 RANKED, ASSEMBLY = "what the checks follow most", "errors of assembly"
+BEST = "best value of a parameter"
+ASKS = {
+    STABLE: ("parameter", "low", "high", "speeds"),
+    WINDOWS: ("parameter", "low", "high"),
+    TOLERANCES: ("tolerance",),
+    RANKED: (),
+    ASSEMBLY: ("error",),
+    BEST: ("parameter", "low", "high", "aim"),
+}
+"""Which controls a question has."""
+AIMS = ("least spare margin", "irregularity", "growth rate")
+DESIGNS = 40
+"""Lines computed in the search for one best value."""
 SCATTER = (".stiffness", ".inertia", ".damping", ".angle")
 """What scatters in a study of tolerances, where it is not zero."""
 SAMPLES = 4096
@@ -34,23 +63,27 @@ class LimitsView(View):
         "limits of the description are reached before; all windows of it that keep every speed stable, with the "
         "regions between them; how probable stability is within tolerances of all stiffness, inertia, damping and "
         "angles; the numbers that move the binding check most, ranked; which angle, off by a little, costs most "
-        "uniformity."
+        "uniformity; and the value of a parameter, within bounds, that is best in an aim while limits and ratings hold."
     )
     defaults = {
-        "what": STABLE, "parameter": "", "low": 0.0, "high": 0.0, "speeds": 31, "error": 1.0, "tolerance": 5.0,
+        "what": STABLE, "parameter": "", "low": None, "high": None, "speeds": 31, "error": 1.0, "tolerance": 5.0,
+        "aim": AIMS[0],
     }  # fmt: skip
 
     def make_controls(self) -> Any:
         """What is asked, of which parameter, over which range."""
-        self.ends = {key: self.bind(key, number(key, 0.0, width=120)) for key in ("low", "high")}
-        return pn.FlexBox(
-            self.bind("what", select("Limit", options=[STABLE, WINDOWS, TOLERANCES, RANKED, ASSEMBLY], width=230)),
-            self.bind("parameter", select("Parameter", options=[])),
-            *self.ends.values(),
-            self.bind("speeds", count("Speeds", 31, 2, MOST_POINTS)),
-            self.bind("error", number("Error of assembly [deg]", 1.0, start=0.01, width=170)),
-            self.bind("tolerance", number("Tolerance [±%]", 5.0, start=0.01, width=130)),
-        )
+        what = self.bind("what", select("Limit", options=list(ASKS), width=230))
+        what.param.watch(lambda event: self._ask(), "value")
+        self.bind("parameter", select("Parameter", options=[]))
+        for key in ("low", "high"):
+            self.bind(key, optional(key, width=130))
+        self.bind("speeds", count("Speeds", 31, 2, MOST_POINTS))
+        self.bind("error", number("Error of assembly [deg]", 1.0, start=0.01, width=170))
+        self.bind("tolerance", number("Tolerance [±%]", 5.0, start=0.01, width=130))
+        self.bind("aim", select("Best in", options=list(AIMS), width=260))
+        self.use = pn.widgets.Button(name="Use the best value", width=160, align="end", disabled=True)
+        self.use.on_click(lambda event: self._use())
+        return pn.FlexBox(*self.widgets.values(), self.use)
 
     def adapt(self, line: Driveline) -> None:
         """Parameters of the line."""
@@ -58,9 +91,33 @@ class LimitsView(View):
         if self.settings["parameter"] not in paths:
             self.settings["parameter"] = next((p for p in paths if p.endswith(".angle")), paths[0])
         self.choose("parameter", paths)
-        unit, _ = self.unit(line)
-        self.ends["low"].name = f"from [{unit}]"
-        self.ends["high"].name = f"to [{unit}], 0: by itself"
+        unit, size = self.unit(line)
+        for key, word, value in zip(("low", "high"), ("from", "to"), self._own_ends(line), strict=True):
+            self.widgets[key].name = f"{word} [{unit}]"
+            tell_default(self.widgets[key], value / size)
+        torques = [f"{kind} torque of {n}" for n in shaft_names(assemble(line)) for kind in ("vibratory", "peak")]
+        self.choose("aim", [*AIMS, *torques])
+        self.best: float | None = None
+        self._ask()
+
+    def _ask(self) -> None:
+        """Show the controls of the question, and nothing of another one."""
+        what = str(self.widgets["what"].value)
+        for key, widget in self.widgets.items():
+            widget.visible = key == "what" or key in ASKS[what]
+        self.use.visible, self.use.disabled = what == BEST, True
+        for side in self.sides.values():
+            assert isinstance(side, _Side)
+            side.begin(what)
+
+    def found(self, value: float) -> None:
+        """The best value of the parameter in SI units, which the button takes over."""
+        self.best, self.use.disabled = value, False
+
+    def _use(self) -> None:
+        if self.best is not None:
+            line = with_number(self.session.document.line, str(self.settings["parameter"]), self.best)
+            self.session.edit(lambda document: document.set_numbers(line))
 
     def unit(self, line: Driveline) -> tuple[str, float]:
         """The unit of the parameter, and its size in SI."""
@@ -74,15 +131,16 @@ class LimitsView(View):
             call = Call("tn.remedies", (LINE,), {"most": 1})
             return [Step("ranked", call, "ranked", picture="", files=("csv", "nc"), columns=("sensitivity",))]
         if what == ASSEMBLY:
-            call = Call("tn.assembly_sensitivity", (LINE, float(self.settings["error"]) * DEGREE))
+            call = Call("tn.assembly_sensitivity", (LINE, self.value("error") * DEGREE))
             return [Step("assembly", call, "assembly", picture="", files=())]
         if what == TOLERANCES:
             return [self._tolerances(line)]
-        path, (_, size) = str(self.settings["parameter"]), self.unit(line)
-        low, high = float(self.settings["low"]) * size, float(self.settings["high"]) * size
-        if not low < high:
-            now = pack(line).value(path)
-            high = 45 * DEGREE if path.endswith(".angle") else 4 * now if now > 0 else low + size
+        path, (low, high) = str(self.settings["parameter"]), self.range(line)
+        if what == BEST:
+            free = {path: (low, high)}
+            call = Call("tn.optimise", (LINE, free, str(self.settings["aim"])), {"designs": DESIGNS})
+            return [Step("best", call, "best", {"path": path}, picture="", files=("csv", "nc"),
+                         columns=("low", "high", "before", "value"), title="best value")]  # fmt: skip
         if what == WINDOWS:
             call = Call("tn.stable_windows", (LINE, path, low, high, speed_range(line)))
             drawing = {"unit": unit_of(line)[0]}
@@ -92,9 +150,36 @@ class LimitsView(View):
         columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
         return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit", columns=columns)]
 
+    def range(self, line: Driveline) -> tuple[float, float]:
+        """Ends of the parameter in SI units: as typed, or by themselves.
+
+        Raises
+        ------
+        InputError : they do not rise.
+        """
+        (_, size), (low, high) = self.unit(line), self._own_ends(line)
+        first, last = self.typed("low"), self.typed("high")
+        low, high = low if first is None else first * size, high if last is None else last * size
+        if not low < high:
+            problem, remedy = (
+                f"runs from {low / size:g} to {high / size:g}",
+                "type two ends that rise, or leave the fields empty",
+            )
+            raise InputError(problem, key=str(self.settings["parameter"]), remedy=remedy)
+        return low, high
+
+    def _own_ends(self, line: Driveline) -> tuple[float, float]:
+        path, (unit, size) = str(self.settings["parameter"]), self.unit(line)
+        now = pack(line).value(path)
+        if path.endswith(".angle"):
+            return 0.0, 45 * DEGREE
+        if unit == "deg":
+            return -90 * DEGREE, 90 * DEGREE
+        return 0.0, 4 * now if now > 0 else size
+
     def _tolerances(self, line: Driveline) -> Step:
         """Uniform tolerances of everything that is not zero."""
-        packed, share = pack(line), min(max(float(self.settings["tolerance"]), 0.01), 90.0) / 100
+        packed, share = pack(line), min(max(self.value("tolerance"), 0.01), 90.0) / 100
         scatter = {p: share for p in parameters(line) if p.endswith(SCATTER) and packed.value(p)}
         low, high = speed_range(line)
         speed = line.operation.speed if line.operation and line.operation.speed else (low + high) / 2
@@ -118,16 +203,29 @@ class _Side(Side):
         self.bars.visible = False
         self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
         self.panel = pn.Column(self.curves.panel, self.bar_panel, self.text, sizing_mode="stretch_width", margin=0)
+        self.what = ""
+        self.begin(str(view.settings["what"]))
+
+    def begin(self, what: str) -> None:
+        """Forget what belongs to another question."""
+        if what != self.what:
+            self.what = what
+            self.curves.panel.visible = self.bar_panel.visible = False
+            self.text.object = ""
 
     def show(self, name: str, data: Any) -> None:
         """What was asked for."""
+        self.text.object = f"<pre style='white-space:pre-wrap;font-size:13px'>{figures.text(data['text'])}</pre>"
+        if name == "best":
+            if self.variant == "now":
+                self.view.found(data["value"])
+            return
         drawn = name in ("limit", "windows")
         for shown, panel, figure in (
             (drawn, self.curves.panel, self.curves.figure),
             (not drawn, self.bar_panel, self.bars),
         ):
             panel.visible = figure.visible = shown
-        self.text.object = f"<pre style='white-space:pre-wrap;font-size:13px'>{figures.text(data['text'])}</pre>"
         if not drawn:
             order = np.argsort(-np.abs(np.asarray(data["value"])))[:16]
             names = [data["name"][i] for i in order]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,40 @@ import panel as pn
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
-from trunnion.app.views.base import Side, Step, View, at_speed, bounded, count, number, select, speed_range, unit_of
+from trunnion.app.views.base import (
+    Side,
+    Step,
+    View,
+    at_speed,
+    bounded,
+    count,
+    label_speed,
+    number,
+    optional,
+    select,
+    speed_range,
+    unit_of,
+)
 from trunnion.driveline.driveline import Driveline
 
 PERIODIC, RUN_UP, RATTLE = "periodic response", "run-up", "rattle over speed"
 POINCARE, EXPONENTS, CHAOS = "Poincaré map", "Lyapunov exponents", "is it chaos?"
+MOTIONS = {PERIODIC: "periodic", RUN_UP: "run-up", RATTLE: "rattle", POINCARE: "section", EXPONENTS: "exponents",
+           CHAOS: "chaos"}  # fmt: skip
+ASKS = {
+    "periodic": ("speed",),
+    "run-up": ("rate",),
+    "rattle": ("spring", "points"),
+    "section": ("speed", "returns"),
+    "exponents": ("speed",),
+    "chaos": ("speed",),
+}
+"""Which controls a motion has."""
+PICTURES = ("map", "exponents", "certificate")
+"""Steps that show the picture that their result draws of itself."""
+METHODS = {"exact": figures.INK, "shooting": figures.GREEN, "harmonic balance": figures.SKY}
+"""Of a response followed over speed, with the colour of each."""
+SWEEPS = {"up": ("sweep up", "triangle", figures.BLUE), "down": ("sweep down", "inverted_triangle", figures.ORANGE)}
 
 
 class MotionView(View):
@@ -24,50 +54,57 @@ class MotionView(View):
     name = "motion"
     title = "Motion"
     about = (
-        "Motions of the line with everything that linear theory leaves out. Long computations show their progress and "
-        "can be cancelled."
+        "Motions of the line with everything that linear theory leaves out. Long computations can be cancelled; what "
+        "is found by then stays."
     )
-    defaults = {"what": PERIODIC, "speed": 0.0, "rate": 100.0, "points": 40}
+    defaults = {"what": "periodic", "speed": None, "rate": 100.0, "points": 40, "spring": "", "returns": 400}
 
     def make_controls(self) -> Any:
         """Which motion, at which speed."""
-        kinds = [PERIODIC, RUN_UP, RATTLE, POINCARE, EXPONENTS, CHAOS]
-        self.speed = self.bind("speed", number("Speed", 0.0, start=0.0, width=170))
-        return pn.FlexBox(
-            self.bind("what", select("Motion", options=kinds)),
-            self.speed,
-            self.bind("rate", number("Acceleration of the run-up [rad/s²]", 100.0, start=0.01, width=240)),
-            self.bind("points", count("Points of a sweep", 40, 2, 400)),
-        )
+        what = self.bind("what", select("Motion", options=MOTIONS))
+        what.param.watch(lambda event: self._ask(), "value")
+        self.speed = self.bind("speed", optional("Speed", start=0.0, width=170))
+        self.bind("rate", number("Acceleration [rad/s²]", 100.0, start=0.01, width=170))
+        self.bind("spring", select("Torque of", options=[]))
+        self.bind("points", count("Points of a sweep", 40, 2, 400))
+        self.bind("returns", count("Points of the map", 400, 10, 20_000))
+        return pn.FlexBox(*self.widgets.values())
 
     def adapt(self, line: Driveline) -> None:
-        """The unit of speeds."""
-        self.speed.name = f"Speed [{unit_of(line)[0]}], 0: operating"
+        """The unit of speeds, the shafts."""
+        from trunnion.analyses.linear.forced_response import shaft_names
+        from trunnion.equations.coefficients import assemble
+
+        label_speed(self.speed, line)
+        self.choose("spring", list(shaft_names(assemble(line))))
+        self._ask()
+
+    def _ask(self) -> None:
+        """Show the controls of the motion, and nothing of another one."""
+        what = str(self.widgets["what"].value)
+        for key, widget in self.widgets.items():
+            widget.visible = key == "what" or key in ASKS[what]
+        for side in self.sides.values():
+            assert isinstance(side, _Side)
+            side.begin(what)
 
     def steps(self, line: Driveline) -> list[Step]:
         """The motion that is asked for."""
-        speed = at_speed(line, float(self.settings["speed"]))
-        low, high = speed_range(line)
-        unit = {"unit": unit_of(line)[0]}
+        speed = at_speed(line, self.typed("speed"))
         match self.settings["what"]:
             case "run-up":
-                rate = {"acceleration": float(self.settings["rate"])}
-                call = Call("tn.run_up", (LINE, low, high), rate)
-                return [Step("run_up", call, "run_up", drawing=unit, title=RUN_UP)]
-            case "rattle over speed":
-                points = bounded(self.settings["points"], 2)
-                ways = (("up", low, high), ("down", high, low))
-                calls = {way: Call("tn.sweep", (LINE, Call("np.linspace", (a, b, points)))) for way, a, b in ways}
-                sweeps = [Step(f"sweep_{w}", c, "plotted", title=f"sweep {w}", soft=True) for w, c in calls.items()]
-                curve = Call("tn.frequency_response", (LINE, low, high))
-                return [*sweeps, Step("response", curve, "plotted", title="followed branch", soft=True)]
-            case "Poincaré map":
-                call = Call("tn.poincare_map", (LINE, 400), {"speed": speed})
-                return [Step("map", call, "plotted", title=POINCARE)]
-            case "Lyapunov exponents":
+                return self._run_up(line)
+            case "rattle":
+                return self._rattle(line)
+            case "section":
+                returns = bounded(self.settings["returns"], 10, 20_000)
+                return [
+                    Step("map", Call("tn.poincare_map", (LINE, returns), {"speed": speed}), "plotted", title=POINCARE)
+                ]
+            case "exponents":
                 call = Call("tn.lyapunov_spectrum", (LINE,), {"speed": speed})
                 return [Step("exponents", call, "plotted", title=EXPONENTS)]
-            case "is it chaos?":
+            case "chaos":
                 call = Call("tn.certify_chaos", (LINE,), {"speed": speed, "sweep": False})
                 return [Step("certificate", call, "plotted", title="verdict on chaos", files=("nc",))]
         linear = Call("tn.order_response", (LINE, (speed,)))
@@ -75,6 +112,38 @@ class MotionView(View):
             Step("periodic", Call("tn.periodic_response", (LINE, speed)), "periodic", title=PERIODIC),
             Step("linear", linear, "waves", picture="", files=("nc",), title="linear theory", soft=True),
         ]
+
+    def _run_up(self, line: Driveline) -> list[Step]:
+        """The run-up alone at first, since the steady motions beside it may take long."""
+        ends, rate = speed_range(line), {"acceleration": self.value("rate")}
+        alone = Call("tn.run_up", (LINE, *ends), {**rate, "steady": 0})
+        whole = Call("tn.run_up", (LINE, *ends), rate)
+        unit = {"unit": unit_of(line)[0]}
+        return [
+            Step("alone", alone, "run_up", picture="", files=()),
+            Step("run_up", whole, "run_up", drawing=unit, title=RUN_UP, soft=True),
+        ]
+
+    def _rattle(self, line: Driveline) -> list[Step]:
+        """Sweeps up and down, and the response followed by every method that there is for the line."""
+        from trunnion.analyses.orbits.frequency_response import methods_of
+
+        (low, high), spring = speed_range(line), str(self.settings["spring"])
+        points = bounded(self.settings["points"], 2)
+        ends = {"up": (low, high), "down": (high, low)}
+        steps = [
+            Step(f"sweep_{way}", Call("tn.sweep", (LINE, Call("np.linspace", (*ends[way], points)))), "swept",
+                 {"spring": spring}, title=title, soft=True)
+            for way, (title, _, _) in SWEEPS.items()
+        ]  # fmt: skip
+        known = [m for m in METHODS if m in methods_of(line)]
+        return steps + [
+            Step(method.replace(" ", "_"),
+                 Call("tn.frequency_response", (LINE, low, high), {"method": method, "curve": spring}), "followed",
+                 {"unit": unit_of(line)[0]},
+                 title=f"response: {method}", soft=True)
+            for method in known
+        ]  # fmt: skip
 
     def side(self) -> Any:
         """Curves, or the picture of the result, and its text."""
@@ -85,45 +154,67 @@ class _Side(Side):
     def __init__(self, view: MotionView) -> None:
         self.view = view
         self.curves = Curves("time [ms]", "torque [N·m]", height=380)
-        self.pictures = pn.Column(sizing_mode="stretch_width", margin=0)
+        for title, shape, colour in SWEEPS.values():
+            self.curves.mark(title, shape, colour)
+        self.picture = pn.pane.HTML("", sizing_mode="stretch_width")
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.panel = pn.Column(self.curves.panel, self.text, self.pictures, sizing_mode="stretch_width", margin=0)
-        self.drawn: dict[str, Any] = {}
-        self.motion: list[Any] = []
+        self.panel = pn.Column(self.curves.panel, self.picture, self.text, sizing_mode="stretch_width", margin=0)
+        self.what = ""
+        self.found: dict[str, Any] = {}
+        self.begin(str(view.settings["what"]))
+
+    def begin(self, what: str) -> None:
+        """Forget what belongs to another motion."""
+        if what == self.what:
+            return
+        self.what = what
+        self.found = {}
+        self.curves.set([])
+        self.curves.panel.visible = False
+        self.picture.object = self.text.object = ""
+        for title, _, _ in SWEEPS.values():
+            self.curves.put_marks(title, [], [])
 
     def show(self, name: str, data: Any) -> None:
         """What a step gave."""
-        if name == "linear":
-            self._periodic([(f"{n}, linear theory", t, v) for n, t, v in _curves(data)])
-            return
-        self.curves.panel.visible = name in ("periodic", "run_up")
-        if self.curves.panel.visible:
-            self.pictures.objects = []
-            self.text.object = _text(data["text"])
-        if name == "periodic":
-            self.motion = _curves(data)
-            self._periodic([])
-        elif name == "run_up":
+        self.curves.panel.visible = name not in PICTURES
+        if name in ("periodic", "linear"):
+            self._periodic(name, data)
+        elif name in ("alone", "run_up"):
             self._run_up(data)
+        elif name not in PICTURES:
+            self._rattle(name, data)
         else:
-            self.text.object = ""
-            self._picture(name, data["svg"], data["text"])
+            image = base64.b64encode(data["svg"].encode()).decode()
+            self.picture.object = (
+                f"<img alt='{html.escape(name)}' style='width:100%;max-width:820px' "
+                f"src='data:image/svg+xml;base64,{image}'>"
+            )
+            self.text.object = _text(data["text"])
 
     def refused(self, name: str, sentence: str) -> None:
         """Why a soft step gave nothing."""
         if name == "linear":
             self.text.object += _text(f"no linear theory beside it: {sentence}")
-            return
-        self.curves.panel.visible = False
-        self._picture(name, "", sentence)
+        elif name == "run_up":
+            self.text.object += _text(f"no steady motions beside it: {sentence}")
+        else:
+            self._rattle(name, {"text": sentence})
 
-    def _periodic(self, linear: list[Any]) -> None:
-        looks = [figures.look(k)["line_color"] for k in range(len(self.motion))]
+    def _periodic(self, name: str, data: Any) -> None:
+        if name == "periodic":
+            self.found = {}
+            self.text.object = _text(data["text"])
+        suffix = "" if name == "periodic" else ", linear theory"
+        self.found[name] = [(n + suffix, 1e3 * np.asarray(data["time"]), v) for n, v in _torques(data)]
+        motion, linear = (self.found.get(key, []) for key in ("periodic", "linear"))
+        looks = [figures.look(k)["line_color"] for k in range(len(motion))]
         self.curves.set(
-            [*self.motion, *linear],
+            [*motion, *linear],
             colours=[*looks, *looks],
-            dashes=["solid"] * len(self.motion) + ["dashed"] * len(linear),
+            dashes=["solid"] * len(motion) + ["dashed"] * len(linear),
             x="time [ms]",
+            y="torque [N·m]",
             title="torque over one period: true motion (solid), linear theory (dashed)",
         )
 
@@ -134,6 +225,7 @@ class _Side(Side):
         steady = [
             (f"{n}, steady", data["steady_speed"] * factor, v)
             for n, v in zip(data["names"], data["steady"], strict=True)
+            if len(data["steady_speed"])
         ]
         looks = [figures.look(k)["line_color"] for k in range(len(curves))]
         self.curves.set(
@@ -141,20 +233,57 @@ class _Side(Side):
             colours=[*looks, *looks],
             dashes=["solid"] * len(curves) + ["dashed"] * len(steady),
             x=f"input speed [{unit}]",
+            y="torque [N·m]",
             title="largest torque in each turn of the run-up (solid), steady motion (dashed)",
         )
+        self.text.object = _text(data["text"])
 
-    def _picture(self, name: str, svg: str, text: str) -> None:
-        asked = {step.name for step in self.view.steps(self.view.line_of(self))}
-        self.drawn = {key: value for key, value in self.drawn.items() if key in asked}
-        image = base64.b64encode(svg.encode()).decode()
-        picture = f"<img alt='{name}' style='width:100%;max-width:820px' src='data:image/svg+xml;base64,{image}'>"
-        self.drawn[name] = pn.pane.HTML((picture if svg else "") + _text(text), sizing_mode="stretch_width")
-        self.pictures.objects = list(self.drawn.values())
+    def _rattle(self, name: str, data: Any) -> None:
+        """All methods on one picture; what each said below."""
+        asked = {step.name: step.title for step in self.view.steps(self.view.line_of(self))}
+        if name == next(iter(asked)):
+            self.found = {}
+        self.found[name] = data
+        unit, factor = unit_of(self.view.line_of(self))
+        for way, (title, _, _) in SWEEPS.items():
+            swept = self.found.get(f"sweep_{way}", {})
+            self.curves.put_marks(title, np.asarray(swept.get("speed", ())) * factor, swept.get("half", ()))
+        curves, colours, dashes = [], [], []
+        for method, colour in METHODS.items():
+            followed = self.found.get(method.replace(" ", "_"), {})
+            for stable, dash in ((True, "solid"), (False, "dashed")):
+                if len(part := _part(followed, stable)):
+                    curves.append((method if stable else f"{method}, unstable", followed["speed"] * factor, part))
+                    colours.append(colour)
+                    dashes.append(dash)
+        self.curves.set(
+            curves,
+            colours=colours,
+            dashes=dashes,
+            x=f"input speed [{unit}]",
+            y="half peak-to-peak torque [N·m]",
+            title=f"vibration of {self.view.settings['spring']} by every method: stable solid, unstable dashed",
+        )
+        titles = {step.name: step.title for step in self.view.steps(self.view.line_of(self))}
+        self.text.object = "".join(
+            _text(f"{titles[key]}\n{self.found[key]['text']}") for key in asked if key in self.found
+        )
 
 
-def _curves(data: Any) -> list[Any]:
-    return [(n, 1e3 * np.asarray(data["time"]), v) for n, v in zip(data["names"], data["torque"], strict=True)]
+def _part(followed: Any, stable: bool) -> Any:
+    """The curve where it is stable, or where not with the points next to that; NaN elsewhere."""
+    if not followed or "half" not in followed:
+        return ()
+    there = np.asarray(followed["stable"], dtype=bool) == stable
+    if not there.any():
+        return ()
+    if not stable:
+        there = there | np.roll(there, 1) | np.roll(there, -1)
+    return np.where(there, followed["half"], np.nan)
+
+
+def _torques(data: Any) -> list[Any]:
+    return list(zip(data["names"], data["torque"], strict=True))
 
 
 def _text(text: str) -> str:

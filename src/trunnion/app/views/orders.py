@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, Span
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
-from trunnion.app.views.base import Side, Step, View, at_speed, number, select, speed_range, unit_of
+from trunnion.app.views.base import Side, Step, View, at_speed, label_speed, optional, select, speed_range, unit_of
 from trunnion.app.views.verdict import load_cases
 from trunnion.driveline.driveline import Driveline
 
@@ -29,11 +29,11 @@ class OrdersView(View):
         "Vibratory torque by order over the speed, what excites which mode, how modes move, and the torque over time. "
         "Click a speed in a picture, or type it."
     )
-    defaults = {"spring": "", "load": AS_STATED, "speed": 0.0, "mode": 1}
+    defaults = {"spring": "", "load": AS_STATED, "speed": None, "mode": 1}
 
     def make_controls(self) -> Any:
         """Shaft, load, speed, mode."""
-        self.speed = self.bind("speed", number("Speed", 0.0, start=0.0, width=150))
+        self.speed = self.bind("speed", optional("Speed", start=0.0, width=150))
         return pn.FlexBox(
             self.bind("spring", select("Shaft", options=[])),
             self.bind("load", select("Load", options=[AS_STATED])),
@@ -48,14 +48,14 @@ class OrdersView(View):
 
         self.choose("spring", list(shaft_names(assemble(line))))
         self.choose("load", [AS_STATED, *load_cases(line)])
-        self.speed.name = f"Speed [{unit_of(line)[0]}], 0: operating"
+        label_speed(self.speed, line)
 
     def steps(self, line: Driveline) -> list[Step]:
         """Orders, wave form, Campbell diagram, modes."""
         case = {} if self.settings["load"] == AS_STATED else {"load_case": self.settings["load"]}
         low, high = speed_range(line)
         unit, _ = unit_of(line)
-        speed = at_speed(line, float(self.settings["speed"]))
+        speed = at_speed(line, self.typed("speed"))
         spring = str(self.settings["spring"])
         speeds = Call("tn.sweep_speeds", (LINE, low, high))
         shown = {"spring": spring, "unit": unit}
@@ -118,7 +118,7 @@ class _Side(Side):
         """What a step gave."""
         line = self.view.line_of(self)
         unit, factor = unit_of(line)
-        cursor = at_speed(line, float(self.view.settings["speed"])) * factor
+        cursor = at_speed(line, self.view.typed("speed")) * factor
         if name == "orders":
             self._orders(data, unit, factor, cursor)
         elif name == "wave":
@@ -127,7 +127,7 @@ class _Side(Side):
         elif name == "campbell":
             self._campbell(data, unit, factor, cursor)
         else:
-            self.mode.set(data, int(self.view.settings["mode"]))
+            self.mode.set(data, int(self.view.value("mode")))
 
     def _orders(self, data: Any, unit: str, factor: float, cursor: float) -> None:
         x = data["speed"] * factor

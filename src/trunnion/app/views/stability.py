@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,20 @@ from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
 from trunnion.app.point import Point
 from trunnion.app.variants import kind_of, parameters, shown_unit, with_number
-from trunnion.app.views.base import MOST_POINTS, Side, Step, View, bounded, count, number, select, speed_range, unit_of
+from trunnion.app.views.base import (
+    MOST_POINTS,
+    Side,
+    Step,
+    View,
+    bounded,
+    count,
+    number,
+    optional,
+    select,
+    speed_range,
+    tell_default,
+    unit_of,
+)
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, pack
 from trunnion.driveline.quantities import DEGREE
@@ -61,15 +74,13 @@ class StabilityView(View):
         "growing mode and the motion. Zooming in shows more points of the same chart."
     )
     defaults = {
-        "x": SPEED, "x_low": 0.0, "x_high": 0.0, "y": "", "y_low": 0.0, "y_high": 0.0, "across": 60, "up": 60,
+        "x": SPEED, "x_low": None, "x_high": None, "y": "", "y_low": None, "y_high": None, "across": 60, "up": 60,
         "at_x": 0.0, "at_y": 0.0, "look": False,
     }  # fmt: skip
 
     def make_controls(self) -> Any:
-        """Axes, ends (0 and 0: by themselves), points, the point looked at."""
-        fields = {key: number(label, 0.0, width=105) for key, label in _ENDS.items()}
-        for key, widget in fields.items():
-            self.bind(key, widget)
+        """Axes, ends (by themselves where empty), points, the point looked at."""
+        fields = {key: self.bind(key, optional(label, width=125)) for key, label in _ENDS.items()}
         self.at = {key: self.bind(key, number(label, 0.0, width=150)) for key, label in _AT.items()}
         for widget in self.at.values():
             widget.param.watch(lambda event: self.settings.update(look=True) if not self._quiet else None, "value")
@@ -89,7 +100,7 @@ class StabilityView(View):
     def _other_axis(self, key: str, path: str | None) -> None:
         """Ends and point belong to the old axes."""
         if not self._quiet and path:
-            self.settings.update({key: path, "look": False, f"{key}_low": 0.0, f"{key}_high": 0.0})
+            self.settings.update({key: path, "look": False, f"{key}_low": None, f"{key}_high": None})
             self.adapt(self.session.document.line)
 
     def adapt(self, line: Driveline) -> None:
@@ -102,39 +113,58 @@ class StabilityView(View):
         for key, end in (("x", "at_x"), ("y", "at_y")):
             axis = self.axis(line, key)
             self.at[end].name = f"Look at {axis.label}"
+            low, high = self._own_ends(line, axis)
+            for side, value in (("low", low), ("high", high)):
+                widget = self.widgets[f"{key}_{side}"]
+                widget.name = f"{_ENDS[f'{key}_{side}']} [{axis.unit}]"
+                tell_default(widget, value / axis.size)
             if not self.settings["look"]:
                 self.settings[end] = float(f"{_now(line, axis) / axis.size:.6g}")
         self.fill()
 
     def axis(self, line: Driveline, key: str) -> Axis:
-        """The axis as set, or by itself about the value of the line."""
+        """The axis with the ends as typed, or by themselves about the value of the line."""
         path = str(self.settings[key])
-        low, high = float(self.settings[f"{key}_low"]), float(self.settings[f"{key}_high"])
         if path == SPEED:
             unit, factor = unit_of(line)
-            ends = (low / factor, high / factor) if low < high else speed_range(line)
-            return Axis(path, *ends, unit, 1 / factor)
-        now = pack(line).value(path)
-        unit, size = shown_unit(kind_of(line, path), now)
-        if low < high:
-            return Axis(path, low * size, high * size, unit, size)
-        if path.endswith(".angle"):
-            return Axis(path, *angle_range(line), "deg", DEGREE)
-        first, last = (now / 4, now * 4) if now else (0.0, size)
-        return Axis(path, min(first, last), max(first, last), unit, size)
+            size = 1 / factor
+        elif path.endswith(".angle"):
+            unit, size = "deg", DEGREE
+        else:
+            unit, size = shown_unit(kind_of(line, path), pack(line).value(path))
+        axis = Axis(path, 0.0, 0.0, unit, size)
+        low, high = self._own_ends(line, axis)
+        first, last = self.typed(f"{key}_low"), self.typed(f"{key}_high")
+        return replace(axis, low=low if first is None else first * size, high=high if last is None else last * size)
+
+    def _own_ends(self, line: Driveline, axis: Axis) -> tuple[float, float]:
+        """Ends of an axis where none are typed, in SI."""
+        if axis.path == SPEED:
+            return speed_range(line)
+        if axis.path.endswith(".angle"):
+            return angle_range(line)
+        now = pack(line).value(axis.path)
+        first, last = (now / 4, now * 4) if now else (0.0, axis.size)
+        return min(first, last), max(first, last)
 
     def axes(self, line: Driveline) -> tuple[Axis, Axis]:
         """Both."""
         if self.settings["x"] == self.settings["y"]:
             remedy = "choose another along y"
             raise InputError("stands on both axes", key=str(self.settings["x"]), remedy=remedy)
-        return self.axis(line, "x"), self.axis(line, "y")
+        x, y = self.axis(line, "x"), self.axis(line, "y")
+        for axis in (x, y):
+            if not axis.low < axis.high:
+                problem = f"runs from {axis.low / axis.size:g} to {axis.high / axis.size:g} {axis.unit}"
+                remedy = "type two ends that rise, or leave the fields empty"
+                raise InputError(problem, key=axis.path, remedy=remedy)
+        return x, y
 
     def point(self, line: Driveline) -> tuple[float, float]:
         """The point looked at, in SI: as set, or the operating point."""
         x, y = self.axes(line)
         if self.settings["look"]:
-            return float(self.settings["at_x"]) * x.size, float(self.settings["at_y"]) * y.size
+            return self.value("at_x") * x.size, self.value("at_y") * y.size
         return tuple(_now(line, axis) for axis in (x, y))  # type: ignore[return-value]
 
     def steps(self, line: Driveline) -> list[Step]:

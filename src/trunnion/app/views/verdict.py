@@ -17,6 +17,11 @@ from trunnion.app.views.base import Side, Step, View, select, speed_range, unit_
 from trunnion.driveline.driveline import Driveline
 
 ALL = "as stated and every load case"
+MOST = 14
+"""Bars of checks that are judged, and lines of those that are not."""
+FAR = 2.0
+"""Margin at which a bar ends, either way."""
+COLOURS = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
 
 
 class VerdictView(View):
@@ -78,12 +83,15 @@ class _Side(Side):
     def __init__(self, view: VerdictView) -> None:
         self.view, session = view, view.session
         self.sentence = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], tools="")
-        self.bars = figures.source(check=[], margin=[], colour=[], said=[])
+        self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], x_range=(0, 100), tools="")
+        self.bars = figures.source(check=[], margin=[], colour=[], hatch=[], said=[], words=[], end=[])
         bar = self.margins.hbar(
             y="check", right="margin", height=0.6, color="colour", hatch_pattern="hatch", source=self.bars
         )
-        self.bars.data = {"check": [], "margin": [], "colour": [], "hatch": [], "said": []}
+        self.margins.text(
+            x="end", y="check", text="words", source=self.bars, x_offset=6, text_baseline="middle",
+            text_font_size="12px", text_color=figures.INK,
+        )  # fmt: skip
         self.margins.add_layout(Span(location=0, dimension="height", line_color=figures.INK))
         figures.hover(self.margins, [bar], [("check", "@check"), ("margin", "@margin{0.0} %"), ("", "@said")])
         self.torque = Curves("input speed", "torque [N·m]", height=320, title="torque over speed")
@@ -112,20 +120,27 @@ class _Side(Side):
         self.limit = (data["limit"], data["quantity"])
         kind = html.escape(data["verdict"].replace(" ", "-"))
         self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{html.escape(data['sentence'])}</p>"
-        rows = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True) if np.isfinite(m)][:14]
+        judged = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True)
+                  if np.isfinite(m) and r["status"] in COLOURS]  # fmt: skip
+        rows = judged[:MOST] + [(r, 0.0) for r in data["rows"] if r["status"] == "not judged"][:MOST]
         names = [f"{i + 1}. {r['check']}" for i, (r, _) in enumerate(rows)]
         bad = [r["status"] == "exceeded" for r, _ in rows]
-        colours = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
         self.margins.y_range.factors = names[::-1]
         self.margins.height = 70 + 26 * len(rows)
         self.margins.visible = bool(rows)
         self.bars.data = {
             "check": names,
-            "margin": [100 * max(-2.0, min(2.0, m)) for _, m in rows],
-            "colour": [colours.get(r["status"], "#b8bec5") for r, _ in rows],
+            "margin": [100 * max(-FAR, min(FAR, m)) for _, m in rows],
+            "colour": [COLOURS.get(r["status"], figures.FAINT) for r, _ in rows],
             "hatch": ["right_diagonal_line" if b else " " for b in bad],
             "said": [r["because"] for r, _ in rows],
+            "words": [_words(r["status"], m) for r, m in rows],
+            "end": [max(0.0, 100 * min(FAR, m)) for _, m in rows],
         }
+        margins = [m for _, m in rows]
+        low, high = 100 * max(-FAR, min([0.0, *margins])), 100 * min(FAR, max([0.2, *margins]))
+        place = 0.25 * (high - low)  # for the words behind the longest bar
+        self.margins.x_range.update(start=low, end=high + place)
         self.table.object = _table(data)
         self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.keywords())
 
@@ -145,6 +160,13 @@ class _Side(Side):
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
         title = f"torque of {whose}: vibratory (solid), largest (dashed)"
         self.torque.set(curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", title=title)
+
+
+def _words(status: str, margin: float) -> str:
+    """What stands at the end of a bar."""
+    if status == "not judged":
+        return status
+    return "exceeded" if status == "exceeded" else f"more than {100 * FAR:g} %" if margin > FAR else ""
 
 
 def _table(data: Any) -> str:
