@@ -169,8 +169,8 @@ def test_a_question_mark_within_the_address_is_read(look: Look) -> None:
 def test_a_motion_shows_its_own_controls_and_words(look: Look, what: str, begins: str) -> None:
     look.at(f"?view=motion&motion.what={what}&motion.returns=20&motion.rate=400")
     look.page.locator("pre", has_text=begins).first.wait_for()
-    assert look.page.get_by_label("Acceleration [rad/s²]", exact=True).count() == (what == "run-up")
-    assert look.page.get_by_label("Points of the map", exact=True).count() == (what == "section")
+    assert look.page.get_by_label("Acceleration [rad/s²]", exact=True).is_visible() == (what == "run-up")
+    assert look.page.get_by_label("Points of the map", exact=True).is_visible() == (what == "section")
     assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
     assert look.page.evaluate(UNNAMED) == []
 
