@@ -211,6 +211,7 @@ PYTHON = [
         "2 %",
     ),
     (lambda: line(tolerances=[Tolerance("shaf", stiffness=0.1)]), "tolerance.of = 'shaf': is not an el", "Shaft 1"),
+    (lambda: Tolerance("a", share=0.1), "tolerance of a.share = 0.1: is no number that can scatter", "its own key"),
     (lambda: line(tolerances=[Tolerance("Clutch *", stiffness=0.1)]), "tolerance.of = 'Clutch *': has no", "Shaft *"),
     (
         lambda: line(tolerances=[Tolerance("Disk 1", stiffness=0.1)]),

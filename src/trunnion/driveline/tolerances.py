@@ -15,6 +15,7 @@ goes before its kind's.
 
 from __future__ import annotations
 
+import difflib
 import math
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
@@ -137,7 +138,9 @@ class Tolerance(BaseModel):
 
 def _scatter(key: str, value: object) -> Scatter:
     if key not in SCATTERING:
-        raise InputError("is no number that can scatter", remedy=nearest(key, SCATTERING))
+        close = difflib.get_close_matches(key, list(SCATTERING), n=1, cutoff=0.7)
+        example = 'give the number its own key: of = "Shaft 1" and stiffness = "5 %", say'
+        raise InputError("is no number that can scatter", remedy=nearest(key, SCATTERING) if close else example)
     kind = SCATTERING[key]
     if isinstance(value, dict):
         if set(value) != {"deviation"}:
