@@ -17,7 +17,7 @@ def tips_of(line):
 REFUSED = [
     (lambda: tn.sensitivity(LINE, of="orders"), "of = 'orders': is nothing to differentiate", "frequencies, growth"),
     (lambda: tn.sensitivity(LINE, 0.0), "speed = 0: must be positive", "tn.rpm(1500)"),
-    (lambda: tn.sensitivity(LINE, []), "speeds = []: must be a speed or several", "tn.rpm(1500)"),
+    (lambda: tn.sensitivity(LINE, []), "speeds = []: must be a number or several", "tn.rpm(1500)"),
     (lambda: tn.sensitivity(LINE, 1.0, ["Shaft 9.stiffness"]), "Shaft 9.stiffness: is not a parameter", "did you mean"),
     (lambda: tn.sensitivity(LINE, 1.0, "speed"), "parameters = 'speed': is no parameter of the line", "leave it out"),
     (lambda: tn.sensitivity(LINE, 1.0, []), "parameters: names no parameter", "Shaft 1.stiffness"),
