@@ -9,6 +9,9 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c const
 # that they share. One thread each for linear algebra: more of them spin against the other workers.
 PYTEST := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile --no-loadscope-reorder
 
+# Sources are read anew by every process of the tests where no machine-independent code is kept.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test slow studies check format clean
 
 demo: $(VENV)/.installed

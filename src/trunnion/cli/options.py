@@ -52,12 +52,15 @@ def reference_systems() -> Sequence[str]:
 def _file_or_catalogue(file: str, besides: Sequence[str]) -> Driveline:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import load
+
+    path = Path(file)
+    if path.exists() or path.suffix or len(path.parts) != 1:
+        return load(path)
+    # The studies load much that a file does not need.
     from trunnion.driveline.refusals import nearest
     from trunnion.studies.entries import catalogue, entries
 
-    path, names = Path(file), [e.name for e in entries()]
-    if path.exists() or path.suffix or len(path.parts) != 1:
-        return load(path)
+    names = [e.name for e in entries()]
     if file in names:
         line = catalogue(file)
         if not isinstance(line, Driveline):
