@@ -234,7 +234,7 @@ def test_a_long_line_is_sampled_and_says_so() -> None:
 
 
 BAD = [
-    (lambda: tn.stable_limit(LINE, ANGLE, []), "speeds: must be positive numbers"),
+    (lambda: tn.stable_limit(LINE, ANGLE, []), "speeds = []: must be a number or several"),
     (lambda: tn.stable_limit(LINE, ANGLE, [1.0, 0.0]), "speeds: must be positive numbers"),
     (lambda: tn.stable_limit(LINE, ANGLE, [1.0], scan=1), "scan = 1: must be a whole number of steps"),
     (lambda: tn.stable_limit(LINE, "speed", [1.0, 2.0]), "speed: is moved by both axes"),

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
 
 from trunnion.driveline.elements import Name, is_name
@@ -165,6 +164,8 @@ class Schedule(BaseModel):
         ------
         InputError : beyond the first or the last point.
         """
+        import numpy as np  # a description alone loads without it
+
         first, last = self.points[0], self.points[-1]
         if not first <= value <= last:
             unit = OVER[self.over].unit
@@ -179,7 +180,8 @@ class Schedule(BaseModel):
 
     def between(self, points: int) -> tuple[float, ...]:
         """Its own points and as many more evenly between as make ``points`` or more over the whole."""
-        even = np.linspace(self.points[0], self.points[-1], points)
-        apart = 1e-9 * (self.points[-1] - self.points[0])
-        new = [float(x) for x in even if min(abs(x - p) for p in self.points) > apart]
+        first, whole = self.points[0], self.points[-1] - self.points[0]
+        even = [first + whole * i / (points - 1) for i in range(points)] if points > 1 else []
+        apart = 1e-9 * whole
+        new = [x for x in even if min(abs(x - p) for p in self.points) > apart]
         return tuple(sorted([*self.points, *new]))

@@ -36,7 +36,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
-from trunnion.errors import InputError
+from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.declared import Held, Result, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -119,15 +119,23 @@ class Stability(Result):
     extra_torque: float | None = None
     speed_sentence: str = ""
 
-    @cached_property
+    @property
     def response(self) -> LinearResponse | None:
-        """The linear forced response, computed when it is first asked for; None for a system of your own.
+        """The linear forced response, computed when it is first asked for; None for a system of your own, and where
+        ``no_response`` says why there is none."""
+        return self._asked[0]
 
-        Raises
-        ------
-        InputError, ComputationError : as ``linear_response``.
-        """
-        return self.forced.response()
+    @property
+    def no_response(self) -> str:
+        """Why the forced response of a line cannot be computed; empty where it can."""
+        return self._asked[1]
+
+    @cached_property
+    def _asked(self) -> tuple[LinearResponse | None, str]:
+        try:
+            return self.forced.response(), ""
+        except (InputError, ComputationError) as error:  # the verdict stands without it
+            return None, str(error)
 
     @property
     def exponents(self) -> NDArray[np.complex128]:
@@ -192,6 +200,8 @@ class Stability(Result):
             lines.append(f"  {self.speed_sentence}")
         if self.response is not None:
             lines.append("  " + str(self.response).replace("\n", "\n  "))
+        if self.no_response:
+            lines.append(f"  without the forced response: {self.no_response}")
         return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
 
     def __str__(self) -> str:
@@ -359,6 +369,8 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
     else:
         yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
     response = result.response
+    if result.no_response:
+        yield Finding(Gravity.CAUTION, f"Without the forced response: {result.no_response}.")
     if response is not None and not np.all(np.isfinite(response.torque_amplitude)):
         yield Finding(
             Gravity.DANGER,
