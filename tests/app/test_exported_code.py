@@ -105,6 +105,7 @@ def test_every_view(name: str, settings: dict[str, str]) -> None:
     check(starter("two-shaft"), name, settings)
 
 
+@pytest.mark.slow
 def test_every_method_for_a_gear_pair_that_rattles() -> None:
     """Sweeps and followed responses, where none refuses what the worker gives beside the exported arguments."""
     view = view_of(GEARS, "motion", {"what": "rattle", "points": "3"})

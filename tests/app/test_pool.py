@@ -45,7 +45,7 @@ def test_answers_come_back_and_refusals_are_raised() -> None:
     on_pool(work)
 
 
-@pytest.mark.parametrize("message", [(), (SUPERSEDED,)])
+@pytest.mark.parametrize("message", [(), pytest.param((SUPERSEDED,), marks=pytest.mark.slow)])
 def test_a_cancelled_job_ends_and_the_next_one_is_answered(message: tuple[str, ...]) -> None:
     async def work(pool: Pool) -> None:
         owner = object()

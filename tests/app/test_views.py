@@ -40,6 +40,7 @@ def agrees(look: Look, x: float, y: float) -> None:
     assert shown == pytest.approx(sorted(np.abs(there.multipliers)), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_a_typed_point_shows_its_multipliers(look: Look) -> None:
     look.at(STABILITY)
     look.type("Look at HookeJoint 1.angle [deg]", "19.5")
@@ -165,7 +166,10 @@ def test_a_question_mark_within_the_address_is_read(look: Look) -> None:
     look.page.locator("pre", has_text="periodic motion at 1500 rpm").wait_for()
 
 
-@pytest.mark.parametrize(("what", "begins"), [("section", "Poincaré map of"), ("run-up", "run from 300 rpm")])
+@pytest.mark.parametrize(
+    ("what", "begins"),
+    [("section", "Poincaré map of"), pytest.param("run-up", "run from 300 rpm", marks=pytest.mark.slow)],
+)
 def test_a_motion_shows_its_own_controls_and_words(look: Look, what: str, begins: str) -> None:
     look.at(f"?view=motion&motion.what={what}&motion.returns=20&motion.rate=400")
     look.page.locator("pre", has_text=begins).first.wait_for()
@@ -175,6 +179,7 @@ def test_a_motion_shows_its_own_controls_and_words(look: Look, what: str, begins
     assert look.page.evaluate(UNNAMED) == []
 
 
+@pytest.mark.slow
 def test_a_gear_pair_that_rattles_by_every_method(look: Look) -> None:
     """Each method says what it found on one picture; the sweep in the words of the public function."""
     text = tn.dumps(rattling())

@@ -67,6 +67,7 @@ def test_torques_over_speed_are_judged_at_their_own_speeds() -> None:
     assert found.checks[k].speed == 60.0
 
 
+@pytest.mark.slow
 def test_the_stable_limit_of_every_place() -> None:
     found = tn.envelope(line([PULL]), (55.0, 60.0), points=2, parameter="joint.angle", high=1.2)
     assert found.limit.shape == (len(found.places),) and found.parameter_unit == "rad"

@@ -89,6 +89,7 @@ def test_periodic_motions_of_a_chaotic_oscillator(force: float) -> None:
     assert found.period == pytest.approx(2 * np.pi * found.repeat, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_period_of_van_der_pol() -> None:
     found = tn.certify_chaos(van_der_pol(0.0), duration=2000.0, sweep=False)
     assert found.period == pytest.approx(6.3807, abs=2e-3)  # 2π(1 + μ²/16 − 5μ⁴/3072), μ = ½

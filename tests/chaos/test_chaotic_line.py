@@ -63,6 +63,7 @@ def test_its_exponent_does_not_depend_on_who_writes_the_equation() -> None:
     assert two.positive and one.sum_error < 1e-8
 
 
+@pytest.mark.slow
 def test_neighbours_do_part_at_that_rate() -> None:
     """The plainest evidence: two motions 1e-9 apart, no tangents; the mean logarithm of their distance."""
     step = tn.StroboscopicMap(equation(), tolerance=1e-12)

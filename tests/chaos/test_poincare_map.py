@@ -131,6 +131,7 @@ def test_prints_and_draws(tmp_path) -> None:  # type: ignore[no-untyped-def]
     assert axes.get_xlabel() == "x" and len(axes.lines[0].get_xdata()) == 500
 
 
+@pytest.mark.slow
 def test_a_coordinate_that_acts_off_phase_only_is_no_angle() -> None:
     """sin² t is 0 at t = 0, where the equations do not contain x at all."""
 

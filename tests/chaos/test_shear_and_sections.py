@@ -16,6 +16,7 @@ def labyrinth(t, x, p):  # type: ignore[no-untyped-def]
     return np.sin(x[1]), np.sin(x[2]), np.sin(x[0])
 
 
+@pytest.mark.slow
 def test_the_interval_of_a_regular_conservative_motion_holds_zero() -> None:
     """x″ + sin x = 0.02 cos 1.7t from (0.5, 0): 2.2e-4 ± 4e-5 by batch means, which is ln T / T and no exponent."""
     system = tn.System.from_function(

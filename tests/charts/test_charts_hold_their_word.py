@@ -72,6 +72,7 @@ def test_a_failed_check_builds_the_chart_anew(tmp_path: Path) -> None:
             assert abs(point.spectral_radius - true.spectral_radius) <= point.error_estimate + true.error_estimate
 
 
+@pytest.mark.slow
 def test_a_family_read_from_a_file_answers_from_its_patches(tmp_path: Path) -> None:
     chart = tn.stability_chart(MATHIEU, ("a", 0, 4, 60), ("q", 0, 3, 50))
     chart.save(tmp_path / "m.nc")

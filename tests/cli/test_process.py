@@ -128,6 +128,7 @@ def test_ctrl_c_leaves_nothing(start, here, later):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
+@pytest.mark.slow
 def test_ctrl_c_keeps_the_answer_and_the_report_without_its_chart(start, here):
     process = start("analyze", "line.toml", "--points", "4000x4000", "-o", "kept.html", program=("-c", HEARD))
     deadline = time.monotonic() + 120

@@ -118,6 +118,7 @@ def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
     assert not (here / "trunnion-out").exists()
 
 
+@pytest.mark.slow
 def test_a_branch_that_cannot_go_on_is_written_as_far_as_it_came(run, here):
     """Undamped, the gear pair's curve is lost in the tangle of its superharmonic resonances."""
     call = ("frequency-response", "gear-rattle", "--set", "damping=0", "-o", "r.png", "-o", "r.nc", "--json")
@@ -137,6 +138,7 @@ def test_every_method_of_a_system(run, here):
     assert result.stdout.count("1.26960, 1.11570") == 2
 
 
+@pytest.mark.slow
 def test_a_longer_line_in_its_own_unit(run, here):
     """Speeds with a unit or in the file's; the usual method bears contacts; names of the catalogue are lines too."""
     operation = '\n[operation]\nspeed = "900 rpm"\n'

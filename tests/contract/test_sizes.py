@@ -30,7 +30,7 @@ HUGE_ONES = {
     "on": (lambda: chart().on(np.linspace(30, 40, 100_000), np.linspace(0.1, 0.2, 100_000)), "chart.points"),
     "stable_limit": (lambda: tn.stable_limit(LINE, "HookeJoint 1.angle", [20.0, 30.0], scan=HUGE), "chart.points"),
     "sweep_speeds": (lambda: tn.sweep_speeds(LINE, 10.0, 20.0, HUGE), "points"),
-    "order_response": (lambda: tn.order_response(LINE, np.linspace(20, 80, 4_000_000)), "speeds"),
+    "order_response": (lambda: tn.order_response(LINE, np.linspace(20, 80, 1_000_000)), "speeds"),
     "lyapunov_map": (
         lambda: tn.lyapunov_map(duffing(), ("force", 0, 1, 50_000), ("frequency", 1, 2, 50_000)),
         "x, y",

@@ -103,6 +103,7 @@ def test_load_and_angle() -> None:
     assert np.ptp(chart.spectral_radius[4]) > 1e-5
 
 
+@pytest.mark.slow
 def test_tube_length_and_inertia() -> None:
     chart = tn.stability_chart(
         loaded_line(), x=("Shaft 2.length", 0.2, 1.5, 7), y=("Disk 2.inertia", 0.1, 2.0, 7), speed=47.0

@@ -37,6 +37,7 @@ def test_a_motion_of_fewer_periods_than_asked_for(periods: int) -> None:
     assert "least" not in tn.periodic_response(tn.reference_system("duffing")).outcome.sentence
 
 
+@pytest.mark.slow
 def test_a_multiple_of_an_autonomous_period() -> None:
     long = tn.periodic_response(_van_der_pol(), period=20.0)
     once = tn.periodic_response(_van_der_pol(), period=6.5)

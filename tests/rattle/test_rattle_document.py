@@ -8,6 +8,7 @@ import pytest
 from pages import blocks, run_page
 
 
+@pytest.mark.slow
 def test_examples_run_in_order() -> None:
     text, names = run_page("rattle")
     assert "fold at 0.874372" in text and "2 attractors" in text

@@ -166,7 +166,13 @@ def test_provenance(made: Report, file: Path) -> None:
     assert "Lateral vibration" in text and "outside this torsional model" in text
 
 
-@pytest.mark.parametrize(("of", "shown"), [("loaded", "10 to 50 Hz"), ("unloaded", "62.83 to 314.2 rad/s")])
+@pytest.mark.parametrize(
+    ("of", "shown"),
+    [
+        pytest.param("loaded", "10 to 50 Hz", marks=pytest.mark.slow),
+        ("unloaded", "62.83 to 314.2 rad/s"),
+    ],
+)
 def test_speed_unit(of: str, shown: str, request: pytest.FixtureRequest) -> None:
     text = Page(request.getfixturevalue(of).html).text
     assert shown in text and "rpm" not in text
@@ -194,6 +200,7 @@ def test_line_without_joints_and_with_a_branch() -> None:
     assert "torque" not in ids and "limit" not in ids and {"driveline", "modes", "bending"} <= set(ids)
 
 
+@pytest.mark.slow
 def test_line_too_slow_for_a_chart(mild: tn.Driveline) -> None:
     """Far below every resonance there is no chart, but the forced torques are still given."""
     slow = tn.Driveline(mild.elements, operation=tn.Operation(speed="1 rpm", speed_range=["0.2 rpm", "2 rpm"]))

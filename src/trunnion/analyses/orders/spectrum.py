@@ -144,7 +144,8 @@ class _Case:
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
-        self.row = numbers[np.abs(numbers).argmax(axis=0), np.arange(numbers.shape[1])]
+        few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
+        self.row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
         self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
