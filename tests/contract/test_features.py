@@ -95,7 +95,7 @@ RUN = {
     "piecewise_branch": lambda line: tn.piecewise_branch(line, *RANGE, longest_step=0.5),
     "sweep": lambda line: tn.sweep(line, [99.0, 100.0]),
 }
-TUBES = (200.0, 210.0)
+TUBES = (620.0, 640.0)
 RUN_CELL = {
     **{
         ("stable_windows", key): lambda line: tn.stable_windows(line, "joint 2.angle", 0.2, 1.5, TUBES, rows=5)

@@ -70,6 +70,35 @@ BAD = [
 ]
 
 
+def test_all_damping_is_that_however_it_is_stated() -> None:
+    """A common ratio, a loss factor and a coefficient: the edge found is where ``stability`` changes."""
+
+    def line(factor: float, common: bool) -> tn.Driveline:
+        loss = {} if common else {"loss_factor": 2e-4 * factor, "loss_factor_frequency": 1.0}
+        return tn.Driveline(
+            [
+                tn.ConstantSpeed(),
+                tn.Shaft(stiffness=1.0, **({} if common else {"damping": 2e-4 * factor})),
+                tn.Disk(inertia=1.0),
+                tn.HookeJoint(angle=0.5),
+                tn.Shaft(stiffness=1.0, **loss),
+                tn.Disk(inertia=1.0),
+            ],
+            damping_ratio=1e-4 * factor if common else None,
+        )
+
+    for common in (False, True):
+        found = tn.minimum_damping(line(1.0, common), (1.55, 1.65), maximum=1000.0, rows=9)
+        assert found.parameter == "factor of all damping"
+        needed = float(found.windows[-1, 0])
+        assert 1 < needed < 1000
+        speeds = np.linspace(1.55, 1.65, 41)
+        above, below = (
+            max(tn.stability(line(needed * k, common), speed=s).spectral_radius for s in speeds) for k in (1.001, 0.98)
+        )
+        assert above <= 1 < below
+
+
 @pytest.mark.parametrize(("run", "message"), BAD)
 def test_refusals(run, message: str) -> None:
     with pytest.raises(tn.InputError) as caught:

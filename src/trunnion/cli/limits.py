@@ -115,8 +115,8 @@ def written_paths(written: Sequence[Path]) -> list[str]:
 def minimum_damping(
     file: File,
     damping: Annotated[
-        str, typer.Option("--damping", metavar="PARAMETER", help='A damping, or "factor of" several of them.')
-    ] = "factor of Shaft *.damping",
+        str | None, typer.Option("--damping", metavar="PARAMETER", help="A damping; default a factor of all.")
+    ] = None,
     maximum: Annotated[float, typer.Option("--maximum", help="The largest value of it, SI units.")] = 100.0,
     speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
     margin: Margin = 0.0,
@@ -135,7 +135,8 @@ def minimum_damping(
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
     assembly = assemble(line)
-    assembly.packed.resolve(damping)
+    if damping is not None:
+        assembly.packed.resolve(damping)
     span = read_speed_range(speeds, assembly, unit)
     check_places(to)
     with output.progress("minimum damping") as advance:

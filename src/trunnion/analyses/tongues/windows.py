@@ -19,7 +19,7 @@ from trunnion.analyses.tongues.tongues import ROWS, tongues
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.parameters import Parameter
+from trunnion.driveline.parameters import Parameter, Term
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
-ALL_DAMPING = "factor of Shaft *.damping"
+DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
+"""Numbers of a description that damp."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,7 @@ def minimum_damping(
     line: Driveline | Assembly,
     speeds: tuple[float, float],
     *,
-    damping: str = ALL_DAMPING,
+    damping: str | Parameter | None = None,
     maximum: float = 100.0,
     margin: float = 0.0,
     rows: int = ROWS,
@@ -176,20 +177,44 @@ def minimum_damping(
 
     Parameters
     ----------
-    damping : a factor of all shafts' damping by default, or the damping of one element, as "Shaft 2.damping".
+    damping : a factor of all damping that the line states by default, however it is stated, or the damping of one
+        element, as "Shaft 2.damping".
     maximum : the largest value of it, in its unit (1 is what the line has where it is a factor).
 
     Raises
     ------
-    InputError : see ``stable_windows``; a parameter that is no damping.
+    InputError : see ``stable_windows``; a parameter that is no damping, or a line without any to multiply.
     """
-    if not any(word in damping for word in ("damping", "loss_factor")):
+    assembly = line if isinstance(line, Assembly) else assemble(line)
+    chosen = all_damping(assembly) if damping is None else damping
+    if isinstance(chosen, str) and not any(word in chosen for word in DAMPING):
         raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')
     if not 0 < one_number(maximum, "maximum", "100, say") < np.inf:
         raise InputError("must be positive and finite", key="maximum", value=maximum, remedy="100, say")
     return stable_windows(
-        line, damping, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows, progress=progress
+        assembly, chosen, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows, progress=progress
     )  # fmt: skip
+
+
+def all_damping(assembly: Assembly) -> Parameter:
+    """A factor of all damping that a line states: coefficients, loss factors, relative damping, a common ratio.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    packed = assembly.packed
+    terms = [
+        Term(label, slope=float(value))
+        for label, value in zip(packed.labels, packed.values, strict=True)
+        if label.rpartition(".")[2] in DAMPING and value
+    ]
+    if not terms:
+        raise InputError(
+            "has no damping to multiply", element="driveline", key="damping",
+            remedy='name one to vary, damping="Shaft 1.damping"',
+        )  # fmt: skip
+    return Parameter("factor of all damping", "1", tuple(terms))
 
 
 def _require_speeds(speeds: object) -> None:
