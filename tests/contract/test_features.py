@@ -106,7 +106,7 @@ RUN_CELL = {
         for key in ("tube inertia", "bending stiffness")
     },
     **{
-        ("minimum_damping", key): lambda line: least_damping(line, TUBES, maximum=40.0)
+        ("minimum_damping", key): lambda line: least_damping(line, TUBES, 1.05, maximum=40.0)
         for key in ("tube inertia", "bending stiffness")
     },
     ("minimum_damping", "loss factor"): lambda line: least_damping(line, (140.0, 150.0), 0.6, maximum=4.0),
