@@ -25,7 +25,7 @@ from trunnion.errors import InputError
 from trunnion.results.files import _whole
 
 OLD = b"the old result"
-ENDS = {".png": b"IEND\xaeB`\x82", ".html": b"</html>\n", ".csv": b"\n", ".toml": b"\n"}
+ENDS = {".png": b"IEND\xaeB`\x82", ".html": b"</html>", ".csv": b"\n", ".toml": b"\n"}
 MOUNT = ["mount", "-t", "tmpfs", "-o"]
 LOG = Path("log").absolute()
 DISK = Path("disk").absolute()

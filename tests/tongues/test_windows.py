@@ -115,3 +115,27 @@ def test_a_region_that_enters_through_the_side_of_the_speeds() -> None:
         assert two_shafts.radius(end.speed, found.largest) == pytest.approx(1.0, abs=1e-9)
         inside = [two_shafts.radius(s, found.largest * (1 - 1e-6)) for s in np.linspace(*speeds, 21)]
         assert max(inside) < 1
+
+
+@pytest.mark.slow
+def test_patches_that_never_settle_are_asked_for_less() -> None:
+    """A stiff mesh: its coefficients are not known to what patches are asked for, and halving them goes on for ever."""
+    elements = [
+        tn.ConstantSpeed(),
+        tn.HookeJoint(angle=0.2),
+        tn.Shaft(stiffness=1e4, damping=5),
+        tn.Disk(inertia=0.1),
+        tn.GearPair(teeth_in=25, teeth_out=40, module="3 mm", mesh_stiffness=1e8, mesh_damping=5000.0),
+        tn.Disk(inertia=0.05),
+        tn.HookeJoint(angle=1.3, plane=0.3),
+        tn.Shaft(stiffness=1e4, damping=5),
+        tn.Disk(inertia=0.2, load_torque=20),
+    ]
+    line = tn.Driveline(elements)
+    found = tn.minimum_damping(line, (140.0, 144.0), damping="factor of Shaft *.damping", maximum=8.0, rows=4)
+    needed = float(found.windows[0, 0])
+    for factor, stable in ((1.001, True), (0.999, False)):
+        changed = [
+            e.model_copy(update={"damping": 5 * needed * factor}) if isinstance(e, tn.Shaft) else e for e in elements
+        ]
+        assert (tn.stability(tn.Driveline(changed), 144.0).spectral_radius < 1) is stable

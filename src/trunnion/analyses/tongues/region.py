@@ -13,7 +13,7 @@ from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices
 from trunnion.analyses.tongues.boundaries import MOST
 from trunnion.numerics.chain.characteristic import without_ones
 from trunnion.numerics.patches import patches
-from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.numerics.patches.patches import Box, Evaluate, Grid, Patch, PatchedFunction
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -22,6 +22,10 @@ SHARPEST = 1e-13
 """Error asked of single integrations, which settle what patches suggest."""
 NODES = 48
 """Samples of a piece of a row that no patch covers."""
+EASIER = (1.0, 30.0, 1000.0)
+"""Tolerances to patch to, over the one asked for, until one is settled: errors of patches say which it was."""
+MOST_BOXES = 300
+"""Boxes within which a tolerance settles; below the rounding of a stiff line's coefficients none ever does."""
 PIECES = 8
 """Into how many pieces such a stretch is cut."""
 
@@ -172,9 +176,35 @@ def patched(
     have."""
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box = _box(u, v)
-    sampler = family.sampler(box, 1_000_000, tolerance / 4, threads)
-    built = patches.build(sampler.evaluate, sampler.boxes, u, v, tolerance / 4, direct_below=-1, tick=tell)
+    for share in EASIER:
+        asked, most = share * tolerance / 4, MOST_BOXES if share != EASIER[-1] else np.inf
+        sampler = family.sampler(box, 1_000_000, asked, threads)
+        try:
+            built = patches.build(
+                _at_most(most, sampler.evaluate), sampler.boxes, u, v, asked, direct_below=-1, tick=tell
+            )
+        except _NeverSettlesError:
+            continue
+        break
     return Region(family, built, box, threads)
+
+
+class _NeverSettlesError(Exception):
+    """Patches are halved on and on: the tolerance asked for lies below the rounding of what they hold."""
+
+
+def _at_most(most: float, evaluate: Evaluate) -> Evaluate:
+    """``evaluate`` until it was asked for more than ``most`` grids."""
+    asked = 0
+
+    def counted(grids: list[Grid]) -> list[tuple[Array, Array]]:
+        nonlocal asked
+        asked += len(grids)
+        if asked > most:
+            raise _NeverSettlesError
+        return evaluate(grids)
+
+    return counted
 
 
 def unpatched(family: ChartFamily, x: Array, y: Array, threads: int) -> Region:
