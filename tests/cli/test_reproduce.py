@@ -23,5 +23,5 @@ def test_folder_that_is_a_file(run, here: Path) -> None:  # type: ignore[no-unty
 def test_writes_page_and_pictures(run, here: Path) -> None:  # type: ignore[no-untyped-def]
     result = run("reproduce", "two-shaft-cardan", "--output", "s1")
     assert result.exit_code == 0, result.stderr
-    assert {"two-shaft-cardan.html", "figure-2.png", "figure-7.png"} <= {p.name for p in (here / "s1").iterdir()}
+    assert {"two-shaft-cardan.html", "figure-2a.png", "figure-7.png"} <= {p.name for p in (here / "s1").iterdir()}
     assert "published" in result.stdout and "Errata" in result.stdout

@@ -27,6 +27,7 @@ from trunnion.results.files import _whole
 OLD = b"the old result"
 ENDS = {".png": b"IEND\xaeB`\x82", ".html": b"</html>", ".csv": b"\n", ".toml": b"\n"}
 MOUNT = ["mount", "-t", "tmpfs", "-o"]
+FOUND = "what was found:"
 LOG = Path("log").absolute()
 DISK = Path("disk").absolute()
 own_prefix = writing._own_prefix
@@ -133,7 +134,8 @@ class Trial:
             self.faults.append(f"{where}: left {sorted(left)}")
 
     def leave(self) -> None:
-        print("\n".join(self.faults) or "whole", flush=True)
+        # What the command itself has printed by then stands before.
+        print(f"\n{FOUND}", "\n".join(self.faults) or "whole", sep="\n", flush=True)
         os._exit(bool(self.faults))
 
 
