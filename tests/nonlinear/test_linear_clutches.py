@@ -68,7 +68,7 @@ def test_the_mean_over_a_swing_is_that_of_quadrature(torque: float, size: float)
 
     def over(middle: float, weight) -> float:  # type: ignore[no-untyped-def]
         bends = [np.arccos((k - middle) / size) for k in STAGES["breakpoints"] if abs(k - middle) < size]
-        value = quad(lambda t: weight(middle + size * np.cos(t), t), 0, np.pi, points=bends or None, epsabs=1e-11)[0]
+        value = quad(lambda t: weight(middle + size * np.cos(t), t), 0, np.pi, points=bends or None, epsabs=1e-10)[0]
         return value / np.pi
 
     middle = brentq(lambda m: over(m, lambda q, _: force(q)) - torque, -1.0, 1.0, xtol=1e-14)
@@ -124,6 +124,17 @@ def test_results_say_what_a_clutch_stands_for_and_when_it_swings_otherwise() -> 
     assert "clutch rubs and stands for a shaft of" in str(tn.stability(line, 140.0))
     said = [str(f) for f in tn.order_response(line, [140.0]).findings]
     assert any("but counts by its mean over ± 0.115 deg: give linear_amplitude = " in s for s in said)
+
+
+def test_a_loaded_clutch_is_compared_about_its_mean_torque() -> None:
+    """Beyond its soft middle stage it swings on the stiff one alone, rubbing little: linear theory holds."""
+    stages = {"breakpoints": [-0.01, 0.01], "stiffnesses": [6000.0, 1500.0, 6000.0], "damping": 1.0}
+    clutch = tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2000.0}], name="clutch")  # type: ignore[arg-type]
+    check = tn.linearity_check(driven(clutch, load=120.0, angle=0.1), 140.0)
+    (shaft,) = check.stand_ins
+    assert abs(shaft.torque) == pytest.approx(120.0, rel=0.01)
+    assert 5950 < shaft.stiffness < 8000
+    assert np.all(check.difference.max(axis=0) < 0.02 * check.largest)
 
 
 def test_the_exact_line_ignores_the_stated_motion() -> None:

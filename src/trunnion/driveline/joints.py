@@ -40,8 +40,10 @@ class Joint(Element):
         return ()
 
     def law(self, number: Numbers) -> JointLaw:
-        """How it passes rotation on, ``number(key)`` being the values of its numbers; asked for only with orders."""
-        raise NotImplementedError(f"{self.kind} has no orders and so no law")
+        """How it passes rotation on, ``number(key)`` being the values of its numbers; without orders unchanged."""
+        from trunnion.laws.fourier import FourierLaw
+
+        return FourierLaw((), (), ())
 
     @field_validator("angle", check_fields=False)
     @classmethod

@@ -4,8 +4,9 @@
 amplitudes of the same orders, so that their difference tells how far linear theory holds at a speed. It falls with the
 square where excitations and joint angles shrink together; where play opens, stages change or clutches slip it does not.
 
-Linear equations have no dry friction. A clutch is there the Shaft that ``Clutch.linear`` makes of it at the amplitude
-and the leading frequency of the nonlinear motion: the best that a linear line can do, knowing the answer.
+Linear equations have no dry friction. A clutch is there the Shaft that ``Clutch.linear`` makes of it at the amplitude,
+the leading frequency and the mean torque of the nonlinear motion: the best that a linear line can do,
+knowing the answer.
 """
 
 from __future__ import annotations
@@ -136,10 +137,11 @@ def _linear_shaft(true: PeriodicResponse, line: Driveline, name: str) -> LinearS
     swing = float(extremes(twist, run.time_of_state).span[0]) / 2
     cycles = np.abs(fourier(twist, run.time_of_state, max(int(ORDERS * true.turns), 1))[1:, 0])
     frequency = 2 * np.pi * (1 + int(np.argmax(cycles))) / true.period
-    shaft = clutch.linear(max(swing, STUCK), frequency)
+    torque = float(true.torque_mean[place])
+    shaft = clutch.linear(max(swing, STUCK), frequency, torque)
     slips = tuple(s.torque for s in clutch.friction if swing > s.torque / s.stiffness)
     assert shaft.stiffness is not None
-    return LinearShaft(name, swing, frequency, float(shaft.stiffness), float(shaft.damping), len(slips))
+    return LinearShaft(name, swing, frequency, torque, float(shaft.stiffness), float(shaft.damping), len(slips))
 
 
 def _without_friction(line: Driveline, stand_ins: tuple[LinearShaft, ...]) -> Driveline:
@@ -148,9 +150,8 @@ def _without_friction(line: Driveline, stand_ins: tuple[LinearShaft, ...]) -> Dr
     for one in stand_ins:
         clutch = line.elements[line.index(one.clutch)]
         assert isinstance(clutch, Clutch)
-        elements[line.index(one.clutch)] = clutch.linear(max(one.swing, STUCK), one.frequency).model_copy(
-            update={"name": one.clutch}
-        )
+        stand_in = clutch.linear(max(one.swing, STUCK), one.frequency, one.torque)
+        elements[line.index(one.clutch)] = stand_in.model_copy(update={"name": one.clutch})
     return line.model_copy(update={"elements": tuple(elements)})
 
 

@@ -34,13 +34,15 @@ FLUCTUATION = 0.1
 class LinearShaft:
     """What stands for a clutch in the linear equations.
 
-    swing [rad]: half of the peak-to-peak twist of the nonlinear motion; frequency [rad/s]: of its largest order;
+    swing [rad]: half of the peak-to-peak twist of the nonlinear motion; frequency [rad/s]: of its largest order; torque
+    [N m]: its mean;
     stiffness [N m/rad] and damping [N m s/rad] of the Shaft at those; slipping: how many of its sliders slip.
     """
 
     clutch: str
     swing: float
     frequency: float
+    torque: float
     stiffness: float
     damping: float
     slipping: int

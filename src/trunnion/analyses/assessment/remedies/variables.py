@@ -131,7 +131,8 @@ class Design:
     def _variables(self) -> Iterator[DesignVariable]:
         joints = hooke_joints(self.line)
         bent, angles = any(angle for _, angle in joints), {f"{name}.angle" for name, _ in joints}
-        sources = sum(label.endswith("amplitude") for label in self.packed.labels) + len(joints)
+        excited = sum(label.endswith((" amplitude", " quadratic_amplitude")) for label in self.packed.labels)
+        sources = excited + len(joints)
         for column, (path, unit) in enumerate(zip(self.packed.labels, self.packed.units, strict=True)):
             value, key = float(self.packed.values[column]), path.rpartition(".")[2]
             scale = scale_of(key)
