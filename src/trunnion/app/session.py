@@ -29,6 +29,7 @@ from trunnion.errors import InputError, TrunnionError
 QUIET = 0.05
 """Seconds without a further change before a computation begins."""
 KEPT, NOW = "kept", "now"
+KINDS: dict[str, type[View]] = {kind.name: kind for kind in VIEWS}
 
 
 class Session:
@@ -46,11 +47,10 @@ class Session:
         self.page = Page(self.show_view, self.cancel)
         self.sliders = Sliders(self, self._slid)
         self.keep_buttons = buttons(self._keep, self._drop, self._swap)
-        self.views: dict[str, View] = {kind.name: kind(self) for kind in VIEWS}
-        for view in self.views.values():
-            start = f"{view.name}."
-            view.read({k.removeprefix(start): v for k, v in query.items() if k.startswith(start)})
-        self.view = self.views.get(query.get("view", ""), next(iter(self.views.values())))
+        self.query = query
+        self.views: dict[str, View] = {}
+        name = query.get("view", "")
+        self.view = self.view_of(name if name in KINDS else VIEWS[0].name)
         self.difference = pn.pane.HTML("", sizing_mode="stretch_width")
         self.page.fill(self.sliders.panel, self.keep_buttons, self.difference)
         self.template = self.page.template
@@ -60,6 +60,14 @@ class Session:
         pn.state.on_session_destroyed(lambda context: self._destroyed(sessions))
         pn.state.onload(self._loaded)
         self.page.message(failure)
+
+    def view_of(self, name: str) -> View:
+        """A view, made when it is first needed, with the settings that the address gave. KeyError: no such view."""
+        if name not in self.views:
+            view = self.views[name] = KINDS[name](self)
+            start = f"{name}."
+            view.read({k.removeprefix(start): v for k, v in self.query.items() if k.startswith(start)})
+        return self.views[name]
 
     def _read_lines(self, query: Mapping[str, str]) -> str:
         for key in ("line", "kept"):
@@ -126,7 +134,7 @@ class Session:
 
     def show_view(self, name: str) -> None:
         """Look at another view."""
-        self.view = self.views[name]
+        self.view = self.view_of(name)
         self.page.message("")
         self.guarded(self._view_changed)
 
@@ -251,7 +259,7 @@ class Session:
 
     async def file(self, view_name: str, name: str, ending: str) -> bytes:
         """The content of a download. KeyError where there is none of that name."""
-        view, toml = self.views[view_name], self.document.toml
+        view, toml = self.view_of(view_name), self.document.toml
         if (name, ending) == ("driveline", "toml"):
             return toml.encode()
         if (name, ending) == ("driveline", "html"):

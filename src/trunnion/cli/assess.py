@@ -76,7 +76,7 @@ def campbell_diagram(
     unit = read_unit(line, unit)
     from trunnion.analyses.linear.campbell_diagram import campbell_diagram as diagram
     from trunnion.plots.style import check_format, save
-    from trunnion.reporting.answer import speed_range
+    from trunnion.reporting.ranges import speed_range
 
     if picture is not None:
         check_format(picture)

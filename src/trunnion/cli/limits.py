@@ -177,7 +177,7 @@ def stable_windows(
 
 def read_speed_range(text: str | None, assembly: Assembly, unit: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s, or the file's range."""
-    from trunnion.reporting.answer import speed_range
+    from trunnion.reporting.ranges import speed_range
 
     return read_speed_ends(text, unit) or speed_range(assembly)
 

@@ -253,7 +253,7 @@ def _torque(text: str) -> float:
 
 def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
     from trunnion.equations.coefficients import assemble
-    from trunnion.reporting.answer import speed_range
+    from trunnion.reporting.ranges import speed_range
 
     if first is not None and last is not None:
         return first, last

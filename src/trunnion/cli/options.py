@@ -139,8 +139,7 @@ def read_axis(text: str, assembly: Assembly, unit: str, points: int, key: str) -
 
     Read from the right, so that names with colons remain possible.
     """
-    from trunnion.reporting.answer import speed_range
-    from trunnion.reporting.overview import angle_range
+    from trunnion.reporting.ranges import angle_range, speed_range
 
     parts = text.split(":")
     scale = "log" if len(parts) > 4 and parts[-1].strip() == "log" else "linear"

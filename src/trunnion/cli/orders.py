@@ -181,7 +181,7 @@ def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 24
     import numpy as np
 
     from trunnion.analyses.linear.speed_sweep import sweep_speeds
-    from trunnion.reporting.answer import speed_range
+    from trunnion.reporting.ranges import speed_range
 
     if text is None:
         low, high = speed_range(assembly)

@@ -255,7 +255,7 @@ def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, h
     """As given; else about the frequency of the excitation, or a line's range of speeds."""
     from trunnion.driveline.driveline import Driveline
     from trunnion.equations.coefficients import assemble
-    from trunnion.reporting.answer import speed_range
+    from trunnion.reporting.ranges import speed_range
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     unit = _unit(subject)

@@ -33,10 +33,9 @@ from trunnion.reporting.overview_findings import (
     response_findings,
     slow_findings,
 )
+from trunnion.reporting.ranges import speed_range
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
-MODES_IN_RANGE = 4
-"""Modes that a speed range guessed from the line itself reaches up to."""
 NEARLY = 0.1
 """Spare margin below which a check deserves a word though it is satisfied."""
 POINTS_BEYOND = 21
@@ -165,17 +164,3 @@ def _beyond(check: Check, side: str) -> Finding:
 
 def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def speed_range(assembly: Assembly) -> tuple[float, float]:
-    """The range of the description [rad/s]; else about the operating speed; else about the lowest modes."""
-    operation = assembly.line.operation or Operation()
-    if operation.speed_range:
-        return operation.speed_range
-    if operation.speed:
-        return 0.25 * operation.speed, 2.0 * operation.speed
-    elastic = natural_frequencies(assembly).elastic
-    if not len(elastic):
-        return 1.0, 100.0
-    low, high = 0.3 * float(elastic[0]), 1.25 * float(elastic[:MODES_IN_RANGE].max())
-    return float(f"{low:.2g}"), float(f"{high:.2g}")

@@ -25,6 +25,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.reporting.answer import Answer, answer
 from trunnion.reporting.overview_findings import chart_findings
+from trunnion.reporting.ranges import angle_range
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.verdict import Verdict
@@ -170,11 +171,3 @@ def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:
         return kinetostatics(line, speed or 1.0)
     except InputError:  # a line clamped at both ends
         return None
-
-
-def angle_range(line: Driveline) -> tuple[float, float]:
-    """The range of the description [rad]; else from straight to 30° or half again the largest joint angle."""
-    if line.operation and line.operation.angle_range:
-        return line.operation.angle_range
-    largest = max((abs(angle) for _, angle in hooke_joints(line)), default=0.0)
-    return 0.0, float(np.deg2rad(min(85.0, max(30.0, 1.5 * np.rad2deg(largest)))))

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.studies.bicardan_elastic.published import bicardan_elastic
-from trunnion.studies.double_tripod.published import DoubleTripod, double_tripod
-from trunnion.studies.gear_rattle.published import gear_rattle
 from trunnion.studies.three_shaft_cardan.published import three_shaft_cardan
 from trunnion.studies.two_shaft_cardan.published import two_shaft_cardan
-from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+if TYPE_CHECKING:
+    from trunnion.studies.double_tripod.published import DoubleTripod
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 @dataclass(frozen=True)
@@ -22,13 +23,26 @@ class Entry:
     """A published driveline: ``build()`` gives the paper's base case, keyword arguments change it.
 
     ``double-tripod`` builds equations of motion (a ``DoubleTripod``), ``gear-rattle`` a ``PiecewiseOscillator``, the
-    others a ``Driveline``.
+    others a ``Driveline`` (``describes_line``).
     """
 
     name: str
     title: str
     source: str
     build: Callable[..., Driveline | DoubleTripod | PiecewiseOscillator]
+    describes_line: bool = True
+
+
+def _double_tripod(**changes: Any) -> DoubleTripod:
+    from trunnion.studies.double_tripod.published import double_tripod  # it brings the kernels with it
+
+    return double_tripod(**changes)
+
+
+def _gear_rattle(**changes: Any) -> PiecewiseOscillator:
+    from trunnion.studies.gear_rattle.published import gear_rattle  # the same
+
+    return gear_rattle(**changes)
 
 
 _ENTRIES = (
@@ -54,13 +68,15 @@ _ENTRIES = (
         "double-tripod",
         "double tripod industrial driveshaft: equations of its two outer elements",
         "Bugaru and Vasile, Applied Sciences 12 (2022) 6182",
-        double_tripod,
+        _double_tripod,
+        describes_line=False,
     ),
     Entry(
         "gear-rattle",
         "gear pair with backlash as one equation, nondimensional",
         "M. Rezaee and A. Farshidianfar, multiple scales and averaging for gear rattle (in Persian)",
-        gear_rattle,
+        _gear_rattle,
+        describes_line=False,
     ),
 )
 

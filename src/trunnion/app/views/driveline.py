@@ -116,8 +116,8 @@ class _Side(Side):
 
 
 def _beginnings() -> dict[str, str]:
-    from trunnion.studies.entries import catalogue, entries
+    from trunnion.studies.entries import entries
 
     names = {f"{name}: {about}": f"starter {name}" for name, about in STARTERS.items()}
-    lines = [e for e in entries() if isinstance(catalogue(e.name), Driveline)]
+    lines = [e for e in entries() if e.describes_line]
     return names | {f"{e.name}: {e.title}": e.name for e in lines}

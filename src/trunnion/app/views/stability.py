@@ -33,7 +33,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, pack
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
-from trunnion.reporting.overview import angle_range
+from trunnion.reporting.ranges import angle_range
 
 COARSE = (16, 12)
 TURNS = 30
