@@ -61,6 +61,60 @@ def test_every_refusal_is_said_somewhere(path: tuple[str | int, ...], text: str)
     assert any(said)
 
 
+def case_fields(document: Document) -> dict[str, tuple[str, str]]:
+    """Text and message of the fields of the load cases, by label and group."""
+    groups = [g for g in document.groups() if g.kind == "load case"]
+    return {f"{f.label} of {g.title}": (f.text, f.message) for g in groups for f in g.fields}
+
+
+def test_a_load_case_has_a_field_for_its_name_and_for_every_disk() -> None:
+    document = Document(starter("two-shaft"))
+    document.add_load_case()
+    assert case_fields(document) == {
+        "name of load case load 1": ("load 1", ""),
+        "torque at Disk 1 of load case load 1": ("", ""),
+        "torque at load of load case load 1": ("100 N*m", ""),
+    }
+    place = ("operation", "load_case", 0)
+    document.set_text((*place, "loads", "Disk 1"), "-20 N*m")
+    document.set_text((*place, "name"), "coast")
+    document.add_load_case()
+    assert [(c.name, dict(c.loads)) for c in document.line.operation.load_cases] == [
+        ("coast", {"Disk 1": -20.0, "load": 100.0}), ("load 1", {"load": 100.0}),
+    ]  # fmt: skip
+    document.set_text((*place, "loads", "load"), "")
+    document.remove(("operation", "load_case", 1))
+    assert [dict(c.loads) for c in document.line.operation.load_cases] == [{"Disk 1": -20.0}]
+    document.remove(place)
+    assert document.line == Document(starter("two-shaft")).line
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "said"),
+    [
+        (("loads", "Disk 1"), "5 parsec", "torque at Disk 1 of load case load 1"),
+        (("loads", "load"), "nan N*m", "torque at load of load case load 1"),
+        (("name",), "", "name of load case "),
+    ],
+)
+def test_a_refused_load_is_said_beside_its_field(path: tuple[str, ...], text: str, said: str) -> None:
+    document = Document(starter("two-shaft"))
+    document.add_load_case()
+    document.set_text(("operation", "load_case", 0, *path), text)
+    assert case_fields(document)[said][1]
+    assert not any(g.message for g in document.groups())
+
+
+def test_a_load_of_no_disk_keeps_its_field() -> None:
+    """A disk that lost its name leaves a load behind, which can be taken away where it stands."""
+    document = Document(starter("two-shaft"))
+    document.add_load_case()
+    document.set_text(("element", 5, "name"), "wheel")
+    assert "not a Disk" in case_fields(document)["torque at load of load case load 1"][1]
+    document.set_text(("operation", "load_case", 0, "loads", "load"), "")
+    assert document.problems == ()
+
+
 def test_slider_moves_are_undone_as_one() -> None:
     document = Document(starter("two-shaft"))
     start = document.line

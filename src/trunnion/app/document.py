@@ -18,7 +18,7 @@ from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.files import FORMAT, dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
@@ -29,6 +29,7 @@ Path = tuple[str | int, ...]
 _PLACE = re.compile(r"\(element ([0-9]+)\)$|^element ([0-9]+)$")
 _WHOLE = {"name": None, "description": None, "damping_ratio": RATIO, "damping_ratio_frequency": SPEED}
 _WORDS = ("name", "description", "after", "of", "speed_unit")
+LOAD_CASE, LOADS, LOAD_KIND = "load_case", "loads", "load case"
 _HIDDEN = ("type", "after", "name")
 
 
@@ -83,7 +84,7 @@ class Document:
                 owner[key] = [] if isinstance(following, int) else {}
             owner = owner[key]
         last = path[-1]
-        value = text.strip() if last in _WORDS else _read(text)
+        value = text.strip() if last in _WORDS and LOADS not in path else _read(text)
         if text.strip():
             if isinstance(owner, list) and isinstance(last, int) and last >= len(owner):
                 owner.append(value)
@@ -115,13 +116,27 @@ class Document:
         data.setdefault("limit", []).append({"of": of, "vibratory_torque": "500 N*m"})
         self._take(data)
 
-    def remove(self, path: Path) -> None:
-        """Take an element or a limit away."""
+    def add_load_case(self) -> None:
+        """A load case with a torque at the last disk, and a name that no other one has."""
         data = deepcopy(self.data)
-        section, place = str(path[0]), int(path[1])
-        del data[section][place]
-        if not data[section]:
-            del data[section]
+        operation = data.setdefault("operation", {})
+        cases = operation.setdefault(LOAD_CASE, [])
+        taken = {str(case.get("name", "")) for case in cases}
+        name = next(n for n in (f"load {k}" for k in range(1, len(cases) + 2)) if n not in taken)
+        disks = _disks(data.get("element", []))
+        cases.append({"name": name, LOADS: {disks[-1]: "100 N*m"} if disks else {}})
+        self._take(data)
+
+    def remove(self, path: Path) -> None:
+        """Take an element, a limit or a load case away."""
+        data = deepcopy(self.data)
+        owner: Any = data
+        for key in path[:-2]:
+            owner = owner[key]
+        section, place = str(path[-2]), int(path[-1])
+        del owner[section][place]
+        if not owner[section]:
+            del owner[section]
         self._take(data)
 
     def move(self, place: int, by: int) -> None:
@@ -200,9 +215,11 @@ class Document:
     def groups(self) -> tuple[Group, ...]:
         """Everything that can be edited, problems beside the fields they concern."""
         left = list(self.problems)
-        groups = [self._whole(left), self._operation(left)]
         elements = self.data.get("element", [])
         names = _names(elements)
+        cases = self.data.get("operation", {}).get(LOAD_CASE, [])
+        loads = [self._load_case(i, case, _disks(elements), left) for i, case in enumerate(cases)]
+        groups = [self._whole(left), self._operation(left), *loads]
         groups += [self._element(i, table, names[i], left) for i, table in enumerate(elements)]
         groups += [self._limit(i, table, left) for i, table in enumerate(self.data.get("limit", []))]
         if left:
@@ -238,14 +255,27 @@ class Document:
             ("operation", "speed_unit"), "unit of speeds", unit, "", said["speed_unit"], ("rpm", "Hz", "rad/s")
         )
         fields.append(units)
-        cases = [
-            Field(("operation", "load_case", i), f"load case {i + 1}", text_of(case, None))
-            for i, case in enumerate(table.get("load_case", []))
-        ]
-        rest = [e for e in left if e.element == "operation" or e.element.startswith("load case")]
+        rest = [e for e in left if e.element == "operation"]
         for error in rest:
             left.remove(error)
-        return Group(("operation",), "operation", "", (*fields, *cases), (), "\n".join(map(str, rest)))
+        return Group(("operation",), "operation", "", tuple(fields), (), "\n".join(map(str, rest)))
+
+    def _load_case(self, place: int, table: Any, disks: list[str], left: list[InputError]) -> Group:
+        """A field for every disk; an empty one leaves the disk its own torque."""
+        path: Path = ("operation", LOAD_CASE, place)
+        table = table if isinstance(table, dict) else {}
+        name = str(table.get("name", ""))
+        owners = (f"load case {name}", f"load case {place + 1}")
+        fields = [Field((*path, "name"), "name", name, "full load", _said(left, owners, "name"))]
+        loads = table.get(LOADS, {})
+        loads = loads if isinstance(loads, dict) else {}
+        for disk in dict.fromkeys([*disks, *loads]):
+            text = text_of(loads.get(disk, ""), TORQUE)
+            fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", _said(left, owners, disk)))
+        rest = [e for e in left if e.element in owners]
+        for error in rest:
+            left.remove(error)
+        return Group(path, f"load case {name}", LOAD_KIND, tuple(fields), (), "\n".join(map(str, rest)))
 
     def _element(self, place: int, table: dict[str, Any], name: str, left: list[InputError]) -> Group:
         kind = str(table.get("type", ""))
@@ -317,6 +347,11 @@ def _names(tables: list[Any]) -> list[str]:
         seen[kind] = seen.get(kind, 0) + 1
         names.append(str(table.get("name") or f"{kind} {seen[kind]}"))
     return names
+
+
+def _disks(tables: list[Any]) -> list[str]:
+    """Names of the elements that a load acts on."""
+    return [n for n, t in zip(_names(tables), tables, strict=True) if t.get("type") == "Disk"]
 
 
 def _owns(error: InputError, owners: tuple[Any, ...]) -> bool:

@@ -23,6 +23,8 @@ function element(tag, attributes = {}, ...children) {
   return node
 }
 
+const idOf = (f) => "field-" + f.path.join("-").replace(/\\s/g, "_")
+
 export function render({ model }) {
   const table = element("div", { class: "groups" })
   const inputs = new Map(), notes = new Map()
@@ -30,7 +32,7 @@ export function render({ model }) {
   const say = (data) => model.send_msg(data)
 
   function field(group, f) {
-    const id = "field-" + f.path.join("-")
+    const id = idOf(f)
     const note = element("span", { class: "note", id: id + "-note", role: "alert" })
     const about = f.label + (group.title ? " of " + group.title : "")
     let input
@@ -62,11 +64,11 @@ export function render({ model }) {
       choices: [] }
     const row = table.querySelector(`[data-group="${group.path.join("-")}"] .fields`)
     row.append(field(group, f))
-    inputs.get("field-" + f.path.join("-")).focus()
+    inputs.get(idOf(f)).focus()
   }
 
   function tools(group) {
-    if (group.path[0] !== "element" && group.path[0] !== "limit") return ""
+    if (!["element", "limit"].includes(group.path[0]) && group.kind !== "load case") return ""
     const button = (text, about, data, off = false) => element("button",
       { type: "button", title: about, "aria-label": about, disabled: off, onclick: () => say(data) }, text)
     const name = group.title
@@ -101,7 +103,8 @@ export function render({ model }) {
       element("label", { for: "new-place" }, "as number"), place,
       element("button", { type: "button", onclick: () =>
         say({ do: "add", kind: kind.value, place: +place.value - 1 }) }, "Add element"),
-      element("button", { type: "button", onclick: () => say({ do: "limit" }) }, "Add limit")))
+      element("button", { type: "button", onclick: () => say({ do: "limit" }) }, "Add limit"),
+      element("button", { type: "button", onclick: () => say({ do: "load_case" }) }, "Add load case")))
   }
 
   function fill() {
@@ -112,7 +115,7 @@ export function render({ model }) {
       const row = table.querySelector(`[data-group="${group.path.join("-")}"] .group-note`)
       if (row) row.textContent = group.message
       for (const f of group.fields) {
-        const id = "field-" + f.path.join("-")
+        const id = idOf(f)
         const input = inputs.get(id)
         if (input.value !== f.text && !(input.matches(":focus") && input.dataset.sent === "no")) input.value = f.text
         notes.get(id).textContent = f.message

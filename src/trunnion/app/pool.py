@@ -105,17 +105,27 @@ class Pool:
         self.idle: list[Worker] = []
         self.busy: set[Worker] = set()
         self.waiting: list[asyncio.Future[None]] = []
+        self.warming: asyncio.Task[None] | None = None
         self.closed = False
 
-    def start(self, jobs: tuple[Job, ...]) -> None:
-        """Begin with two workers, one of them warmed by ``jobs`` so that kernels are compiled or loaded."""
-        self.idle = [Worker(self.loop, self.threads) for _ in range(2)]
-        self.warming = self.loop.create_task(self._warm(jobs))
+    def start(self) -> None:
+        """Begin with one worker; a spare one comes when the first page is there, see ``warm``."""
+        self.idle = [Worker(self.loop, self.threads)]
 
-    async def _warm(self, jobs: tuple[Job, ...]) -> None:
+    def warm(self, jobs: tuple[Job, ...], owner: object = None) -> None:
+        """Load, or the first time compile, what ``jobs`` need, in the worker of ``owner``; once in a server's life.
+
+        Later than the first page, which else would share the machine with it.
+        """
+        if self.warming is None and not self.closed:
+            self.warming = self.loop.create_task(self._warm(jobs, owner or self))
+
+    async def _warm(self, jobs: tuple[Job, ...], owner: object) -> None:
         for job in jobs:
             with suppress(InputError, ComputationError):
-                await self.run(job, self)
+                await self.run(job, owner)
+        if len(self.idle) < 2 and not self.closed:
+            self.idle.insert(0, Worker(self.loop, self.threads))
 
     async def run(self, job: Job, owner: object, tell: Callable[[float], None] = _nobody) -> Answer:
         """The answer to a job. Cancelling the caller ends the job, soon where it is not SUPERSEDED.

@@ -6,17 +6,23 @@ import asyncio
 import signal
 import socket
 import sys
+import threading
 import webbrowser
 from collections.abc import Callable
-from contextlib import suppress
-from functools import partial
-from typing import Any
+from contextlib import closing, suppress
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 from trunnion.errors import ComputationError, InputError
+
+if TYPE_CHECKING:
+    from trunnion.app.pool import Pool
 
 ADDRESS = "127.0.0.1"
 LARGEST_MESSAGE = 4_000_000
 """Bytes of one message from the browser; a file is refused far below."""
+LATEST = 15.0
+"""Seconds until kernels are warmed though no page was opened; else they are once the first one shows what it has."""
 
 
 def serve(
@@ -37,55 +43,89 @@ def serve(
     ComputationError : Panel is not installed.
     InputError : the port is taken.
     """
-    try:
-        import panel
-    except ImportError:
-        raise ComputationError('the application needs Panel: install it with  pip install "trunnion[app]"') from None
-    panel.config.autoreload = False
-    port = _free_port() if port is None else _checked(port)
-    loop = asyncio.new_event_loop()
-    asyncio.set_event_loop(loop)
-    from tornado.ioloop import IOLoop
-
-    from trunnion.app.pool import Pool
-    from trunnion.app.warming import WARMING
-
-    pool = Pool(loop, threads)
-    server = _server(toml, port, pool, IOLoop.current())
-    server.start()
+    if find_spec("panel") is None:
+        raise ComputationError('the application needs Panel: install it with  pip install "trunnion[app]"')
+    interrupts = Interrupts()
+    listening = _listening(port)
+    port = listening.getsockname()[1]
     address = f"http://{ADDRESS}:{port}/"
     say(f"Trunnion is at {address}  (stop with Ctrl-C)")
     sys.stdout.flush()
-    loop.call_soon(pool.start, WARMING)
     if browser:
-        loop.call_later(0.1, partial(webbrowser.open, address))
+        threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+
+    from trunnion.app.pool import Pool
+
+    pool = Pool(loop, threads)
     try:
-        with suppress(ValueError, AttributeError):
-            signal.signal(signal.SIGTERM, _interrupt)
-        loop.run_forever()
+        with closing(listening), closing(pool):
+            _serve_on(listening, toml, pool, loop, interrupts)
     except KeyboardInterrupt:
         say("stopped")
+
+
+class Interrupts:
+    """Ctrl-C. While modules load it is kept for the end of that: half a module is worse than a second's wait."""
+
+    def __init__(self) -> None:
+        self.loading, self.wanted = True, False
+        self.catch()
+
+    def catch(self) -> None:
+        """Be the one that hears of it."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with suppress(ValueError, AttributeError):  # not in the main thread
+                signal.signal(number, self)
+
+    def loaded(self) -> None:
+        """From now on at once. KeyboardInterrupt where it came before."""
+        self.catch()
+        self.loading = False
+        if self.wanted:
+            raise KeyboardInterrupt
+
+    def __call__(self, number: int, frame: object) -> None:
+        self.wanted = True
+        if not self.loading:
+            raise KeyboardInterrupt
+
+
+def _serve_on(listening: socket.socket, toml: str, pool: Pool, loop: Any, interrupts: Interrupts) -> None:
+    """Load what pages need, answer who has asked meanwhile, and go on until Ctrl-C."""
+    import panel
+
+    panel.config.autoreload = False
+    from tornado.ioloop import IOLoop
+
+    from trunnion.app.warming import WARMING
+
+    server = _server(toml, listening, pool, IOLoop.current())
+    try:
+        server.start()
+        interrupts.loaded()
+        loop.call_soon(pool.start)
+        loop.call_later(LATEST, pool.warm, WARMING)
+        loop.run_forever()
     finally:
-        pool.close()
         server.stop()
 
 
-def _interrupt(number: int, frame: object) -> None:
-    raise KeyboardInterrupt
-
-
-def _server(toml: str, port: int, pool: Any, loop: Any) -> Any:
+def _server(toml: str, listening: socket.socket, pool: Pool, loop: Any) -> Any:
     from panel.io.server import get_server
+    from tornado.httpserver import HTTPServer
 
     from trunnion.app.downloads import Download
     from trunnion.app.guard import Guard
     from trunnion.app.session import Session
 
+    port = listening.getsockname()[1]
     hosts = [f"{ADDRESS}:{port}", f"localhost:{port}"]
     sessions: dict[str, Session] = {}
     server = get_server(
         {"/": lambda: Session(toml, pool, sessions).template},
-        port=port,
+        port=0,
         address=ADDRESS,
         websocket_origin=hosts,
         loop=loop,
@@ -97,25 +137,25 @@ def _server(toml: str, port: int, pool: Any, loop: Any) -> Any:
         websocket_max_message_size=LARGEST_MESSAGE,
         extra_patterns=[(r"/download/([\w-]+)/(\w+)/([\w-]+)\.(\w+)", Download, {"sessions": sessions})],
     )
-    server._http.request_callback = Guard(server._tornado, frozenset(hosts))
+    server._http.stop()  # the port of its own, in favour of the one where browsers wait already, behind the guard
+    HTTPServer(Guard(server._tornado, frozenset(hosts))).add_socket(listening)
     return server
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind((ADDRESS, 0))
-        return int(probe.getsockname()[1])
-
-
-def _checked(port: int) -> int:
-    if not 1 <= port <= 65535:
+def _listening(port: int | None) -> socket.socket:
+    """A socket that takes connections, though nobody answers yet."""
+    if port is not None and not 1 <= port <= 65535:
         raise InputError("is not a port", key="--port", value=port, remedy="give a number from 1024 to 65535")
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((ADDRESS, port))
-        except OSError as error:
-            problem = f"cannot be used ({error.strerror})"
-            remedy = "give another, or leave it out for a free one"
-            raise InputError(problem, key="--port", value=port, remedy=remedy) from None
-    return port
+    listening = socket.socket()
+    if sys.platform != "win32":  # where it would let two programs share a port
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((ADDRESS, port or 0))
+    except OSError as error:
+        listening.close()
+        problem = f"cannot be used ({error.strerror})"
+        remedy = "give another, or leave it out for a free one"
+        raise InputError(problem, key="--port", value=port, remedy=remedy) from None
+    listening.listen(128)
+    listening.setblocking(False)
+    return listening

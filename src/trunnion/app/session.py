@@ -22,6 +22,7 @@ from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.variants import Sliders, buttons, difference
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import Step, View, links
+from trunnion.app.warming import WARMING
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
 from trunnion.errors import InputError, TrunnionError
@@ -216,6 +217,7 @@ class Session:
                     self.locked(partial(view.of(side).show, step.name, answer.value))
                 done += 1
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
+        self.pool.warm(WARMING, self)
 
     async def ask(self, call: Call, show: str, side: str, **options: Any) -> Any:
         """What one further computation for a side gives."""

@@ -69,6 +69,8 @@ class DrivelineView(View):
                     document.move(place, by)
                 case {"do": "limit"}:
                     document.add_limit("Shaft *")
+                case {"do": "load_case"}:
+                    document.add_load_case()
 
         self.session.edit(change)
         self.show_document()
