@@ -153,6 +153,88 @@ def test_two_disks_by_hand():
     assert slopes["engine.excitation 1 phase"] == pytest.approx(0.0, abs=1e-9)
 
 
+def shaken(line):
+    """The line with two orders on its last disk, one of which shares its harmonics with the joints."""
+    last = line.names[-1]
+    orders = [{"order": 2, "amplitude": 20.0, "phase": 0.4}, {"order": 3, "amplitude": 11.0}]
+    return line.replace(last, excitation=orders)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_torques_follow_every_parameter_as_differences_do(name):
+    make, speed = LINES[name]
+    line = shaken(make())
+    found = tn.sensitivity(line, speed, of=["torques"])
+    assert {q.method for q in found.quantities} == {"exact"}
+
+    def values(changed):
+        answer = tn.order_response(changed, speed)
+        return np.stack([answer.peak_torque[0], answer.vibratory_torque[0]]).ravel()
+
+    expected = values(line)
+    assert [q.value for q in found.quantities] == pytest.approx(expected, rel=1e-12)
+    tried = 0
+    for p, path in enumerate(found.parameters):
+        value = float(found.parameter_value[p])
+        if (path.endswith("load_torque") and name == "geared") or np.isnan(found.derivative[:, p]).any():
+            continue  # torques would not balance; a kink
+        size = 1.0 if found.parameter_unit[p] == "rad" else abs(value)
+        if not size:
+            continue
+        slopes = central(values, line, path, value, 2e-5 * size)
+        scale = np.maximum(np.abs(slopes), 1e-3 * np.abs(expected) / size)
+        assert np.all(np.abs(found.derivative[:, p] - slopes) <= 1e-6 * scale), path
+        assert np.all(found.error[:, p] <= 1e-6 * scale), path
+        tried += 1
+    assert tried >= 8
+
+
+@pytest.mark.parametrize("damping", [2.0, 1e-2, 1e-3])
+def test_slopes_at_a_sharp_resonance_by_hand(damping):
+    """|T| = F |p| J₂/|J₁J₂ω² − p(J₁ + J₂)|, p = k + iωc, at 3e-6 beside its peak: steps that follow it are tiny."""
+    k, j1, j2, force = 1e4, 0.2, 0.8, 100.0
+    speed = np.sqrt(k * (1 / j1 + 1 / j2)) / 2 * (1 + 3e-6)
+    engine = tn.Disk(inertia=j1, excitation=[{"order": 2, "amplitude": force}], name="engine")
+    shaft = tn.Shaft(stiffness=k, damping=damping, name="shaft")
+    line = tn.Driveline(
+        [engine, shaft, tn.Disk(inertia=j2, name="mass")], limits=[tn.Limit(of="shaft", vibratory_torque=1e3)]
+    )
+    w = 2 * speed
+    p = k + 1j * w * damping
+    under = j1 * j2 * w**2 - p * (j1 + j2)
+    torque = force * p * j2 / under
+    by_p = force * j2 * j1 * j2 * w**2 / under**2
+    by_first, by_second = -torque * (j2 * w**2 - p) / under, torque / j2 - torque * (j1 * w**2 - p) / under
+    expected = {
+        "shaft.stiffness": by_p, "shaft.damping": 1j * w * by_p, "engine.inertia": by_first, "mass.inertia": by_second,
+    }  # fmt: skip
+    check = "vibratory torque of shaft"
+    found = tn.sensitivity(line, speed, of=["torques", "checks"], checks=[check])
+    of_check, of_torque = (found.derivatives(name) for name in (check, found.quantities[0].name))
+    assert found.quantity(check).method == "exact" and found.quantity(check).kind == "check"
+    for path, change in expected.items():
+        exact = float((torque.conjugate() * change).real / abs(torque))
+        assert of_torque[path] == pytest.approx(exact, rel=2e-8), path
+        assert of_check[path] == pytest.approx(exact, rel=2e-8), path
+        place = found.parameters.index(path)
+        assert abs(found.derivative[0, place] - exact) <= found.error[0, place] + 1e-12 * abs(exact)
+
+
+def test_a_peak_on_both_sides_of_zero_has_a_kink():
+    """A torque that swings as far down as up: any mean torque raises its larger side."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"),
+            tn.Disk(inertia=0.8, excitation=[{"order": 1, "amplitude": 5.0}], load_torque=0.0, name="mass"),
+        ]
+    )  # fmt: skip
+    found = tn.sensitivity(line, 60.0, ["mass.load_torque", "mass.inertia"], of="torques")
+    peak, vibratory = (q.name for q in found.quantities)
+    assert found.kinks(peak) == ("mass.load_torque",) and not found.kinks(vibratory)
+    assert found.error[0, 0] == pytest.approx(1.0, rel=1e-6) and found.derivatives(vibratory)["mass.load_torque"] == 0
+    assert np.isfinite(found.derivative[0, 1])
+
+
 def test_groups_and_factors_are_sums_of_their_members():
     line = chain()
     members = ["joint 1.angle", "joint 2.angle"]

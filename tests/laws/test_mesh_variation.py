@@ -150,3 +150,25 @@ def test_joints_and_meshes_without_a_common_period_are_refused() -> None:
             refused()
         assert "on each side of the ratio separately" in str(error.value)
     assert tn.stability(line, 100.0).period == pytest.approx(2 * np.pi)
+
+
+def test_a_free_line_has_a_steady_state_at_every_speed() -> None:
+    """Nothing resists at rest that it turns as a whole, which is no resonance; a soft spring changes nothing."""
+    mesh = tn.GearPair(teeth_in=20, teeth_out=20, module=0.003, mesh_stiffness=2e7, mesh_damping=400.0,
+                       stiffness_variation=[{"order": 1, "share": 0.2}])  # fmt: skip
+    shaken = [{"order": 2, "amplitude": 20.0}]
+
+    def rest(inertia: float) -> list[tn.Element]:
+        return [
+            tn.Disk(inertia=inertia, drive_share=1.0), tn.Shaft(stiffness=4e3, damping=0.8), tn.Disk(inertia=0.01),
+            mesh, tn.Disk(inertia=0.02, load_torque=30.0, excitation=shaken),
+        ]  # fmt: skip
+
+    speeds = np.linspace(70.0, 110.0, 5)
+    for inertia in np.linspace(0.5, 0.55, 12):
+        free = tn.order_response(tn.Driveline(rest(float(inertia))), speeds)
+        assert np.isfinite(free.peak_torque).all()
+    held = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e-4), *rest(0.55)]
+    held[2] = tn.Disk(inertia=0.55, load_torque=-30.0)  # as the drive: a soft spring would twist far
+    near = tn.order_response(tn.Driveline(held), speeds)
+    assert near.vibratory_torque[:, 1:] == pytest.approx(free.vibratory_torque, rel=1e-6)

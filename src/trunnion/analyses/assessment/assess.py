@@ -100,13 +100,18 @@ def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, 
 
 def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Check]:
     """The checks of one load case; ``growth``: parametric stability too, which takes longest."""
+    yield from of_response(subject, case)
+    yield from separation(subject, case)
+    if growth:
+        yield from parametric_stability(subject, case)
+
+
+def of_response(subject: Subject, case: Case) -> Iterator[Check]:
+    """The checks that look at the linear response by order."""
     yield from own_limits(subject, case)
     yield from coupling_ratings(subject, case)
     yield from ship_shafts(subject, case)
-    yield from separation(subject, case)
     yield from gear_hammer(subject, case)
-    if growth:
-        yield from parametric_stability(subject, case)
 
 
 def of_line(subject: Subject) -> Iterator[Check]:

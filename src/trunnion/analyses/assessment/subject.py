@@ -55,7 +55,8 @@ class Subject:
 
 @dataclass(frozen=True)
 class Case:
-    """The line under one load case ("" as stated), and the speeds that it is judged at."""
+    """The line under one load case ("" as stated), and the speeds that it is judged at; ``known``: its response there,
+    where that is known already."""
 
     name: str
     assembly: Assembly
@@ -63,6 +64,7 @@ class Case:
     high: float
     points: int = POINTS
     given: tuple[float, ...] = ()
+    known: OrderResponse | None = None
 
     @cached_property
     def speeds(self) -> Array:
@@ -79,6 +81,8 @@ class Case:
     @cached_property
     def answer(self) -> OrderResponse | str:
         """The linear response by order, or why there is none."""
+        if self.known is not None:
+            return self.known
         try:
             found = order_response(self.assembly, self.speeds)
         except (InputError, ComputationError) as error:

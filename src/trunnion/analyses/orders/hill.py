@@ -29,6 +29,8 @@ Flags = NDArray[np.bool_]
 
 NARROW = 1e-2
 """Share of the speed below which a range is too narrow to be interpolated from its ends."""
+RESIDUAL = 1e-15
+"""Share of what a solution takes to hold below which a change of it is rounding."""
 ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
 
@@ -75,9 +77,19 @@ class HillBlocks:
     lines, at ``nodes`` of the speed, then stand for all cases.
     """
 
-    def __init__(self, topo: Topology, matrices: LineMatrices, loss: Array, step: Array, nodes: Nodes) -> None:
-        """``step`` (node,) is bΩ [rad/s]; loss (node, compliance) [N m/rad]; ``matrices`` at the nodes."""
-        self.topo, self.loss, self.step, self.nodes = topo, loss, step, nodes
+    def __init__(
+        self,
+        topo: Topology,
+        matrices: LineMatrices,
+        loss: Array,
+        step: Array,
+        nodes: Nodes,
+        *,
+        linearised: bool = False,
+    ) -> None:
+        """``step`` (node,) is bΩ [rad/s]; loss (node, compliance) [N m/rad]; ``matrices`` at the nodes; with
+        ``linearised`` every case is solved to first order about the first."""
+        self.topo, self.loss, self.step, self.nodes, self.linearised = topo, loss, step, nodes, linearised
         self.times = matrices.mass.shape[1]
         self.mass, self.damping, self.stiffness, self.ratio = (
             np.fft.fft(part, axis=1) / self.times
@@ -103,18 +115,24 @@ class HillBlocks:
             matrix[:, rows, :, columns, :] = block
         if self.loss.any():
             self._add_loss(matrix, apart, np.sign(frequency))
+        if self.topo.free and not carrier.any():
+            self._hold(matrix, np.flatnonzero(harmonics == 0))
         matrix, right = self.nodes.everywhere(matrix), self.nodes.everywhere(right)
-        cases, inner = len(right), np.flatnonzero(~rim)
-        inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
-        size = len(inner) * n
-        x = np.zeros((cases, count, n), dtype=complex)
-        x[:, inner] = _solve(inside.reshape(cases, size, size), right[:, inner].reshape(cases, size)).reshape(
-            cases, len(inner), n
-        )
-        for end in np.flatnonzero(rim):
-            known = (matrix[:, end].reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
-            x[:, end] = _solve(matrix[:, end, :, end], right[:, end] - known, bounded=False)
-        return x
+        if not self.linearised:
+            return _with_rim(matrix, rim, right)
+        first = _with_rim(matrix[:1], rim, right[:1])
+        rest = right - _times(matrix, rim, first)
+        size = np.abs(right).max() + np.abs(matrix[0]).max() * np.abs(first).max()
+        rest[np.abs(rest).max(axis=(1, 2)) <= RESIDUAL * size] = 0.0
+        change = _with_rim(np.broadcast_to(matrix[:1], matrix.shape), rim, rest, bounded=False)
+        return np.asarray(first + change)
+
+    def _hold(self, matrix: Complex, steady: Integers) -> None:
+        """Take what a free line turns as a whole, which nothing resists at rest, to be zero."""
+        turn = rigid_rotation(self.topo)
+        whole = np.outer(turn, turn) / (turn @ turn)
+        for h in steady:
+            matrix[:, h, :, h, :] += np.abs(self.stiffness[:, 0]).max(axis=(1, 2), keepdims=True) * whole
 
     def _add_loss(self, matrix: Complex, place: Integers, sign: Array) -> None:
         every = np.arange(sign.shape[1])
@@ -132,6 +150,44 @@ class HillBlocks:
             if far >= 0 and near >= 0:
                 matrix[:, :, far, :, near] -= loss[:, :, None] * ratio
                 matrix[:, :, near, :, far] -= ratio * loss[:, None, :]
+
+
+def rigid_rotation(topo: Topology) -> Array:
+    """The unknowns (n,) of a free line without joints' irregularity that turns as a whole, by one at its input."""
+    turn = np.zeros(topo.size)
+    for group, i in enumerate(topo.coordinate):
+        if i >= 0:
+            turn[i] = float(topo.speed_ratio[topo.reference[group]])
+    return turn
+
+
+def _with_rim(matrix: Complex, rim: Flags, right: Complex, *, bounded: bool = True) -> Complex:
+    """X (case, h, n) of matrices (case, h, n, h, n), harmonics on the rim by their own diagonal blocks; ``bounded`` as
+    of ``_solve``."""
+    cases, count, n = right.shape
+    inner = np.flatnonzero(~rim)
+    inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
+    size = len(inner) * n
+    x = np.zeros((cases, count, n), dtype=complex)
+    x[:, inner] = _solve(
+        inside.reshape(cases, size, size), right[:, inner].reshape(cases, size), bounded=bounded
+    ).reshape(cases, len(inner), n)
+    for end in np.flatnonzero(rim):
+        known = (matrix[:, end].reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
+        x[:, end] = _solve(matrix[:, end, :, end], right[:, end] - known, bounded=False)
+    return x
+
+
+def _times(matrix: Complex, rim: Flags, x: Complex) -> Complex:
+    """What ``_with_rim`` solves, times x (1, h, n): (case, h, n)."""
+    cases, count, n = matrix.shape[:3]
+    found = np.zeros((cases, count, n), dtype=complex)
+    for row in range(count):
+        # One harmonic on the rim is found before the next: each sees the inner ones and those found before it.
+        seen = ~rim | (np.arange(count) <= row) if rim[row] else ~rim
+        part = matrix[:, row][:, :, seen].reshape(cases, n, -1)
+        found[:, row] = part @ x[0, seen].reshape(-1)
+    return found
 
 
 def _solve(matrix: Complex, right: Complex, *, bounded: bool = True) -> Complex:

@@ -97,10 +97,14 @@ def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
     InputError : see ``order_spectrum``.
     """
     require_steady_base(assembly, table)
-    spectrum = order_spectrum(assembly, table[:, 0], table=table)
-    failed = np.full(len(table), Verdict.FAILED, dtype=np.int8)
-    found = _result(assembly, spectrum, lambda: failed, None)
+    found = response_of_spectrum(assembly, order_spectrum(assembly, table[:, 0], table=table))
     return replace(found, stress_factor=np.full_like(found.stress_factor, np.nan))
+
+
+def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderResponse:
+    """The response that holds a ``spectrum``; its verdicts are not judged."""
+    failed = np.full(len(spectrum.speed), Verdict.FAILED, dtype=np.int8)
+    return _result(assembly, spectrum, lambda: failed, None)
 
 
 def without_excitation(assembly: Assembly, *, errors_counted: bool = False) -> tuple[Finding, ...]:

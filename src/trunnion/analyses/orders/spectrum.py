@@ -18,7 +18,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
-from trunnion.analyses.orders.straight import straight_response
+from trunnion.analyses.orders.straight import straight_about_first, straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
     BaseOfExcitation,
@@ -57,18 +57,21 @@ def order_spectrum(
     *,
     table: Array | None = None,
     statically_twisted: bool = True,
+    linearised: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> OrderSpectrum:
     """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
 
-    ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case.
+    ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case. With
+    ``linearised`` each is solved as X₀ + A₀⁻¹(G − AX₀) about the first, X₀: right to first order, and as smooth a
+    function of the numbers as A and G are, however near a resonance.
 
     Raises
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     shaken = exciters(assembly)
-    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table))
+    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised)
     parts: list[tuple[OrderSum, Array]] = []
     done = 0
     while done < len(speed):
@@ -137,8 +140,14 @@ class _Case:
     """What solving takes, apart from the speeds."""
 
     def __init__(
-        self, assembly: Assembly, shaken: tuple[Exciter, ...], statically_twisted: bool, numbers: Array
+        self,
+        assembly: Assembly,
+        shaken: tuple[Exciter, ...],
+        statically_twisted: bool,
+        numbers: Array,
+        linearised: bool,
     ) -> None:
+        self.linearised = linearised
         self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
         self.twisted = statically_twisted
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
@@ -158,6 +167,8 @@ class _Case:
             self.batch = self._batch()
         else:
             self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
+        if linearised:
+            self.batch = len(numbers)
 
     def coefficients(self, table: Array) -> LineCoefficients:
         return self.assembly.coefficients(table, statically_twisted=self.twisted, any_frequency=True)
@@ -204,7 +215,8 @@ class _Case:
                 self._sources(g, table, co, base, nu[j][:, None], matrices.wave, None) for j, g in enumerate(groups)
             ]
             right = np.stack([force[:, 0, :] for force, _ in sources])
-            y = straight_response(topo, matrices, loss, nu, right)
+            solve = straight_about_first if self.linearised else straight_response
+            y = solve(topo, matrices, loss, nu, right)
             for j, group in enumerate(groups):
                 seen = motion_channels(topo, y[j][:, None], matrices.ratio, base.relative)
                 seen[:, :, channels_of(topo).twist] += sources[j][1]
@@ -227,7 +239,7 @@ class _Case:
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
         matrices, base = line_matrices(topo, co, tau), self._base(table, co, tau)
         step = float(cycles) * nodes.speed
-        blocks = HillBlocks(topo, matrices, co.loss, step, nodes)
+        blocks = HillBlocks(topo, matrices, co.loss, step, nodes, linearised=self.linearised)
         alike = slice(0, 1) if nodes.weights is not None else slice(None)  # ratios do not depend on the speed
         ratio, relative = matrices.ratio[alike], base.relative[alike]
         places = channels_of(topo)

@@ -8,6 +8,8 @@ elimination from the leaves solves all orders and speeds together; where that lo
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 RESIDUAL = 1e-13
+ROUNDING = 1e-15
+"""Share of what a solution takes to hold below which a change of it is rounding."""
 SINGULAR = 1e-13
 """Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
 
@@ -56,6 +60,29 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
     x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
     x[:, force == 0] = 0.0
     return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
+
+
+def straight_about_first(
+    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex
+) -> Complex:
+    """The same to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀)."""
+    cases = right.shape[1]
+    held = replace(
+        matrices,
+        **{key: np.repeat(getattr(matrices, key)[:1], cases, axis=0) for key in ("mass", "damping", "stiffness")},
+    )
+    steady = np.repeat(loss[:1], cases, axis=0), np.repeat(frequency[:, :1], cases, axis=1)
+    first = straight_response(topo, held, *steady, np.repeat(right[:, :1], cases, axis=1))
+    w = frequency[..., None]
+    mass, damping, stiffness, lossy = (
+        (part[None] @ first[..., None])[..., 0]
+        for part in (matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0], loss)
+    )
+    parts = (-(w**2) * mass, 1j * w * damping, stiffness + 1j * np.sign(w) * lossy)
+    rest = right - sum(parts)
+    size = np.max([np.abs(part).max(axis=2) for part in (right, *parts)], axis=0)
+    rest[np.abs(rest).max(axis=2) <= ROUNDING * size] = 0.0
+    return np.asarray(first + straight_response(topo, held, *steady, rest))
 
 
 def _dense(diagonal: Complex, coupling: Complex, parent: NDArray[np.int64], right: Complex) -> Complex:

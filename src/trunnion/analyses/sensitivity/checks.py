@@ -2,25 +2,27 @@
 
 A largest value over speed changes as its value at that speed does, to first order (the peak's own shift counts for
 nothing): so the speed is made exact first, then the line is moved there along every parameter. Growth rates are
-differentiated exactly through their Floquet modes, where the line has a base motion that is known.
+differentiated exactly through their Floquet modes, what is read from the response by order through its equations, both
+where the line has a base motion that is known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.assess import by_case, of_line
+from trunnion.analyses.assessment.assess import by_case, of_line, of_response
 from trunnion.analyses.assessment.check import Check
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.assessment.subject import Case, Subject, cases_of
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.growth import radius_slope
+from trunnion.analyses.sensitivity.responses import SpectrumSlope, solved_exactly, spectrum_slope
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
@@ -33,8 +35,9 @@ ROUNDS, AROUND = 4, 17
 @dataclass(frozen=True)
 class CheckSlopes:
     """Derivatives of values and margins of checks by parameters (check, 2, direction), their errors, the speed
-    (check,) [rad/s] where they were taken, value and margin there (check, 2); exact (check,): through Floquet modes,
-    not by differences; refused (check,): why a growth rate has none. NaN where a check has no value on both sides."""
+    (check,) [rad/s] where they were taken, value and margin there (check, 2); exact (check,): through Floquet modes or
+    the equations of the response, not by differences; refused (check,): why a growth rate has none. NaN where a check
+    has no value on both sides."""
 
     slope: Array
     error: Array
@@ -56,7 +59,7 @@ def check_slopes(
     slopes, errors = np.full(shape, np.nan), np.full(shape, np.nan)
     speeds, here = np.full(len(checks), np.nan), np.full((len(checks), 2), np.nan)
     exact, refused = [False] * len(checks), [""] * len(checks)
-    values = _Values(subject, near)
+    values = _Values(subject, near, directions)
     for c, check in enumerate(checks):
         case = next((one for one in subject.cases if one.name == check.load_case), subject.cases[0])
         speeds[c] = _peak(subject, case, check)
@@ -64,10 +67,10 @@ def check_slopes(
             slopes[c, 0], errors[c, 0], refused[c] = _growth(case, float(speeds[c]), directions)
             here[c], exact[c] = (check.value, check.margin), True
         else:
-            at = partial(values.at, case, float(speeds[c]), check)
             here[c] = values.here(case, float(speeds[c]), check)
+            exact[c] = values.exact(case, check)
             for d, one in enumerate(directions):
-                found = slope(partial(at, one))
+                found = values.slope(case, float(speeds[c]), check, one)
                 if found is not None:
                     slopes[c, :, d], errors[c, :, d] = (part / one.size for part in found)
         if progress:
@@ -78,10 +81,52 @@ def check_slopes(
 class _Values:
     """Values and margins of checks of changed lines, every line judged once for all checks that bind at one speed."""
 
-    def __init__(self, subject: Subject, near: Neighbours) -> None:
-        self.subject, self.near = subject, near
+    def __init__(self, subject: Subject, near: Neighbours, directions: Sequence[Direction]) -> None:
+        self.subject, self.near, self.directions = subject, near, directions
         self.of_line = {check.name for check in of_line(subject)}
+        self.of_response = {
+            case.name: {check.name for check in of_response(subject, case)} if solved_exactly(case.assembly) else set()
+            for case in subject.cases
+        }
         self._seen: dict[tuple[str, float, str, float], dict[str, Array]] = {}
+        self._around: dict[tuple[str, float], tuple[dict[str, SpectrumSlope | None], float]] = {}
+
+    def exact(self, case: Case, check: Check) -> bool:
+        """Whether derivatives go through the equations of the response."""
+        return check.name in self.of_response[case.name]
+
+    def slope(self, case: Case, speed: float, check: Check, one: Direction) -> tuple[Array, Array] | None:
+        """Derivatives of value and margin by shares of the direction's size, and their errors."""
+        around, pace = self._slopes_at(case, speed) if self.exact(case, check) else ({}, 0.0)
+        if (own := around.get(one.label)) is None:
+            return slope(partial(self.at, case, speed, check, one))
+        return own.slope(partial(self.about, case, speed, check, one, own), pace)
+
+    def about(
+        self, case: Case, speed: float, check: Check, one: Direction, around: SpectrumSlope, share: float
+    ) -> Array | None:
+        """Of the line moved along a direction, its response taken to first order; None where it is refused."""
+        line = self.near.line(one, share) if share else self.subject.line
+        if line is None:
+            return None
+        key = ("first order of", speed, f"{case.name}: {one.label}", share)
+        if key not in self._seen:
+            subject, own = _of(self.subject, case, line)
+            own = replace(own, low=speed, high=speed, given=(speed,), known=around.response(own.assembly, share))
+            self._seen[key] = _read(of_response(replace(subject, cases=(own,)), own))
+        return self._seen[key].get(check.name, np.full(2, np.nan))
+
+    def _slopes_at(self, case: Case, speed: float) -> tuple[dict[str, SpectrumSlope | None], float]:
+        """How the response changes along every direction, and the fastest pace."""
+        key = case.name, speed
+        if key not in self._around:
+            near = Neighbourhood(case.assembly)
+            every = {
+                one.label: spectrum_slope(near, speed, _under_load(case, one)) if np.isfinite(speed) else None
+                for one in self.directions
+            }
+            self._around[key] = every, max((one.pace for one in every.values() if one is not None), default=0.0)
+        return self._around[key]
 
     def here(self, case: Case, speed: float, check: Check) -> Array:
         """Of the line as it is."""
@@ -100,9 +145,12 @@ class _Values:
         if key not in self._seen or check.name not in self._seen[key]:
             subject, own = _of(self.subject, case, line)
             found = of_line(subject) if whole else _at_speed(subject, own, check, speed)
-            read = {one.name: np.array([one.value, one.margin]) for one in found}
-            self._seen[key] = {check.name: np.full(2, np.nan)} | self._seen.get(key, {}) | read
+            self._seen[key] = {check.name: np.full(2, np.nan)} | self._seen.get(key, {}) | _read(found)
         return self._seen[key][check.name]
+
+
+def _read(found: Iterable[Check]) -> dict[str, Array]:
+    return {one.name: np.array([one.value, one.margin]) for one in found}
 
 
 def _growth(case: Case, speed: float, directions: Sequence[Direction]) -> tuple[Array, Array, str]:

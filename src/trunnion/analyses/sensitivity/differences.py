@@ -9,11 +9,14 @@ sides differ, and what the central formula gives between them is no derivative.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Values = Callable[[float], Array | None]
+"""What a line beside one shows, by the share of a parameter's size that it lies away; None where it is refused."""
 CENTRAL = np.array([-2.0, -1.0, 1.0, 2.0])
 WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12
 FORWARD = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
@@ -31,12 +34,12 @@ ROUNDING = 1e-10
 """Change that may be rounding, of values of order one, in the unit of the function."""
 
 
-def central(values: Array, step: float) -> Array:
+def central(values: NDArray[Any], step: float) -> NDArray[Any]:
     """Derivative of values (4, …) at −2, −1, 1 and 2 steps."""
     return np.asarray(np.tensordot(WEIGHTS, values, 1) / step)
 
 
-def slope(values: Callable[[float], Array | None], step: float = STEP) -> tuple[Array, Array] | None:
+def slope(values: Values, step: float = STEP) -> tuple[Array, Array] | None:
     """Derivative of ``values(share)`` at 0 and its error, each as an array; None where both sides are refused.
 
     The error is the distance to the derivative of second order, which is the larger error of the two, and at least half

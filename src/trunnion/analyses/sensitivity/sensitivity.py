@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.sensitivity.checks import check_slopes
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, directions_of
 from trunnion.analyses.sensitivity.growth import radius_slope
 from trunnion.analyses.sensitivity.modes import mode_slopes
+from trunnion.analyses.sensitivity.responses import solved_exactly
 from trunnion.analyses.sensitivity.result import (
     DIFFERENCES,
     EXACT,
@@ -26,7 +28,7 @@ from trunnion.analyses.sensitivity.result import (
     directions_shown,
 )
 from trunnion.analyses.sensitivity.tips import tip_slopes
-from trunnion.analyses.sensitivity.torques import own_growth, slopes, torques
+from trunnion.analyses.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
 from trunnion.analyses.tongues.result import Tongues
 from trunnion.driveline.arguments import numbers, several
 from trunnion.driveline.driveline import Driveline
@@ -58,8 +60,9 @@ def sensitivity(
 ) -> Sensitivities:
     """Derivatives of what the line does by the numbers of its description, plain and logarithmic, ranked.
 
-    Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint, all
-    exact; tips by implicit differentiation; torques and checks by differences of fourth order, with their error.
+    Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint,
+    torques and what is limited of them through the equations of the response, all exact; tips by implicit
+    differentiation; other checks, and the torques of bent lines that start free, by differences of fourth order.
 
     Parameters
     ----------
@@ -248,15 +251,21 @@ def _stability_rows(
 def _torques(question: _Question) -> Iterator[_Rows]:
     if not len(question.at):
         return
-    values = partial(torques, question.at)
-    here = values(question.line)
-    slope, error = slopes(values, question.lines, question.directions, question.progress)
+    exact = solved_exactly(question.assembly)
+    if exact:
+        here, slope, error = exact_torque_slopes(
+            question.near, question.lines, question.at, question.directions, question.progress
+        )
+    else:
+        values = partial(torques, question.at)
+        here = values(question.line)
+        slope, error = slopes(values, question.lines, question.directions, question.progress)
     springs, words = shaft_names(question.assembly), ("peak torque", "vibratory torque")
     for w, v, s in np.ndindex(here.shape):
         speed, value = float(question.at[v]), float(here[w, v, s])
         name = f"{words[w]} of {springs[s]} at {question.shown(speed)}"
         why = "" if np.isfinite(value) else "there is no steady state"
-        one = Quantity(name, "torque", value, "N*m", DIFFERENCES, speed, why)
+        one = Quantity(name, "torque", value, "N*m", EXACT if exact else DIFFERENCES, speed, why)
         yield _Rows([one], slope[w, v, s], error[w, v, s])
 
 
@@ -289,7 +298,7 @@ def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -
         method, at = EXACT if found.exact[c] else DIFFERENCES, float(found.speed[c])
         value, margin = found.value[c].tolist()
         both = [Quantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
-        if not found.exact[c]:  # the margin of a growth rate follows another speed's straight line besides
+        if check.name != GROWTH or not found.exact[c]:  # its margin follows another speed's straight line besides
             both.append(Quantity(f"margin of {check.name}", "margin", margin, "1", method, at))
         yield _Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
 

@@ -1,7 +1,7 @@
-"""How torques by all orders, and the growth rate of bent lines that start free, follow parameters: by differences.
+"""How torques by all orders, and the growth rate of bent lines that start free, follow parameters.
 
 The torque of a spring is the largest over the cycle, at a speed that is kept. A bent line that starts free is judged
-about its own periodic motion, which follows every parameter too.
+about its own periodic motion, which follows every parameter too: lines beside it are computed and compared.
 """
 
 from __future__ import annotations
@@ -13,18 +13,58 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.along import stability_along
+from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.response import order_response
+from trunnion.analyses.orders.totals import extremes
 from trunnion.analyses.sensitivity.differences import slope
-from trunnion.analyses.sensitivity.directions import Direction, Neighbours
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
+from trunnion.analyses.sensitivity.responses import spectrum_slope
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.coefficients import assemble
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
 
 Array = NDArray[np.float64]
 Values = Callable[[Driveline], Array]
 
 
-def torques(speeds: Array, line: Driveline) -> Array:
+def exact_torque_slopes(
+    near: Neighbourhood,
+    lines: Neighbours,
+    speeds: Array,
+    directions: Sequence[Direction],
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Array, Array, Array]:
+    """Peak and vibratory torque (2, speed, spring) [N m], their derivatives (…, direction) and errors, through the
+    equations of the response; NaN where no line lies beside."""
+    springs = len(near.assembly.topology.compliances)
+    here = np.full((2, len(speeds), springs), np.nan)
+    found, errors = np.full((*here.shape, len(directions)), np.nan), np.full((*here.shape, len(directions)), np.nan)
+    for v, speed in enumerate(speeds.tolist()):
+        here[:, v] = torques(np.array([speed]), near.assembly)[:, 0]
+        every = [spectrum_slope(near, speed, one) for one in directions]
+        pace = max((around.pace for around in every if around is not None), default=0.0)
+        for d, (one, around) in enumerate(zip(directions, every, strict=True)):
+            beside = around is None or all(lines.line(one, side * around.step) is None for side in (1, -1))
+            if around is None or beside:
+                both = slope(partial(_beside, partial(torques, np.array([speed])), lines, here[:, [v]], one))
+                both = both and (both[0][:, 0], both[1][:, 0])
+            else:
+                both = around.slope(lambda share, around=around: _extremes(around.moved(share)), pace)  # type: ignore[misc]
+            if both is not None:
+                found[:, v, :, d], errors[:, v, :, d] = both[0] / one.size, both[1] / one.size
+            if progress:
+                progress((v + (d + 1) / len(directions)) / len(speeds))
+    return here, found, errors
+
+
+def _extremes(spectrum: OrderSpectrum) -> Array:
+    """Peak and vibratory torque (2, spring) [N m] at the one speed of a spectrum."""
+    at = spectrum.channels.torque
+    low, high = extremes(spectrum, spectrum.amplitude[..., at], spectrum.mean[:, at])
+    return np.stack([np.maximum(np.abs(low), np.abs(high))[0], (high - low)[0] / 2])
+
+
+def torques(speeds: Array, line: Driveline | Assembly) -> Array:
     """Peak and vibratory torque (2, speed, spring) [N m]."""
     found = order_response(line, speeds)
     return np.stack([found.peak_torque, found.vibratory_torque])

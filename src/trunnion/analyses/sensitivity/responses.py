@@ -1,0 +1,120 @@
+"""How the steady response by order follows parameters, exact through its own equations.
+
+With A(p) X = G(p) the slope is X′ = A⁻¹(G′ − A′X). The function X₀ + A₀⁻¹(G(p) − A(p) X₀) has it, and is as smooth as
+A and G are, low polynomials and sines of the description's numbers: its differences of fourth order hold to rounding,
+however sharp the resonance. What is read from a response (extremes over the cycle, stresses, speeds' fluctuation) is
+then taken of X₀ + X′s, for steps s so small that X changes by ``LINEAR`` of itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.analyses.orders.amplitudes import OrderSpectrum
+from trunnion.analyses.orders.response import response_of_spectrum
+from trunnion.analyses.orders.result import OrderResponse
+from trunnion.analyses.orders.spectrum import order_spectrum
+from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, STEP, Values, central, slope
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.steady_base import bent, require_steady_base
+from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+PARTS = ("amplitude", "base", "mean", "damping", "loss")
+LINEAR = 1e-4
+"""Share of a response by which the largest of the steps changes it."""
+FAINT = 1e-6
+"""Share of the largest amplitude of its kind below which a channel's own change does not shorten the steps."""
+
+UNSURE = 1e-8
+"""Error of a slope, over itself and the value per step's unit, from which finer steps are tried."""
+ROUNDING = 1e-15
+"""Relative error of numbers and of what is computed from them."""
+FINER = (1 / 50, 1 / 2500)
+
+
+@dataclass(frozen=True)
+class SpectrumSlope:
+    """The response at one speed, and how every part of it changes along one direction, per share of its size."""
+
+    here: OrderSpectrum
+    change: dict[str, NDArray[Any]]
+
+    def moved(self, share: float) -> OrderSpectrum:
+        """The response after a step of so many shares, to first order."""
+        parts = {key: getattr(self.here, key) + share * self.change[key] for key in PARTS}
+        return replace(self.here, **parts)
+
+    def response(self, assembly: Assembly, share: float) -> OrderResponse:
+        """The same as the response of ``assembly``, the line there."""
+        return response_of_spectrum(assembly, self.moved(share))
+
+    @cached_property
+    def pace(self) -> float:
+        """How fast the response changes, as shares of itself per share of the direction's size."""
+        places, fastest = self.here.channels, 0.0
+        for kind in (places.twist, places.torque, places.deviation):
+            size = np.abs(self.here.amplitude[..., kind]).sum(axis=1) + np.abs(self.here.mean[:, kind])
+            change = np.abs(self.change["amplitude"][..., kind]).sum(axis=1) + np.abs(self.change["mean"][:, kind])
+            floor = FAINT * size.max(initial=0.0)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                paces = change / np.maximum(size, floor)
+            fastest = max(fastest, float(np.nan_to_num(paces, posinf=0.0).max(initial=0.0)))
+        return fastest
+
+    @property
+    def step(self) -> float:
+        """Share of the direction's size that changes the response by ``LINEAR``."""
+        return min(STEP, LINEAR / self.pace) if self.pace else STEP
+
+    def slope(self, values: Values, pace: float) -> tuple[Array, Array] | None:
+        """Derivatives and errors of ``values(share)``, read from what is ``moved`` by the share.
+
+        Where another peak becomes the largest within the steps, finer ones settle on which side of that kink the line
+        is. Rounding of the numbers themselves moves a derivative as it moves the response, by the largest ``pace``.
+        """
+        here, found = values(0.0), slope(values, self.step)
+        if here is None or found is None:
+            return None
+        for finer in FINER:
+            with np.errstate(invalid="ignore"):
+                unsure = found[1] > UNSURE * np.maximum(np.abs(found[0]), np.abs(here))
+            if not np.any(unsure):
+                break
+            closer = slope(values, self.step * finer)
+            if closer is not None:
+                better = closer[1] < 0.1 * found[1]
+                found = np.where(better, closer[0], found[0]), np.where(better, closer[1], found[1])
+        return found[0], found[1] + ROUNDING * pace * np.abs(np.nan_to_num(found[0]))
+
+
+def solved_exactly(assembly: Assembly) -> bool:
+    """Whether the response is linear equations about a known motion: not that of bent lines that start free."""
+    return not (assembly.topology.free and bent(assembly))
+
+
+def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> SpectrumSlope | None:
+    """How the response at ``speed`` [rad/s] changes along a direction; None where the lines beside it have none: their
+    torques do not balance, or a frequency of excitation moves.
+    """
+    assert solved_exactly(near.assembly)
+    row = near.row(speed)
+    table = np.concatenate([row, near.rows(row, one, SMOOTH_STEP * CENTRAL)])
+    table[:, 0] = speed
+    try:
+        require_steady_base(near.assembly, table)
+        found = order_spectrum(near.assembly, table[:, 0], table=table, linearised=True)
+    except InputError:
+        return None
+    parts = {key: getattr(found, key) for key in PARTS}
+    whole = {key: np.broadcast_to(part, (len(table), *part.shape[1:])) for key, part in parts.items()}
+    first: dict[str, Any] = {key: part[:1] for key, part in whole.items()}
+    here = replace(found, speed=found.speed[:1], cut_off=found.cut_off[:1], **first)
+    change = {key: central(part[1:], SMOOTH_STEP)[None] for key, part in whole.items()}
+    return SpectrumSlope(here, change)
