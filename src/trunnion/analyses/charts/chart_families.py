@@ -93,18 +93,16 @@ def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]
     """Analytic quantities of monodromy matrices (points, m, m) and their error bounds."""
     count, m = matrix.shape[:2]
     if m <= LARGEST:
-        values, bounds = np.empty((count, m + 1)), np.empty((count, m + 1))
-        coefficients_from_matrices(matrix, error, values[:, :m], bounds[:, :m])
+        values, bounds = np.empty((count, m)), np.empty((count, m))
+        coefficients_from_matrices(matrix, error, values, bounds)
         # Liouville: the last coefficient is det Z, known better from the damping than from the matrix.
         values[:, m - 1] = np.exp(-trace)
         bounds[:, m - 1] = values[:, m - 1] * (np.minimum(error, 1.0) + 1e-12 * np.abs(trace))
     else:
-        values, bounds = np.empty((count, m * m + 1)), np.empty((count, m * m + 1))
-        values[:, :-1] = matrix.reshape(count, -1)
+        values = matrix.reshape(count, -1)
         # Spread so that the Frobenius norm of the entries' bounds is the bound of the matrix.
-        bounds[:, :-1] = error[:, None] / m
-    values[:, -1], bounds[:, -1] = trace, 1e-12 * np.abs(trace)
-    return values, bounds
+        bounds = np.broadcast_to(error[:, None] / m, values.shape)
+    return np.column_stack([values, trace]), np.column_stack([bounds, 1e-12 * np.abs(trace)])
 
 
 @dataclass(frozen=True)
@@ -172,7 +170,8 @@ class LineFamily:
         window = self._window(program, lanes)
         # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
         order = _kinematic_order(lanes)
-        sorted_lanes = lanes if order is None else ChainLanes(*(part[..., order] for part in lanes))
+        # Each part in rows as before: another layout would have the kernels compiled again for it.
+        sorted_lanes = lanes if order is None else ChainLanes(*(np.take(part, order, axis=-1) for part in lanes))
         matrix, error, trace = chain_monodromy(program, sorted_lanes, window, tolerance, threads)
         if order is not None:
             back = np.argsort(order)

@@ -66,7 +66,8 @@ def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_as
         )
     column_block, row_block = patch.blocks(u, v)
     radius, error, critical = np.empty(shape), np.empty(shape), np.empty((*shape, 2))
-    radii_on_rows(patch.weights(v), along[:m], patch.error[:m], row_block, column_block, radius, error, critical)
+    bounds = np.ascontiguousarray(patch.error[:m])  # however its file kept it: compiled once
+    radii_on_rows(patch.weights(v), along[:m], bounds, row_block, column_block, radius, error, critical)
     trace = patch.rows(along[-1:], v)[0]
     code = verdicts(radius, error, np.abs(trace) < 1e-12 * size)
     return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
