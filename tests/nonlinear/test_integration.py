@@ -177,6 +177,21 @@ def test_events_may_stop_and_mix() -> None:
     assert run.final[2] == pytest.approx(27.0, abs=1e-13)
 
 
+class Table:
+    level = 27.0
+
+
+@pytest.mark.parametrize("events", [1, 3])
+def test_an_event_that_no_compiler_takes_is_called_back(events: int) -> None:
+    """Alone, and beside a state and a function that could be compiled."""
+    others = [tn.Event("x", 0.0), tn.Event(lambda t, x, p: x[1])][: events - 1]
+    plane = tn.Event(lambda t, x, p: x[2] - Table.level, direction=-1, stop=True, name="plane")
+    system, start = tn.reference_system("lorenz"), [1.0, 1.0, 20.0]
+    run = tn.simulate(system, 50.0, start=start, events=[plane, *others])
+    named = tn.simulate(system, 50.0, start=start, events=[tn.Event("z", 27.0, -1, stop=True)])
+    assert run.outcome.kind == "stopped" and run.end == pytest.approx(named.end, abs=1e-12)
+
+
 def test_section_map_and_its_derivative() -> None:
     """DP v for v within the section, against differences; the rest of DP is the projection along the flow."""
     section = tn.SectionMap(tn.reference_system("lorenz"), tn.Event("z", 27.0, -1), tolerance=1e-12)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from trunnion.errors import InputError
@@ -104,18 +105,37 @@ def _planes() -> CFunction:
 
 @cache
 def _functions(functions: tuple[Any, ...], size: int, names: tuple[str, ...], scale: tuple[float, ...]) -> CFunction:
-    """Several functions as one; its text is written here because a compiler needs a name for each."""
-    from numba import njit
+    """Several functions, and states by their place and level, as one; called back where one cannot be compiled."""
+    every = [_coordinate(*one) if isinstance(one, tuple) else one for one in functions]
+    for one in every:
+        takes(one, (3,), "event")
+    plain = [getattr(one, "py_func", one) for one in every]
 
-    scope: dict[str, Any] = {}
-    terms = []
-    for i, function in enumerate(functions):
-        if isinstance(function, tuple):
-            terms.append(f"x[{function[0]}] - {function[1]!r}")
-            continue
-        takes(function, (3,), "event")
-        scope[f"f{i}"] = function if hasattr(function, "py_func") else njit(function)
-        terms.append(f"f{i}(t, x, p)")
-    text = f"def together(t, x, p):\n    return ({', '.join(terms)},)\n"
-    exec(text, scope)
-    return guard_function(scope["together"], len(functions), size, names, np.array(scale))
+    def called(t: float, x: Array, p: Any) -> list[float]:
+        return [one(t, x, p) for one in plain]
+
+    machine = _together([one if hasattr(one, "py_func") else njit(one) for one in every])
+    return guard_function(called, len(every), size, names, np.array(scale), machine=machine)
+
+
+def _coordinate(place: int, level: float) -> Callable[..., Any]:
+    return lambda t, x, p: x[place] - level
+
+
+def _together(functions: list[Any]) -> Any:
+    """Compiled functions as one of a tuple, link by link: a compiler calls what it knows by name, not from a list."""
+    first, *others = functions
+    if not others:
+
+        @njit
+        def last(t, x, p):
+            return (first(t, x, p),)
+
+        return last
+    rest = _together(others)
+
+    @njit
+    def several(t, x, p):
+        return (first(t, x, p), *rest(t, x, p))
+
+    return several

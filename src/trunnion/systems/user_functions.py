@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 RAISED, WRONG_SHAPE = 1, 2
 STEP = 1e-3
 """Step of the fourth-order differences, in units of a state's scale: 1e-12 of truncation and of rounding."""
+MOVES, WEIGHTS = (1.0, -1.0, 2.0, -2.0), (8.0, -1.0)
+"""Of such differences: where the function is called, in steps, and what each pair counts, in twelfths of a step."""
 REACH = 1e-6
 """Of a state's size, what its scale counts as at least: a step below rounding would find no slope at all."""
 
@@ -120,17 +122,21 @@ def wrap(
     kind: Any,
     call_back: Callable[..., Any],
     compiled: bool = True,
+    machine: Callable[..., Any] | None = None,
 ) -> CFunction:
-    """``function`` as a C function of the signature ``kind``; see ``rate_function`` and the others."""
+    """``function`` as a C function of the signature ``kind``; see ``rate_function`` and the others.
+
+    machine : what is compiled, where that is not ``function`` itself.
+    """
     make, count = parameter_tuple(names), len(names)
     for as_tuple in (False, True) if compiled else ():
         try:
-            machine = cfunc(kind)(build(_uniform(function, make, count, size, regimes, as_tuple)))
+            code = cfunc(kind)(build(_uniform(machine or function, make, count, size, regimes, as_tuple)))
         except NumbaError:
             continue
         except Exception:  # numba fails on odd functions in odd ways; the interpreter can still call them
             break
-        return CFunction(int(machine.address or 0), machine)
+        return CFunction(int(code.address or 0), code)
     raised: list[BaseException] = []
 
     def plain(t: float, x: Array, p: Array, regime: int) -> Any:
@@ -203,54 +209,62 @@ def rate_function(
         assert jacobian is not None
         matrix = _uniform(jacobian, parameter_tuple(names), count, size, sloped_by_regime, False)
 
-        def rate(t, y_, p_, k, regime, out_):
-            y, p = carray(y_, ((1 + k) * size,)), carray(p_, (count,))
-            out = carray(out_, ((1 + k) * size,))
-            try:
-                failed = store(out[:size], uniform(t, y[:size], p, regime))
-                if failed == 0 and k > 0:
-                    slopes = matrix(t, y[:size], p, regime)
-                    for b in range(1, k + 1):
-                        for i in range(size):
-                            total = 0.0
-                            for j in range(size):
-                                total += slopes[i, j] * y[b * size + j]
-                            out[b * size + i] = total
-            except Exception:
-                failed = 1
+        @njit
+        def evaluate(t, y, p, k, regime, out):
+            failed = store(out[:size], uniform(t, y[:size], p, regime))
+            if failed == 0 and k > 0:
+                slopes = matrix(t, y[:size], p, regime)
+                for b in range(1, k + 1):
+                    for i in range(size):
+                        total = 0.0
+                        for j in range(size):
+                            total += slopes[i, j] * y[b * size + j]
+                        out[b * size + i] = total
             return failed
 
-        return rate
+        return evaluate
 
     def differenced(uniform: Any) -> Any:
         scales = np.array(weight)
 
+        @njit
+        def evaluate(t, y, p, k, regime, out):
+            failed = store(out[:size], uniform(t, y[:size], p, regime))
+            if k == 0:
+                return failed
+            x, value, opposite = np.empty(size), np.empty(size), np.empty(size)
+            for b in range(1, k + 1):
+                v, slope = y[b * size : (b + 1) * size], out[b * size : (b + 1) * size]
+                length = 0.0
+                for i in range(size):
+                    length = max(length, abs(v[i]) / max(scales[i], REACH * abs(y[i])))
+                slope[:] = 0.0
+                if length == 0.0:
+                    continue
+                h = step / length
+                # One place that calls the function, compiled once. In pairs, so that what does not depend on the
+                # state cancels exactly.
+                for m in range(4):
+                    for i in range(size):
+                        x[i] = y[i] + MOVES[m] * h * v[i]
+                    failed = max(failed, store(value, uniform(t, x, p, regime)))
+                    if m % 2 == 0:
+                        opposite[:] = value
+                        continue
+                    for i in range(size):
+                        slope[i] += WEIGHTS[m // 2] / (12 * h) * (opposite[i] - value[i])
+            return failed
+
+        return evaluate
+
+    def build(uniform: Any) -> Any:
+        evaluate = (differenced if jacobian is None else with_jacobian)(uniform)
+
         def rate(t, y_, p_, k, regime, out_):
             y, p = carray(y_, ((1 + k) * size,)), carray(p_, (count,))
             out = carray(out_, ((1 + k) * size,))
             try:
-                failed = store(out[:size], uniform(t, y[:size], p, regime))
-                if k > 0:
-                    x, ahead, behind = np.empty(size), np.empty(size), np.empty(size)
-                    for b in range(1, k + 1):
-                        v, slope = y[b * size : (b + 1) * size], out[b * size : (b + 1) * size]
-                        length = 0.0
-                        for i in range(size):
-                            length = max(length, abs(v[i]) / max(scales[i], REACH * abs(y[i])))
-                        slope[:] = 0.0
-                        if length == 0.0:
-                            continue
-                        h = step / length
-                        # In pairs, so that what does not depend on the state cancels exactly.
-                        for move, factor in ((1.0, 8.0), (2.0, -1.0)):
-                            for i in range(size):
-                                x[i] = y[i] + move * h * v[i]
-                            failed = max(failed, store(ahead, uniform(t, x, p, regime)))
-                            for i in range(size):
-                                x[i] = y[i] - move * h * v[i]
-                            failed = max(failed, store(behind, uniform(t, x, p, regime)))
-                            for i in range(size):
-                                slope[i] += factor / (12 * h) * (ahead[i] - behind[i])
+                failed = evaluate(t, y, p, k, regime, out)
             except Exception:
                 failed = 1
             return failed
@@ -284,10 +298,7 @@ def rate_function(
         owner = signature(rate)
         return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
 
-    return wrap(
-        function, size, names, regimes=regimes, kind=RATE, call_back=call_back,
-        build=with_jacobian if jacobian is not None else differenced, compiled=compiled,
-    )  # fmt: skip
+    return wrap(function, size, names, regimes=regimes, kind=RATE, call_back=call_back, build=build, compiled=compiled)
 
 
 def _differences(f: Callable[[Array], Any], x: Array, v: Array, scale: Array) -> Array:
@@ -307,31 +318,41 @@ def guard_function(
     scale: Array,
     *,
     compiled: bool = True,
+    machine: Callable[..., Any] | None = None,
 ) -> CFunction:
-    """Switching functions (t, x, p[, regime]) → ``guards`` numbers, with gradients by differences."""
+    """Switching functions (t, x, p[, regime]) → ``guards`` numbers, with gradients by differences.
+
+    machine : what is compiled, where that is not ``function`` itself.
+    """
     regimes = takes(function, (3, 4), "guard") == 4
     count, step, weight = len(names), STEP, np.array(scale, dtype=float)
 
     def build(uniform: Any) -> Any:
+        @njit
+        def evaluate(t, x, p, regime, sloped, g, slope):
+            failed = store(g, uniform(t, x, p, regime))
+            if sloped == 0:
+                return failed
+            near, other = np.empty(size), np.empty(guards)
+            slope[:] = 0.0
+            for j in range(size + 1):
+                h = step * (weight[j] if j < size else 1.0)
+                for m in range(4):
+                    move = (-2.0, -1.0, 1.0, 2.0)[m] * h
+                    for i in range(size):
+                        near[i] = x[i] + (move if i == j else 0.0)
+                    late = t + (move if j == size else 0.0)
+                    failed = max(failed, store(other, uniform(late, near, p, regime)))
+                    factor = (1.0, -8.0, 8.0, -1.0)[m] / (12 * h)
+                    for i in range(guards):
+                        slope[i * (size + 1) + j] += factor * other[i]
+            return failed
+
         def guard(t, x_, p_, regime, sloped, g_, slope_):
             x, p = carray(x_, (size,)), carray(p_, (count,))
             g, slope = carray(g_, (guards,)), carray(slope_, (guards * (size + 1),))
             try:
-                failed = store(g, uniform(t, x, p, regime))
-                if sloped != 0:
-                    near, other = np.empty(size), np.empty(guards)
-                    slope[:] = 0.0
-                    for j in range(size + 1):
-                        h = step * (weight[j] if j < size else 1.0)
-                        for m in range(4):
-                            move = (-2.0, -1.0, 1.0, 2.0)[m] * h
-                            for i in range(size):
-                                near[i] = x[i] + (move if i == j else 0.0)
-                            late = t + (move if j == size else 0.0)
-                            failed = max(failed, store(other, uniform(late, near, p, regime)))
-                            factor = (1.0, -8.0, 8.0, -1.0)[m] / (12 * h)
-                            for i in range(guards):
-                                slope[i * (size + 1) + j] += factor * other[i]
+                failed = evaluate(t, x, p, regime, sloped, g, slope)
             except Exception:
                 failed = 1
             return failed
@@ -368,7 +389,10 @@ def guard_function(
         owner = signature(guard)
         return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
 
-    return wrap(function, size, names, regimes=regimes, kind=GUARD, call_back=call_back, build=build, compiled=compiled)
+    return wrap(
+        function, size, names, regimes=regimes, kind=GUARD, call_back=call_back, build=build, compiled=compiled,
+        machine=machine,
+    )  # fmt: skip
 
 
 def jump_function(
@@ -379,31 +403,37 @@ def jump_function(
     count, step, weight = len(names), STEP, np.array(scale, dtype=float)
 
     def build(uniform: Any) -> Any:
-        def jump(t, y_, p_, k, regime, which, delay_):
-            y, p, delay = carray(y_, ((1 + k) * size,)), carray(p_, (count,)), carray(delay_, (max(k, 1),))
+        @njit
+        def evaluate(t, y, p, k, which, delay):
             x, near, out = np.empty(size), np.empty(size), np.empty(size)
             failed = 0
-            try:
+            for i in range(size):
+                x[i] = y[i]
+            for b in range(1, k + 1):
+                v = y[b * size : (b + 1) * size]
+                length = abs(delay[b - 1])
                 for i in range(size):
-                    x[i] = y[i]
-                for b in range(1, k + 1):
-                    v = y[b * size : (b + 1) * size]
-                    length = abs(delay[b - 1])
+                    length = max(length, abs(v[i]) / weight[i])
+                if length == 0.0:
+                    continue
+                h = step / length
+                total = np.zeros(size)
+                for m in range(4):
+                    move = (-2.0, -1.0, 1.0, 2.0)[m] * h
                     for i in range(size):
-                        length = max(length, abs(v[i]) / weight[i])
-                    if length == 0.0:
-                        continue
-                    h = step / length
-                    total = np.zeros(size)
-                    for m in range(4):
-                        move = (-2.0, -1.0, 1.0, 2.0)[m] * h
-                        for i in range(size):
-                            near[i] = x[i] + move * v[i]
-                        failed = max(failed, store(out, uniform(t + move * delay[b - 1], near, p, which)))
-                        total += (1.0, -8.0, 8.0, -1.0)[m] / (12 * h) * out
-                    v[:] = total
-                failed = max(failed, store(out, uniform(t, x, p, which)))
-                y[:size] = out
+                        near[i] = x[i] + move * v[i]
+                    failed = max(failed, store(out, uniform(t + move * delay[b - 1], near, p, which)))
+                    for i in range(size):
+                        total[i] += (1.0, -8.0, 8.0, -1.0)[m] / (12 * h) * out[i]
+                v[:] = total
+            failed = max(failed, store(out, uniform(t, x, p, which)))
+            y[:size] = out
+            return failed
+
+        def jump(t, y_, p_, k, regime, which, delay_):
+            y, p, delay = carray(y_, ((1 + k) * size,)), carray(p_, (count,)), carray(delay_, (max(k, 1),))
+            try:
+                failed = evaluate(t, y, p, k, which, delay)
             except Exception:
                 failed = 1
             return failed
