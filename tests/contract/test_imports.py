@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -34,18 +35,23 @@ LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}
 FILES = sorted(ROOT.rglob("*.py"))
 
 
-def imported_parts(path: Path) -> set[str]:
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def imported_parts(path: Path) -> frozenset[str]:
     """First names below ``trunnion`` that a file imports, anywhere in it."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
     modules = []
-    for node in ast.walk(tree):
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Import):
             modules += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path} imports relatively"
             module = node.module or ""
             modules += [f"trunnion.{alias.name}" for alias in node.names] if module == "trunnion" else [module]
-    return {m.split(".")[1] for m in modules if m.startswith("trunnion.")}
+    return frozenset(m.split(".")[1] for m in modules if m.startswith("trunnion."))
 
 
 def part_of(path: Path) -> str:
@@ -71,7 +77,7 @@ def test_drawings_exist() -> None:
     called = {
         (node.name, call.args[1].value)
         for path in FILES
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in ast.walk(tree(path))
         if isinstance(node, ast.ClassDef)
         for call in ast.walk(node)
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "drawing"
@@ -106,7 +112,7 @@ MODULES = {module_of(path) for path in FILES}
 def loaded_modules(path: Path) -> set[str]:
     """Modules of the package that loading a file imports: its statements outside functions and TYPE_CHECKING."""
     found: set[str] = set()
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in tree(path).body:
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -125,7 +131,7 @@ def test_plots_load_late() -> None:
     for path in FILES:
         if path.name == "literal_figure.py":  # a kind of matplotlib's figure, which others import inside functions
             continue
-        top = ast.parse(path.read_text(encoding="utf-8")).body
+        top = tree(path).body
         names = {a.name for n in top if isinstance(n, ast.Import) for a in n.names}
         names |= {n.module or "" for n in top if isinstance(n, ast.ImportFrom)}
         assert not any(name.startswith(("matplotlib", "trunnion.plots.literal_figure")) for name in names), path

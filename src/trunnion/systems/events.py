@@ -128,7 +128,7 @@ def _together(functions: list[Any]) -> Any:
     if not others:
 
         @njit
-        def last(t, x, p):
+        def last(t: Any, x: Any, p: Any) -> Any:
             return (first(t, x, p),)
 
         return last
