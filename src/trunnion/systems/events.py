@@ -135,7 +135,7 @@ def _together(functions: list[Any]) -> Any:
     rest = _together(others)
 
     @njit
-    def several(t, x, p):
+    def several(t: Any, x: Any, p: Any) -> Any:
         return (first(t, x, p), *rest(t, x, p))
 
     return several
