@@ -32,7 +32,7 @@ NEAR = 0.1
 class FloquetForm:
     """For boxes: W, W′ and the computed inverse Q of W at the samples (boxes, STEPS, 2n, 2n), Λ (boxes, 2n, 2n), its
     exponents (boxes, 2n) in the basis X of its eigenvectors (boxes, 2n, 2n), which of its entries belong to blocks,
-    the largest multiplier, and bounds on ‖W‖ and ‖W′‖ everywhere."""
+    the largest multiplier, and bounds on ‖W‖, ‖W′‖ and ‖W″‖ everywhere."""
 
     w: Complex
     slope: Complex
@@ -44,6 +44,7 @@ class FloquetForm:
     radius: Array
     most: Array
     most_slope: Array
+    most_bend: Array
 
 
 def floquet_form(a: Array, energy: Array) -> FloquetForm:
@@ -53,8 +54,8 @@ def floquet_form(a: Array, energy: Array) -> FloquetForm:
         w, slope = sampled(modes)
         q = np.linalg.inv(np.where(np.isfinite(w), w, np.eye(w.shape[-1]))).astype(complex)
     each = np.linalg.norm(modes, axis=(2, 3))
-    most, most_slope = each.sum(axis=1), (2 * np.abs(ORDERS) * each).sum(axis=1)
-    return FloquetForm(w, slope, q, lam, exponents, basis, blocks, radius, most, most_slope)
+    most, most_slope, most_bend = (((2 * np.abs(ORDERS)) ** k * each).sum(axis=1) for k in range(3))
+    return FloquetForm(w, slope, q, lam, exponents, basis, blocks, radius, most, most_slope, most_bend)
 
 
 def sampled(harmonic: Complex) -> tuple[Complex, Complex]:
@@ -85,21 +86,27 @@ def harmonics(a: Array, energy: Array) -> tuple[Complex, Complex, Complex, Compl
 
 
 def _integrated(a: Array) -> tuple[Array, Array]:
-    """Φ at HARMONICS places (boxes, places, 2n, 2n), and after half a turn."""
+    """Φ at HARMONICS places (boxes, places, 2n, 2n), and after half a turn; two steps and a double one extrapolated."""
     boxes, _, size, _ = a.shape
     h = HALF_TURN / STEPS
     phi = np.broadcast_to(np.eye(size), (boxes, size, size)).copy()
     every = np.empty((boxes, HARMONICS, size, size))
-    for step in range(STEPS):
+    for step in range(0, STEPS, 2):
         if step % (STEPS // HARMONICS) == 0:
             every[:, step // (STEPS // HARMONICS)] = phi
-        first, middle, last = a[:, 2 * step], a[:, 2 * step + 1], a[:, (2 * step + 2) % (2 * STEPS)]
-        k1 = first @ phi
-        k2 = middle @ (phi + h / 2 * k1)
-        k3 = middle @ (phi + h / 2 * k2)
-        k4 = last @ (phi + h * k3)
-        phi = phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        first, a1, middle, a3, last = (a[:, (2 * step + k) % (2 * STEPS)] for k in range(5))
+        fine = _step(middle, a3, last, h, _step(first, a1, middle, h, phi))
+        coarse = _step(first, middle, last, 2 * h, phi)
+        phi = fine + (fine - coarse) / 15
     return every, phi
+
+
+def _step(first: Array, middle: Array, last: Array, h: float, phi: Array) -> Array:
+    """One step of the classical method of order 4."""
+    k1 = first @ phi
+    k2 = middle @ (phi + h / 2 * k1)
+    k3 = middle @ (phi + h / 2 * k2)
+    return np.asarray(phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + last @ (phi + h * k3)))
 
 
 def _grouped(values: Complex, vectors: Complex, energy: Array) -> tuple[Complex, Complex, NDArray[np.bool_]]:

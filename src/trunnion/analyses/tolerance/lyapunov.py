@@ -21,9 +21,10 @@ allows, and parameters add up instead of multiplying boxes.
 
 **Bounds.** R and N_v W times the joints' denominators are trigonometric polynomials of known degree, so samples bound
 them (Ehlich and Zeller 1964: by 1/cos(πm/N) for degree m and N samples). On the piece of the turn about each sample
-τ_j, with Q the computed W(τ_j)⁻¹, W(τ)Q = I + E and |E| ≤ ε, so W⁻¹ = Q(I + E)⁻¹: a W A_v Q of the sample differs from
-B_v on the piece by at most d + (|B_v| + d) ε/(1 − ε), with d from bounds on the derivatives of W and A_v. Sizes of what
-is beyond second order, and of whatever combines the angle with other parameters, are products of norms.
+τ_j, with Q the computed W(τ_j)⁻¹, W(τ)Q = I + E and |E| ≤ ε by Taylor's theorem from W′(τ_j)Q, so W⁻¹ = Q(I + E)⁻¹: a
+W A_v Q of the sample differs from B_v on the piece by at most d + (|B_v| + d) ε/(1 − ε), with d from bounds on the
+derivatives of W and A_v. Sizes of what is beyond second order, and of whatever combines the angle with other
+parameters, are products of norms.
 
 **Rounding.** With u = 1.1e-16, a fast transform of N values errs in each by less than 5 u log₂N times the sum of their
 absolute values (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 24.1), so W by 5e-15 and W′ by
@@ -193,7 +194,8 @@ def _largest(terms: BoxTerms, co: Coefficients, a: Array, form: FloquetForm, fir
     size, joints = a.shape[-1], co.angle.shape[1]
     half = HALF_TURN / STEPS / 2 * EVERY
     q_most = _size(form.q).max(axis=1)
-    eps = half * form.most_slope * q_most + _size(form.w @ form.q - np.eye(size)).max(axis=1)
+    eps = half * _size(form.slope @ form.q).max(axis=1) + half**2 / 2 * form.most_bend * q_most
+    eps = eps + _size(form.w @ form.q - np.eye(size)).max(axis=1)
     near = eps < 0.5
     eps = np.where(near, eps, 0.5)
     inverse = q_most / (1 - eps)
