@@ -152,7 +152,7 @@ def test_a_longer_line_in_its_own_unit(run, here):
     one = run(*call, "--from", "600 rpm", "--to", "603")
     assert one.exit_code == 0, one.stderr
     assert "by shooting" in one.stdout and "of clutch" in one.stdout and "rpm" in one.stdout
-    assert "followed to speed = 63.146" in one.stdout
+    assert "followed to speed = 603 rpm" in one.stdout
     assert "may take minutes" in one.stderr
     named = run("frequency-response", "two-shaft-cardan", "--from", "0.5", "--to", "0.51", "-o", "c.png")
     assert named.exit_code == 0 and "by harmonic balance" in named.stdout, named.stderr

@@ -131,7 +131,7 @@ def _print(
     out.print(result.describe(unit), soft_wrap=True)
     if result.shafts:
         output.heading(out, "Shafts")
-        output.table(out, result.table())
+        output.table(out, result.table(unit))
     if phasing is not None:
         output.heading(out, "Fork phasing")
         out.print(str(phasing), soft_wrap=True)
@@ -159,7 +159,7 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
         "output": result.branch,
         "drive_torque": {"smallest": result.drive_torque.min(), "largest": result.drive_torque.max()},
         "efficiency": result.efficiency,
-        "shafts": result.table(),
+        "shafts": result.table("rad/s"),
         "secondary_couples": [{"fork": f, **_parts(result.couple_parts(f))} for f in result.forks],
         "supports": [
             {"bearing": b, **_parts(result.support_parts(b))}

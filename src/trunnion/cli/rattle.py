@@ -27,7 +27,9 @@ Subject = Annotated[
 ]
 From = Annotated[
     str | None,
-    typer.Option("--from", help='Lowest frequency [rad/s]; of a longer line the speed, "300 rpm" or in its unit.'),
+    typer.Option(
+        "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
+    ),
 ]
 To = Annotated[str | None, typer.Option("--to", help="Highest frequency or speed.")]
 Set = Annotated[
@@ -247,8 +249,12 @@ def _of_line(line: Driveline) -> tuple[PiecewiseOscillator | Driveline, str]:
 def _unit(subject: PiecewiseOscillator | System | Driveline) -> str:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.operating_speed import speed_unit
+    from trunnion.results.speeds import frequency_unit
+    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-    return speed_unit(subject) if isinstance(subject, Driveline) else "rad/s"
+    if isinstance(subject, Driveline):
+        return speed_unit(subject)
+    return frequency_unit(subject.speed_unit) if isinstance(subject, PiecewiseOscillator) else "rad/s"
 
 
 def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, high: str | None) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.cli import output
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.quantity_axes import quantity_axis
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.speeds import frequency_unit, show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
     from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
     from trunnion.analyses.linear.stability import Stability
-    from trunnion.driveline.driveline import Driveline
     from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
     from trunnion.results.chart import StabilityChart
@@ -53,7 +52,7 @@ def print_overview(out: Console, seen: Overview) -> None:
     output.heading(out, "Driveline")
     out.print(str(seen.line), soft_wrap=True)
     output.heading(out, "Natural frequencies, all joints straight")
-    output.table(out, seen.natural_frequencies.table(frequency_unit(seen.line)))
+    output.table(out, seen.natural_frequencies.table(frequency_unit(speed_unit(seen.line))))
     span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
     output.heading(out, f"Resonance speeds {span} that can open: {len(able) or 'none'}")
@@ -105,11 +104,6 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
     if (checked := chart.check_sentence) is not None:
         lines.append(f"  {checked}")
     return "\n".join([*lines, *(f"  {remark}" for remark in chart.remarks)])
-
-
-def frequency_unit(line: Driveline) -> str:
-    """Hz, or rad/s for a line whose speeds are in rad/s (nondimensional ones)."""
-    return "rad/s" if speed_unit(line) == "rad/s" else "Hz"
 
 
 def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:

@@ -194,9 +194,11 @@ def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) ->
     """Natural frequencies and damping ratios with all joints straight."""
     line = read_line(file)
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies as find
-    from trunnion.cli.report import frequency_unit, modes_json
+    from trunnion.cli.report import modes_json
+    from trunnion.driveline.operating_speed import speed_unit
+    from trunnion.results.speeds import frequency_unit
 
-    unit = read_unit(line, unit or frequency_unit(line))
+    unit = read_unit(line, unit or frequency_unit(speed_unit(line)))
 
     modes = find(line)
     if as_json:

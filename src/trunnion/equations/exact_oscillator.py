@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.harmonic_torques import cylinders
@@ -156,6 +157,7 @@ def _oscillator(
         tuple(map(float, knots)), tuple(map(float, slopes)), damping, mean, first, base,
         inertia=inertia, damping_law=spring.damping_law if len(knots) else "always",
         harmonics=tuple(h for h in harmonics if h[1] or h[2]), name=line.name or line.names[1],
+        speed_unit=speed_unit(line),
     )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
@@ -127,6 +128,7 @@ class LineSystem:
             scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
             numbers_of=self._numbers,
             regimes=line_regimes(self.assembly, kernel()),
+            speed_unit=speed_unit(self.assembly.line),
         )
 
     def _period(self, values: Mapping[str, float]) -> float | None:

@@ -16,6 +16,7 @@ from trunnion.analyses.motion.long_motion import wrapped
 from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.results.quantity_axes import QuantityAxis, parameter_axis, state_axis
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
@@ -63,10 +64,11 @@ def draw_map(
     look: dict[str, Any] = {"marker": ".", "ls": "", "color": COLOURS[0], "ms": 2.0 if crowd else 5.0, "mew": 0}
     if result.repeat:
         look |= {"ms": 8.0}
-    axes.plot(shown[:, i], shown[:, j], **look)
+    across, up = _state(result.system, i), _state(result.system, j)
+    axes.plot(shown[:, i] * across.factor, shown[:, j] * up.factor, **look)
     if result.repeat:
         _widen(axes, result, i, j)
-    _labels(axes, _named(result.system, i), _named(result.system, j))
+    _labels(axes, across.label, up.label)
     axes.set_title(f"{len(shown)} point{'s' * (len(shown) != 1)}", fontsize=SMALL, color=FAINT, loc="left")
     return axes
 
@@ -75,14 +77,14 @@ def draw_bifurcations(result: BifurcationDiagram, axes: Axes | None = None, *, s
     """One state of the map over the parameter, in a colour for each direction."""
     axes = axes or new_axes(7.2, 4.4)
     i = result.system.states.index(state) if state else 0
+    across, up = _parameter(result.system, result.parameter), _state(result.system, i)
     for d, direction in enumerate(result.directions):
-        values = np.repeat(result.values, result.points.shape[2])
+        values = np.repeat(result.values * across.factor, result.points.shape[2])
         look: dict[str, Any] = {"marker": ".", "ls": "", "ms": 1.6, "mew": 0, "color": COLOURS[d]}
-        axes.plot(values, result.points[d, :, :, i].ravel(), **look)
+        axes.plot(values, result.points[d, :, :, i].ravel() * up.factor, **look)
         axes.plot([], [], marker="o", ls="", ms=5, color=COLOURS[d], label=direction)
-    unit = result.system.parameter_units.get(result.parameter, "1")
-    _labels(axes, _with_unit(result.parameter, unit), _named(result.system, i))
-    axes.set_xlim(result.values[0], result.values[-1])
+    _labels(axes, across.label, up.label)
+    axes.set_xlim(result.values[0] * across.factor, result.values[-1] * across.factor)
     _legend(axes)
     return axes
 
@@ -90,17 +92,18 @@ def draw_bifurcations(result: BifurcationDiagram, axes: Axes | None = None, *, s
 def draw_sweep(result: LyapunovSweep, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
     """Exponents over one parameter, with their intervals; ``mark`` a value of it."""
     axes = axes or new_axes(7.2, 4.2)
+    across = _parameter(result.system, result.parameter)
+    along = result.values * across.factor
     for j in range(result.exponents.shape[1]):
         value, width, colour = result.exponents[:, j], result.half_width[:, j], COLOURS[j % len(COLOURS)]
-        axes.fill_between(result.values, value - width, value + width, color=colour, alpha=0.25, lw=0)
-        axes.plot(result.values, value, **_look(j), lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
+        axes.fill_between(along, value - width, value + width, color=colour, alpha=0.25, lw=0)
+        axes.plot(along, value, **_look(j), lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
     if mark is not None:
-        axes.axvline(mark, color=FAINT, lw=0.8, ls=(0, (1, 2)))
-    unit = result.system.parameter_units.get(result.parameter, "1")
-    _labels(axes, _with_unit(result.parameter, unit), "exponent [1/s]")
+        axes.axvline(mark * across.factor, color=FAINT, lw=0.8, ls=(0, (1, 2)))
+    _labels(axes, across.label, "exponent [1/s]")
     if len(result.values) > 1:
-        axes.set_xlim(result.values[0], result.values[-1])
+        axes.set_xlim(along[0], along[-1])
     return axes
 
 
@@ -112,16 +115,16 @@ def draw_lyapunov_map(result: LyapunovMap, axes: Axes | None = None) -> Axes:
     high = max(float(np.nanmax(result.exponent)), 1e-12)
     low = min(float(np.nanmin(result.exponent)), -1e-12)
     axes.set_facecolor("#9a9a9a")
+    across, up = (_parameter(result.system, name) for name in result.parameters)
     drawn = axes.pcolormesh(
-        result.x, result.y, result.exponent, cmap="RdBu_r", norm=TwoSlopeNorm(0.0, low, high), shading="nearest",
-        rasterized=True,
+        result.x * across.factor, result.y * up.factor, result.exponent, cmap="RdBu_r",
+        norm=TwoSlopeNorm(0.0, low, high), shading="nearest", rasterized=True,
     )  # fmt: skip
     bar = axes.figure.figure.colorbar(drawn, ax=axes)
     bar.set_label("largest exponent [1/s]", fontsize=TEXT, color=INK)
     bar.ax.tick_params(labelsize=SMALL, colors=INK)
-    units = [result.system.parameter_units.get(name, "1") for name in result.parameters]
-    axes.set_xlabel(_with_unit(result.parameters[0], units[0]), fontsize=TEXT, color=INK)
-    axes.set_ylabel(_with_unit(result.parameters[1], units[1]), fontsize=TEXT, color=INK)
+    axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
+    axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
     plain(axes)
     return axes
 
@@ -165,6 +168,7 @@ def _convergence_panel(spectrum: LyapunovSpectrum, axes: Axes) -> None:
 def _portrait(result: ChaosCertificate, axes: Axes) -> None:
     system, spectrum = result.system, result.spectrum
     i, j = _pair(system, "", "")
+    across, up = _state(system, i), _state(system, j)
     state = spectrum.runs[0].states[-1] if len(spectrum.runs[0].states) else spectrum.starts[0]
     state = state if np.all(np.isfinite(state)) and np.all(np.abs(state) < 1e50) else spectrum.starts[0]
     run = integrate(
@@ -176,12 +180,12 @@ def _portrait(result: ChaosCertificate, axes: Axes) -> None:
         path = wrapped(run.at(times), turning)
         for k in {i, j} & set(turning):  # no line across the page where an angle starts anew
             path[1:][np.abs(np.diff(path[:, k])) > np.pi] = np.nan
-        axes.plot(path[:, i], path[:, j], color=COLOURS[0], lw=0.5)
+        axes.plot(path[:, i] * across.factor, path[:, j] * up.factor, color=COLOURS[0], lw=0.5)
         rests = [np.ptp(path[:, k]) < 1e-4 * np.abs(path[:, k]).max() for k in (i, j)]
         if all(rests):
-            axes.plot(path[-1, i], path[-1, j], "o", color=COLOURS[0], ms=5)
+            axes.plot(path[-1, i] * across.factor, path[-1, j] * up.factor, "o", color=COLOURS[0], ms=5)
         _open(axes, system, i, j)
-    _labels(axes, _named(system, i), _named(system, j))
+    _labels(axes, across.label, up.label)
     word = "period" if system.forcing_period is not None else "sample"
     axes.set_title(f"portrait over {PORTRAIT} {word}s", fontsize=SMALL, color=FAINT, loc="left")
 
@@ -189,7 +193,7 @@ def _portrait(result: ChaosCertificate, axes: Axes) -> None:
 def _widen(axes: Axes, result: PoincareMap, i: int, j: int) -> None:
     """Show a map that repeats at the size of the motion, not of its rounding errors."""
     for k, limits, change in ((i, axes.get_xlim(), axes.set_xlim), (j, axes.get_ylim(), axes.set_ylim)):
-        size = float(result.size[k])
+        size = float(result.size[k]) * _state(result.system, k).factor
         if size > 0 and limits[1] - limits[0] < 0.05 * size:
             middle = 0.5 * (limits[0] + limits[1])
             change(middle - 0.5 * size, middle + 0.5 * size)
@@ -199,7 +203,7 @@ def _open(axes: Axes, system: System, i: int, j: int) -> None:
     """Show a motion at rest as a point, not the rounding errors about it."""
     for k, limits, change in ((i, axes.get_xlim(), axes.set_xlim), (j, axes.get_ylim(), axes.set_ylim)):
         middle = 0.5 * (limits[0] + limits[1])
-        size = max(abs(middle), 1e-6 * float(np.asarray(system.scale)[k]))
+        size = max(abs(middle), 1e-6 * float(np.asarray(system.scale)[k]) * _state(system, k).factor)
         if limits[1] - limits[0] < 1e-4 * size:
             change(middle - 0.1 * size, middle + 0.1 * size)
 
@@ -237,12 +241,12 @@ def _pair(system: System, x: str, y: str, section: str = "") -> tuple[int, int]:
     return (names.index(x) if x else pair[0]), (names.index(y) if y else pair[1])
 
 
-def _named(system: System, i: int) -> str:
-    return _with_unit(system.states[i], system.units[i])
+def _state(system: System, i: int) -> QuantityAxis:
+    return state_axis(system.states[i], system.units[i], system.speed_unit)
 
 
-def _with_unit(name: str, unit: str) -> str:
-    return name if unit == "1" else f"{name} [{unit}]"
+def _parameter(system: System, name: str) -> QuantityAxis:
+    return parameter_axis(name, system.parameter_units.get(name, "1"), system.speed_unit)
 
 
 def _labels(axes: Axes, x: str, y: str) -> None:

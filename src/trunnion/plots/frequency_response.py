@@ -45,7 +45,7 @@ def draw_responses(
     axes: Axes | None = None,
     *,
     length: str = "",
-    unit: str = "rad/s",
+    unit: str | None = None,
     marks: bool = True,
     jumps: bool = True,
     top: float | None = None,
@@ -56,11 +56,12 @@ def draw_responses(
     ----------
     responses : method → response; the special points are those of the first that has any.
     length : unit of x, for the axis.
-    unit : of the frequency, ``rad/s``, ``rpm`` or ``Hz``; "" for a number without one.
+    unit : of the frequency, ``rad/s``, ``rpm`` or ``Hz``; "" for a number without one; default the description's.
     marks, jumps : draw special points; draw arrows where a slow sweep leaves a fold.
     top : of the vertical axis.
     """
     axes = axes or new_axes(7.2, 4.9)
+    unit = next((getattr(r, "unit", "rad/s") for r in responses.values()), "rad/s") if unit is None else unit
     factor = speed_factor(unit) if unit else 1.0
     for name, response in responses.items():
         _curve(axes, name, response, factor)
@@ -148,9 +149,12 @@ def _arrow_entry(axes: Axes, colour: str) -> None:
     axes.plot([], [], color=colour, lw=1.0, marker=r"$\rightarrow$", ms=11, mew=0.2, ls="", label=JUMP)
 
 
-def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: str = "", unit: str = "rad/s") -> Axes:
+def draw_sweeps(
+    sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: str = "", unit: str | None = None
+) -> Axes:
     """Half peak-to-peak of sweeps, coloured by what is touched (full going up, hollow going down), jumps marked."""
     axes = axes or new_axes(7.2, 4.4)
+    unit = sweeps[0].unit if unit is None else unit
     factor = speed_factor(unit) if unit else 1.0
     for one in sweeps:
         marks = _SweepMarks(one.frequency * factor, one.peak_to_peak / 2, one.contact, one.settled, one.up)
@@ -161,7 +165,7 @@ def draw_sweeps(sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: st
 
 
 def draw_line_sweeps(
-    sweeps: Sequence[LineSweep], axes: Axes | None = None, *, spring: str = "", unit: str = "rad/s"
+    sweeps: Sequence[LineSweep], axes: Axes | None = None, *, spring: str = "", unit: str | None = None
 ) -> Axes:
     """Peak-to-peak torque of one spring over speed, in the manner of ``draw_sweeps``; by default the first with a gap.
 
@@ -171,6 +175,7 @@ def draw_line_sweeps(
     """
     axes = axes or new_axes(7.2, 4.4)
     line = sweeps[0].line
+    unit = unit or sweeps[0].unit
     name = spring or line.springs[line.staged[0] if len(line.staged) else 0]
     for one in sweeps:
         marks = _SweepMarks(
@@ -256,7 +261,7 @@ def draw_response(
     axes: Axes | None = None,
     *,
     length: str = "",
-    unit: str = "rad/s",
+    unit: str | None = None,
     marks: bool = True,
     jumps: bool = True,
     top: float | None = None,
@@ -271,7 +276,7 @@ def draw_compared(
     axes: Axes | None = None,
     *,
     length: str = "",
-    unit: str = "rad/s",
+    unit: str | None = None,
     marks: bool = True,
     jumps: bool = True,
     top: float | None = None,
@@ -280,11 +285,11 @@ def draw_compared(
     return draw_responses(comparison.responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
-def draw_sweep(sweep: Sweep, axes: Axes | None = None, *, length: str = "", unit: str = "rad/s") -> Axes:
+def draw_sweep(sweep: Sweep, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
     """``draw_sweeps`` of one."""
     return draw_sweeps([sweep], axes, length=length, unit=unit)
 
 
-def draw_line_sweep(sweep: LineSweep, axes: Axes | None = None, *, spring: str = "", unit: str = "rad/s") -> Axes:
+def draw_line_sweep(sweep: LineSweep, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
     """``draw_line_sweeps`` of one."""
     return draw_line_sweeps([sweep], axes, spring=spring, unit=unit)

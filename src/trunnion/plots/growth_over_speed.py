@@ -17,9 +17,7 @@ if TYPE_CHECKING:
 UNSTABLE = "#8c2f39"
 
 
-def draw(
-    found: StabilityAlong, axes: Axes | None = None, *, unit: str = "rpm", operating: Operation | None = None
-) -> Axes:
+def draw(found: StabilityAlong, axes: Axes | None = None, *, unit: str, operating: Operation | None = None) -> Axes:
     """Growth rate [1/s] over speed in ``unit``; above zero the line is unstable."""
     axes = axes or new_axes(7.2, 3.6)
     x, rate = found.speed * speed_factor(unit), found.growth_rate

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
-from trunnion.results.speeds import show_speed
+from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,7 +62,7 @@ class _Curve:
     style: int
 
 
-def draw(result: Kinetostatics, *, unit: str = "rad/s") -> Figure:
+def draw(result: Kinetostatics, *, unit: str | None = None) -> Figure:
     """Speeds, accelerations, torques and secondary couples over the input angle."""
     figure = _figure(8.6, 7.2)
     axes = figure.subplots(2, 2, sharex=True)
@@ -89,7 +90,7 @@ def draw(result: Kinetostatics, *, unit: str = "rad/s") -> Figure:
     return figure
 
 
-def draw_polar(result: Kinetostatics, *, unit: str = "rad/s") -> Figure:
+def draw_polar(result: Kinetostatics, *, unit: str | None = None) -> Figure:
     """Speeds, secondary couples and, where there are any, support forces around the turn."""
     panels: list[tuple[str, list[_Curve]]] = []
     names, ratio, _, _ = _shafts(result)
@@ -127,7 +128,8 @@ def draw_paper(result: Kinetostatics) -> Figure:
     axes[0, 0].yaxis.label.set_color(COLOURS[3])
     _twist_scale(axes[0, 0], result, 1e6 * result.twist[1])
     groups = _alike(result.shafts, np.stack([result.speed, result.acceleration, result.torque], axis=1))
-    _panel(axes[0, 1], result, _curves(groups, result.speed), "angular speed [rad/s]")
+    unit = speed_unit(result.line)
+    _panel(axes[0, 1], result, _curves(groups, result.speed * speed_factor(unit)), f"angular speed [{unit}]")
     _panel(axes[1, 0], result, _curves(groups, result.acceleration), "angular acceleration [rad/s²]")
     _panel(axes[1, 1], result, _curves(groups, result.transmitted), "torque passed on [N·m]")
     for letter, ax in zip("abcd", axes.ravel(), strict=True):
@@ -154,7 +156,8 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def _title(result: Kinetostatics, unit: str) -> str:
+def _title(result: Kinetostatics, unit: str | None) -> str:
+    unit = unit or speed_unit(result.line)
     name = f"{result.line.name}: " if result.line.name else ""
     kind = "rigid shafts" if result.rigid else "elastic shafts"
     inertia = ", with inertia torques" if result.inertia else ""

@@ -11,9 +11,12 @@ from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.results.quantity_axes import QuantityAxis, state_axis
 from trunnion.results.speeds import show_speed
+from trunnion.systems.system import System
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,12 +37,10 @@ def draw_history(result: Simulation, axes: Axes | None = None, *, states: tuple[
     values = result.at(times) if len(result.trajectory.coefficients) else result.state
     for k, name in enumerate(names):
         i = result.system.states.index(name)
-        unit = result.system.units[i]
-        label = name if unit == "1" else f"{name} [{unit}]"
-        axes.plot(times, values[:, i], label=label, **_look(k))
+        shown = _state(result.system, i)
+        axes.plot(times, values[:, i] * shown.factor, label=shown.label, **_look(k))
     if len(names) == 1:
-        unit = result.system.units[result.system.states.index(names[0])]
-        _labels(axes, "time [s]", names[0] if unit == "1" else f"{names[0]} [{unit}]")
+        _labels(axes, "time [s]", _state(result.system, result.system.states.index(names[0])).label)
     else:
         _labels(axes, "time [s]", "state")
         _legend(axes)
@@ -57,8 +58,9 @@ def draw_portrait(
     low, high = result.time_range
     times = np.linspace(max(low, from_time), high, 4 * POINTS)
     values = result.at(times) if len(result.trajectory.coefficients) else result.state
-    axes.plot(values[:, i], values[:, j], color=COLOURS[0], lw=0.7)
-    _labels(axes, _named(names[i], result.system.units[i]), _named(names[j], result.system.units[j]))
+    across, up = _state(result.system, i), _state(result.system, j)
+    axes.plot(values[:, i] * across.factor, values[:, j] * up.factor, color=COLOURS[0], lw=0.7)
+    _labels(axes, across.label, up.label)
     return axes
 
 
@@ -69,15 +71,17 @@ def draw_orbit(result: PeriodicOrbit, axes: Axes | None = None, *, x: str = "", 
     rates = [i for i, name in enumerate(names) if name.startswith("rate of ")]
     half = rates[0] if names[0].startswith("rotation of ") and rates else min(1, len(names) - 1)
     i, j = names.index(x) if x else 0, names.index(y) if y else half
-    axes.plot(result.state[:, i], result.state[:, j], color=COLOURS[0], lw=1.6)
-    axes.plot(*result.start[[i, j]], "o", color=COLOURS[1], ms=6, label="start of the period")
-    _labels(axes, _named(names[i], result.system.units[i]), _named(names[j], result.system.units[j]))
+    across, up = _state(result.system, i), _state(result.system, j)
+    axes.plot(result.state[:, i] * across.factor, result.state[:, j] * up.factor, color=COLOURS[0], lw=1.6)
+    begin = result.start[[i, j]] * (across.factor, up.factor)
+    axes.plot(*begin, "o", color=COLOURS[1], ms=6, label="start of the period")
+    _labels(axes, across.label, up.label)
     _legend(axes)
     return axes
 
 
 def draw_line_history(
-    result: LineSimulation, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "rpm"
+    result: LineSimulation, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = ""
 ) -> Axes:
     """Torque of the shafts over time; the envelope where the cycles are too many to tell apart."""
     axes = axes or new_axes(7.2, 4.2)
@@ -99,6 +103,7 @@ def draw_line_history(
             axes.plot(result.time, torque[:, i], label=result.shafts[i], **{**look, "lw": 0.9})
     _labels(axes, "time [s]", "torque [N·m]")
     axes.set_xlim(result.time[0], result.time[-1])
+    unit = unit or speed_unit(result.line.assembly.line)
     low, high = result.profile.at(np.array([0.0, result.end]))
     span = show_speed(low, unit) if low == high else f"{show_speed(low, unit)} to {show_speed(high, unit)}"
     axes.set_title(f"input at {span}", fontsize=SMALL, color=FAINT, loc="left")
@@ -106,7 +111,7 @@ def draw_line_history(
     return axes
 
 
-def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str = "rpm") -> Axes:
+def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str = "") -> Axes:
     """Torque of every shaft over one period, with linear theory where it applies.
 
     Where the means are much larger than what varies, torques are drawn about them and the key names them.
@@ -130,9 +135,8 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
             )  # fmt: skip
     _labels(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
     axes.set_xlim(0, degrees[-1])
-    axes.set_title(
-        f"{result.verdict} periodic motion at {show_speed(result.speed, unit)}", fontsize=SMALL, color=FAINT, loc="left"
-    )
+    at = show_speed(result.speed, unit or result.unit)
+    axes.set_title(f"{result.verdict} periodic motion at {at}", fontsize=SMALL, color=FAINT, loc="left")
     _legend(axes)
     return axes
 
@@ -161,8 +165,8 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
     return axes
 
 
-def _named(name: str, unit: str) -> str:
-    return name if unit == "1" else f"{name} [{unit}]"
+def _state(system: System, i: int) -> QuantityAxis:
+    return state_axis(system.states[i], system.units[i], system.speed_unit)
 
 
 def _look(k: int) -> dict[str, Any]:

@@ -24,7 +24,7 @@ def draw(
     shaft: str = "",
     window: int = 8,
     highest: float = 12.0,
-    unit: str = "rpm",
+    unit: str = "",
 ) -> Axes:
     """Torque amplitude of one shaft (the first, or ``shaft``), three decades below the largest.
 
@@ -33,7 +33,7 @@ def draw(
     from matplotlib.colors import LogNorm
 
     found = result if isinstance(result, OrderMap) else order_map(result, window=window, highest=highest)
-    axes = axes or new_axes(7.2, 4.6)
+    axes, unit = axes or new_axes(7.2, 4.6), unit or found.unit
     i = found.shafts.index(shaft) if shaft else 0
     varies = abs(found.speed[-1] - found.speed[0]) > 1e-6 * found.speed[0]
     x = found.speed * speed_factor(unit) if varies else found.time

@@ -11,7 +11,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS
 from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
-from trunnion.results.speeds import speed_factor
+from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -27,13 +27,13 @@ MARKS = {
 
 
 def draw(
-    result: PeriodicBranch, axes: Axes | None = None, *, curve: str = "", unit: str = "rpm", jumps: bool = True
+    result: PeriodicBranch, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True
 ) -> Axes:
     """One curve (the first, or ``curve``): full where stable, dashed where not, special points marked.
 
     Parameters
     ----------
-    unit : of a speed on the axis.
+    unit : of a speed on the axis, by default that of the line's description.
     jumps : draw an arrow from every fold to the stable motion that is left there.
 
     Raises
@@ -42,8 +42,8 @@ def draw(
     """
     axes = axes or new_axes(7.2, 4.4)
     i = _place(result, curve)
-    by_speed = result.label == "speed"
-    factor = speed_factor(unit) if by_speed else 1.0
+    across = result.axis if not unit or result.label != "speed" else quantity_axis("speed", result.unit, unit)
+    factor = across.factor
     x, y, stable = result.parameter * factor, result.peak_to_peak[:, i], result.stable
     # A fold or a doubling belongs to both sides, so that the line has no gap.
     between = (result.verdict != Verdict.STABLE) & (result.verdict != Verdict.UNSTABLE)
@@ -62,9 +62,7 @@ def draw(
                 at = fold.parameter * factor
                 arrow = {"arrowstyle": "-|>", "color": "#6b6b6b", "lw": 1.0, "shrinkA": 5, "shrinkB": 2}
                 axes.annotate("", (at, landing), (at, float(fold.peak_to_peak[i])), arrowprops=arrow)
-    name = {"rad/s": f"input speed [{unit}]"} if by_speed else {}
-    plainly = result.label if result.unit == "1" else f"{result.label} [{result.unit}]"
-    axes.set_xlabel(name.get(result.unit, plainly), fontsize=TEXT, color=INK)
+    axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
     what = f"torque of {result.curves[i]}, peak to peak [N·m]"
     axes.set_ylabel(
         what if result.curve_unit == "N*m" else f"{result.curves[i]}, peak to peak", fontsize=TEXT, color=INK

@@ -16,13 +16,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str = "rpm") -> Axes:
+def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
     """Largest |torque| of one shaft in every turn (the most loaded one, or ``shaft``) over input speed.
 
     The steady response is drawn where it was computed: full where the motion is stable, dotted where it is not.
     """
     axes = axes or new_axes(7.2, 4.3)
     i = result.shafts.index(shaft) if shaft else int(np.argmax(result.peak_torque))
+    unit = unit or result.unit
     factor = speed_factor(unit)
     if result.steady is not None:
         x, y = result.steady.speed * factor, result.steady.largest[:, i]

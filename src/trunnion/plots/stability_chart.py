@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
 from trunnion.analyses.tongues.result import Tongues
 from trunnion.driveline.driveline import Driveline, hooke_joints
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
 from trunnion.plots.resonance_marks import mark_resonances
@@ -61,7 +60,7 @@ def draw(
     tongues : of the same line over the same axes, drawn as curves; those narrower than a pixel are marked.
     """
     line = chart.line  # None for matrices of one's own
-    unit = unit or (speed_unit(line) if line else "rad/s")
+    unit = unit or chart.unit
     operating = operating or (line.operation if line else None)
     axes = axes or new_axes()
     across = quantity_axis(chart.x_label, chart.x_unit, unit)

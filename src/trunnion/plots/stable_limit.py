@@ -28,7 +28,7 @@ def draw(
     limit: StableLimit,
     axes: Axes | None = None,
     *,
-    unit: str = "rpm",
+    unit: str = "",
     operating: Operation | None = None,
     values: dict[str, float] | None = None,
 ) -> Axes:
@@ -36,11 +36,12 @@ def draw(
 
     Parameters
     ----------
-    unit : of the speed.
+    unit : of the speed; default the description's.
     operating : its speed is marked.
     values : where the line stands, by name (SI units); each is a horizontal mark.
     """
     axes = axes or new_axes(7.2, 3.6)
+    unit = unit or limit.speed_unit
     up = quantity_axis(limit.parameter, limit.unit, unit)
     x, y = limit.speed * speed_factor(unit), limit.limit * up.factor
     top = limit.high * up.factor

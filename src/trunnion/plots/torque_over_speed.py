@@ -20,18 +20,19 @@ DECADES = 4.0
 """Smallest amplitude shown, in decades below the largest."""
 
 
-def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "rpm", operating: Operation | None = None) -> Axes:
+def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "", operating: Operation | None = None) -> Axes:
     """Half peak-to-peak torque [N m], on a logarithmic axis since resonances span decades.
 
     Parameters
     ----------
-    unit : of the speed.
+    unit : of the speed; default the description's.
     operating : its speed is marked.
     """
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     axes = axes or new_axes(7.2, 4.3)
+    unit = unit or sweep.unit
     x = sweep.speed * speed_factor(unit)
     handles: list[Line2D | Patch] = []
     for i, shaft in enumerate(sweep.shafts):

@@ -22,6 +22,7 @@ from trunnion.reporting.overview import Overview, overview
 from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
+from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.writing import written_whole
 
@@ -105,7 +106,7 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         lstrip_blocks=True,
     )
     seen = contents.overview
-    unit, frequency_unit = seen.unit, _frequency_unit(seen)
+    unit, frequency_unit = seen.unit, reading_of_frequencies(seen.unit)
     made = datetime.now().astimezone()
     facts: dict[str, Any] = {
         "title": seen.line.name or "Driveline",
@@ -147,17 +148,13 @@ def _verdict(seen: Overview) -> str:
     return seen.stability.describe(seen.unit).split("\n  linear forced response")[0] if seen.stability else ""
 
 
-def _frequency_unit(seen: Overview) -> str:
-    return "rad/s" if seen.unit == "rad/s" else "Hz"
-
-
 def pictures(contents: Contents) -> dict[str, Picture]:
     """The figures of a report by name."""
     from trunnion.plots import campbell_diagram, driveline_sketch, irregularity, mode_shapes, torque_over_speed
     from trunnion.plots.motion import draw_orders, draw_period
 
     seen, unit = contents.overview, contents.overview.unit
-    line, operating, frequency_unit = seen.line, seen.operation, _frequency_unit(seen)
+    line, operating, frequency_unit = seen.line, seen.operation, reading_of_frequencies(seen.unit)
     first = line.elements[0]
     drive = line.names[0] if isinstance(first, ConstantSpeed) else None
     shown = binding_picture(seen) | {

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from trunnion._version import __version__
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
@@ -22,7 +23,7 @@ from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.files import read_dataset, save_dataset
-from trunnion.results.units import with_unit
+from trunnion.results.quantity_axes import parameter_axis
 from trunnion.results.verdict import Verdict, flag_attributes
 from trunnion.writing import written_whole
 
@@ -213,15 +214,22 @@ class StabilityChart(Result):
         """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
         return drawing(self, "plot")(self, axes, **options)
 
+    @property
+    def unit(self) -> str:
+        """What its speeds read in: the unit of the line's description."""
+        return speed_unit(self.line) if self.line else "rad/s"
+
     def __str__(self) -> str:
+        across = parameter_axis(self.x_label, self.x_unit, self.unit if self.line else None)
+        up = parameter_axis(self.y_label, self.y_unit, self.unit if self.line else None)
         counts = ", ".join(f"{n} {v}" for v in Verdict if (n := self.count(v)))
         lines = [f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"]
         if np.isfinite(self.spectral_radius).any():
             worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
             lines.append(
                 f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
-                f"{self.x_label} = {with_unit(f'{self.x[worst[1]]:.6g}', self.x_unit)}, "
-                f"{self.y_label} = {with_unit(f'{self.y[worst[0]]:.6g}', self.y_unit)}"
+                f"{self.x_label} = {across.number(float(self.x[worst[1]]))}, "
+                f"{self.y_label} = {up.number(float(self.y[worst[0]]))}"
             )
             middle = np.nanmedian(self.error_estimate)
             lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import frequency_unit, speed_factor
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class QuantityAxis:
         """``input speed from 300 rpm to 2400 rpm``, from SI."""
         return f"{self.quantity} from {self.number(float(values[0]))} to {self.number(float(values[-1]))}"
 
-    def number(self, number: float) -> str:
+    def number(self, number: float, figures: int = 6) -> str:
         """``1500 rpm``, from SI."""
         gap = "" if self.unit in ("", "°") else " "
-        return f"{number * self.factor:.6g}{gap}{self.unit}"
+        return f"{number * self.factor:.{figures}g}{gap}{self.unit}"
 
 
 def quantity_axis(label: str, unit: str, speed_unit: str) -> QuantityAxis:
@@ -46,8 +46,23 @@ def quantity_axis(label: str, unit: str, speed_unit: str) -> QuantityAxis:
     if unit == "rad":
         shown, factor = "°", 180 / pi
     elif unit == "rad/s":
-        shown, factor = "Hz", 1 / (2 * pi)
+        shown = frequency_unit(speed_unit)
+        factor = speed_factor(shown)
     return QuantityAxis(_words(label), "" if unit == "1" else shown, factor)
+
+
+def parameter_axis(label: str, unit: str, speed_unit: str | None) -> QuantityAxis:
+    """``quantity_axis`` for a parameter of a line; of equations of one's own (``speed_unit`` None) as they name it."""
+    if speed_unit is not None:
+        return quantity_axis(label, unit, speed_unit)
+    return QuantityAxis(label, "" if unit == "1" else unit, 1.0)
+
+
+def state_axis(name: str, unit: str, speed_unit: str | None) -> QuantityAxis:
+    """How a state of equations reads: rates of a line in its ``speed_unit``, all else as its unit says."""
+    if speed_unit is not None and unit == "rad/s":
+        return QuantityAxis(name, speed_unit, speed_factor(speed_unit))
+    return QuantityAxis(name, "" if unit == "1" else unit, 1.0)
 
 
 def _words(label: str) -> str:

@@ -18,6 +18,12 @@ def speed_factor(unit: str) -> float:
         raise InputError("is not a unit of speed", key="unit", value=unit, remedy=f"use one of {known}") from None
 
 
+def frequency_unit(speed_unit: str | None) -> str:
+    """What frequencies read in where speeds read in ``speed_unit``: Hz, or rad/s for a line in rad/s and for equations
+    of one's own (None)."""
+    return "rad/s" if speed_unit in ("rad/s", None) else "Hz"
+
+
 def show_speed(speed: float, unit: str = "rad/s") -> str:
     """``1500 rpm``: six figures at most."""
     return f"{speed * speed_factor(unit):.6g} {unit}"

@@ -51,6 +51,7 @@ class PiecewiseOscillator:
     harmonics : further harmonics (k, p_k, q_k).
     frequency : ω [rad/s].
     inertia : m.
+    speed_unit : of one made from a driveline, what its description prints speeds in.
 
     Units are the caller's: metre, kilogram, newton, or radian, kg m², N m.
 
@@ -72,6 +73,7 @@ class PiecewiseOscillator:
     damping_law: Damping = field(default="always", kw_only=True)
     harmonics: tuple[tuple[int, float, float], ...] = field(default=(), kw_only=True)
     name: str = field(default="piecewise oscillator", kw_only=True)
+    speed_unit: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for key in ("breakpoints", "slopes"):

@@ -61,6 +61,7 @@ class System:
     divergence : tr ∂f/∂x where it is one number; otherwise None (it is then computed from the tangents).
     numbers_of : from the parameters to the array that ``rate`` receives; by default their values in order.
     function : the Python function behind ``rate``, to ask what went wrong.
+    speed_unit : of a driveline, what its description prints speeds in; None for equations of one's own.
 
     >>> def pendulum(t, state, p):
     ...     angle, speed = state
@@ -84,6 +85,7 @@ class System:
     divergence: float | Callable[[Mapping[str, float]], float] | None = None
     numbers_of: Callable[[Mapping[str, float]], Array] | None = None
     function: Callable[..., Any] | None = None
+    speed_unit: str | None = None
 
     def __post_init__(self) -> None:
         n = len(self.states)

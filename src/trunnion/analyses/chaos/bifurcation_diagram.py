@@ -21,6 +21,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import parameter_axis
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
@@ -68,9 +69,11 @@ class BifurcationDiagram(Result):
         return drawing(self, "plot")(self, axes, **options)
 
     def __str__(self) -> str:
-        low, high = self.values[0], self.values[-1]
+        unit = self.system.parameter_units.get(self.parameter, "1")
+        along = parameter_axis(self.parameter, unit, self.system.speed_unit)
+        low, high = self.values[0] * along.factor, along.number(float(self.values[-1]))
         rows = [
-            f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high:.6g}, "
+            f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high}, "
             f"{len(self.values)} values, {self.points.shape[2]} points each, {self.section}"
         ]
         for direction, repeat in zip(self.directions, self.repeat, strict=True):

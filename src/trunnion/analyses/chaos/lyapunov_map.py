@@ -28,6 +28,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import parameter_axis
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
@@ -71,14 +72,17 @@ class LyapunovSweep(Result):
 
     def __str__(self) -> str:
         known = np.isfinite(self.exponents[:, 0])
+        unit = self.system.parameter_units.get(self.parameter, "1")
+        along = parameter_axis(self.parameter, unit, self.system.speed_unit)
         head = (
-            f"Lyapunov exponents of {self.system.name} over {self.parameter} = {self.values[0]:.6g} … "
-            f"{self.values[-1]:.6g}, {len(self.values)} values, {self.periods} periods each"
+            f"Lyapunov exponents of {self.system.name} over {self.parameter} = {self.values[0] * along.factor:.6g} … "
+            f"{along.number(float(self.values[-1]))}, {len(self.values)} values, {self.periods} periods each"
         )
         if not known.any():
             return f"{head}\n  {self.outcome}"
         top = int(np.nanargmax(self.exponents[:, 0]))
-        most = f"{self.exponents[top, 0]:+.5g} ± {self.half_width[top, 0]:.2g} 1/s at {self.values[top]:.6g}"
+        at = along.number(float(self.values[top]))
+        most = f"{self.exponents[top, 0]:+.5g} ± {self.half_width[top, 0]:.2g} 1/s at {at}"
         share = f"positive at {int(self.positive.sum())} of {int(known.sum())}"
         return f"{head}\n  {share}; the largest is {most}\n  {self.outcome}"
 

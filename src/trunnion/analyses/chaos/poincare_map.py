@@ -24,7 +24,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.units import with_unit
+from trunnion.results.quantity_axes import state_axis
 from trunnion.systems.events import Event
 from trunnion.systems.maps import SectionMap, TimedMap
 from trunnion.systems.system import System
@@ -86,9 +86,11 @@ class PoincareMap(Result):
     def __str__(self) -> str:
         count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"
         head = f"Poincaré map of {self.system.name}: {count}, {self.section}"
+        states = zip(self.system.states, self.system.units, strict=True)
+        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
         rows = [
-            with_unit(f"  {name}: {column.min():.6g} … {column.max():.6g}", unit)
-            for name, unit, column in zip(self.system.states, self.system.units, self.wrapped.T, strict=True)
+            f"  {name}: {column.min() * axis.factor:.6g} … {axis.number(float(column.max()))}"
+            for name, axis, column in zip(self.system.states, axes, self.wrapped.T, strict=True)
             if len(column)
         ]
         if self.repeat:

@@ -12,9 +12,11 @@ from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
 from trunnion.analyses.kinetostatics.elastic import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import frequency_unit, speed_factor
 
 Array = NDArray[np.float64]
 NEAR_RESONANCE = 1 / 3
@@ -62,6 +64,11 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     lowest, excitation = float(elastic[0]), max(rates) * drive.speed
     if excitation <= NEAR_RESONANCE * lowest:
         return []
+    unit = frequency_unit(speed_unit(chain.line))
+
+    def show(frequency: float) -> str:
+        return f"{frequency * speed_factor(unit):.4g} {unit}"
+
     torque = "inertia torques of the rigid line" if rigid else "quasi-static inertia torques"
     if excitation < lowest:
         grave, share = Gravity.CAUTION, (excitation / lowest) ** 2
@@ -71,8 +78,8 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     return [
         Finding(
             grave,
-            f"{torque} do not hold at this speed: the joints excite at {excitation:.4g} rad/s, the lowest "
-            f"elastic natural frequency is {lowest:.4g} rad/s (trusted up to a third of it), so {effect}; "
+            f"{torque} do not hold at this speed: the joints excite at {show(excitation)}, the lowest "
+            f"elastic natural frequency is {show(lowest)} (trusted up to a third of it), so {effect}; "
             "ask stability() for the linear response",
         )
     ]

@@ -20,6 +20,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.declared import Held, Result
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
+from trunnion.results.speeds import speed_factor
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -220,17 +221,18 @@ class Kinetostatics(Result):
             writer.writerow(columns)
             writer.writerows([repr(float(x)) for x in row] for row in zip(*columns.values(), strict=True))
 
-    def table(self) -> list[dict[str, Any]]:
-        """One row per shaft: speed range, largest acceleration, torque range, largest twist; SI units."""
-        rows = []
+    def table(self, unit: str | None = None) -> list[dict[str, Any]]:
+        """One row per shaft: speed range in ``unit`` (default the description's), acceleration, torque range, twist."""
+        unit = unit or speed_unit(self.line)
+        factor, rows = speed_factor(unit), []
         for s, name in enumerate(self.shafts):
             slow, fast = extremes(self.speed[s])
             weak, strong = extremes(self.transmitted[s])
             rows.append(
                 {
                     "shaft": name,
-                    "slowest [rad/s]": float(slow),
-                    "fastest [rad/s]": float(fast),
+                    f"slowest [{unit}]": float(slow) * factor,
+                    f"fastest [{unit}]": float(fast) * factor,
                     "largest acceleration [rad/s^2]": float(largest(self.acceleration[s])),
                     "least torque [N*m]": float(weak),
                     "largest torque [N*m]": float(strong),

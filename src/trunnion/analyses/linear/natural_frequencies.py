@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import AlignedMatrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -104,12 +105,14 @@ class NaturalFrequencies(Result):
         return drawing(self, "plot")(self, **options)
 
     def __str__(self) -> str:
+        unit = speed_unit(self.assembly.line)
         lines = [f"{len(self.frequency)} natural frequencies of the aligned line (joint angles zero)"]
         for i, (w, z) in enumerate(zip(self.frequency, self.damping_ratio, strict=True), start=1):
             if self.rigid_body and i == 1:
                 lines.append(f"  mode {i}: 0, rigid body (the line turns as a whole)")
             else:
-                lines.append(f"  mode {i}: {w:.6g} rad/s = {w / (2 * np.pi):.6g} Hz, damping ratio {z:.3g}")
+                first = "" if unit == "Hz" else f"{show_speed(w, unit)} = "
+                lines.append(f"  mode {i}: {first}{show_speed(w, 'Hz')}, damping ratio {z:.3g}")
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 

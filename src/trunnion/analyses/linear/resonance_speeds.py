@@ -119,8 +119,9 @@ class ResonanceSpeeds(Result):
         yield over("resonance", "opens", opens, about="unloaded line can be unstable there")
         yield remark("orders", self.orders)
 
-    def table(self, unit: str = "rpm") -> list[dict[str, object]]:
-        """One row per resonance, speeds in ``unit``."""
+    def table(self, unit: str | None = None) -> list[dict[str, object]]:
+        """One row per resonance, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
         factor = speed_factor(unit)
         return [
             {

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.motion.simulate import LineSimulation
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
@@ -25,13 +26,14 @@ WINDOW = 8
 @dataclass(frozen=True)
 class OrderMap:
     """amplitude (window, order, shaft) [N m] at speed (window,) [rad/s] and time (window,) [s] over order (order,)
-    in cycles per turn of the input."""
+    in cycles per turn of the input; unit: what speeds read in."""
 
     time: Array
     speed: Array
     order: Array
     amplitude: Array
     shafts: tuple[str, ...]
+    unit: str = "rad/s"
 
 
 def times_at_angles(run: LineSimulation, angles: Array) -> Array:
@@ -75,7 +77,14 @@ def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.
         row[:] = 2 * np.abs(np.fft.rfft((part - part.mean(axis=0)) * shape[:, None], axis=0))[:kept] / shape.sum()
         row[0] = np.abs(part.mean(axis=0))
     middle = times[starts + count // 2]
-    return OrderMap(middle, run.profile.at(middle), np.arange(kept) / window, amplitude, run.shafts)
+    return OrderMap(
+        middle,
+        run.profile.at(middle),
+        np.arange(kept) / window,
+        amplitude,
+        run.shafts,
+        speed_unit(run.line.assembly.line),
+    )
 
 
 def _per_turn(run: LineSimulation, turns: int, highest: float) -> int:

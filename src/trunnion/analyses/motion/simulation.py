@@ -17,7 +17,7 @@ from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Tra
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.units import with_unit
+from trunnion.results.quantity_axes import state_axis
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
@@ -119,9 +119,12 @@ class Simulation(Result):
     def __str__(self) -> str:
         low, high = self.time_range
         least, most = self.range
+        states = zip(self.system.states, self.system.units, strict=True)
+        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
         rows = [
-            with_unit(f"  {name}: {least[i]:.6g} … {most[i]:.6g}", unit) + f", at the end {self.final[i]:.10g}"
-            for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True))
+            f"  {name}: {least[i] * axis.factor:.6g} … {axis.number(float(most[i]))}, at the end "
+            f"{self.final[i] * axis.factor:.10g}"
+            for i, (name, axis) in enumerate(zip(self.system.states, axes, strict=True))
         ]
         events = f", {len(self.event_time)} events" if self.event_name else ""
         head = (

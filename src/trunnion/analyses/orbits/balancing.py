@@ -141,7 +141,7 @@ def _followed(problem: Balance, begin: float, low: float, high: float, most_poin
     if outcome.kind == "stopped" and np.isfinite(limit):
         return None
     if not walk:
-        near = f"{problem.over.label} = {begin:g}{problem.over.in_unit}"
+        near = problem.over.said(begin)
         nothing = f"no motion with {problem.h} harmonics was found near {near}; give a start"
         outcome = Outcome(False, "not found", nothing)
     points = [point for point, _ in walk]

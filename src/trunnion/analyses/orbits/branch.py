@@ -24,6 +24,7 @@ from trunnion.numerics.continuation.newton import solve
 from trunnion.results.declared import Held, Result, axis, ending, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 if TYPE_CHECKING:
@@ -48,17 +49,23 @@ BOUNDLESS = 30.0
 
 @dataclass(frozen=True)
 class Names:
-    """Name and unit of the parameter, and of the curves that are observed."""
+    """Name and unit of the parameter, and of the curves that are observed; ``speed_unit`` of a driveline is what its
+    description prints speeds in."""
 
     label: str = ""
     unit: str = "1"
     curves: tuple[str, ...] = ()
     curve_unit: str = "1"
+    speed_unit: str | None = None
 
     @property
-    def in_unit(self) -> str:
-        """The unit as it follows a number."""
-        return "" if self.unit == "1" else f" {self.unit}"
+    def axis(self) -> QuantityAxis:
+        """How the parameter reads."""
+        return parameter_axis(self.label, self.unit, self.speed_unit)
+
+    def said(self, value: float) -> str:
+        """``speed = 1500 rpm``, from SI."""
+        return f"{self.label} = {self.axis.number(value)}"
 
 
 class Problem(Protocol):
@@ -188,14 +195,19 @@ class PeriodicBranch(Result):
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
         return drawing(self, "plot")(self, axes, **options)
 
+    @property
+    def axis(self) -> QuantityAxis:
+        """How the parameter reads: the speed of a line in the unit of its description."""
+        return self.problem.over.axis
+
     def __str__(self) -> str:
         if not len(self.parameter):
             return f"no branch over {self.label}: {self.outcome}"
-        unit = "" if self.unit == "1" else f" {self.unit}"
+        axis = self.axis
         counts = f"{int(self.stable.sum())} stable of {len(self.parameter)} points"
-        rows = [f"  {p.kind} at {p.parameter:.9g}{unit}" for p in self.special]
-        low, high = self.parameter.min(), self.parameter.max()
-        head = f"branch of periodic motions over {self.label} from {low:.6g} to {high:.6g}{unit}: {counts}"
+        rows = [f"  {p.kind} at {axis.number(p.parameter, 9)}" for p in self.special]
+        low, high = self.parameter.min() * axis.factor, axis.number(float(self.parameter.max()))
+        head = f"branch of periodic motions over {self.label} from {low:.6g} to {high}: {counts}"
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
@@ -212,7 +224,7 @@ def followed(
 ) -> PeriodicBranch:
     """The branch through the motion ``first`` (unknowns and parameter) that was ``found``, or none where it was not."""
     if not found.ok:
-        words = f"no motion at {problem.over.label} = {first[-1]:g}{problem.over.in_unit}: {found.sentence}"
+        words = f"no motion at {problem.over.said(float(first[-1]))}: {found.sentence}"
         return collect(problem, [], Outcome(False, found.kind, words))
     walk, outcome = follow_both_ways(problem, first, low, high, most_points, tolerance, progress=progress)
     return collect(problem, walk, outcome)
@@ -286,7 +298,7 @@ def _watched(
 def _ending(problem: Problem, curve: Curve) -> Outcome:
     """The end of a curve as a sentence."""
     count = len(curve.points)
-    at = f"{problem.over.label} = {curve.points[-1].parameter:.6g}{problem.over.in_unit}" if count else "its start"
+    at = problem.over.said(curve.points[-1].parameter) if count else "its start"
     if curve.ending is Ending.BOUND:
         return Outcome(True, "end", f"followed to {at}")
     if curve.ending is Ending.CLOSED:

@@ -20,6 +20,7 @@ from trunnion.analyses.orbits.exact_map import LineMap
 from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
 from trunnion.analyses.orbits.spring_contacts import SpringContact
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
@@ -27,6 +28,7 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING, Verdict
 
 Array = NDArray[np.float64]
@@ -119,7 +121,9 @@ class ExactOrbit(Result):
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
-        at = f"{'ω' if self.line.clock != 'speed' else 'Ω'} = {self.value:.6g} rad/s"
+        unit = speed_unit(self.line.assembly.line)
+        by_speed, frequencies = self.line.clock == "speed", frequency_unit(unit)
+        at = f"Ω = {show_speed(self.value, unit)}" if by_speed else f"ω = {show_speed(self.value, frequencies)}"
         if not self.outcome.ok:
             return f"no periodic motion of {self.line.name} at {at}: {self.outcome}"
         rows = [
@@ -127,7 +131,8 @@ class ExactOrbit(Result):
             for name, mean, swing in zip(self.springs, self.torque_mean, self.torque_peak_to_peak, strict=True)
         ]
         near = f"{self.clearance:.2g} rad from grazing" if np.isfinite(self.clearance) else "no stage end is approached"
-        slow = f", slowest crossing {self.slowest_crossing:.2g} rad/s" if np.isfinite(self.slowest_crossing) else ""
+        slowest = show_speed(float(f"{self.slowest_crossing:.2g}"), unit)
+        slow = f", slowest crossing {slowest}" if np.isfinite(self.slowest_crossing) else ""
         return "\n".join(
             [
                 f"{self.verdict} periodic motion of {self.line.name} at {at}, period {self.period:.6g} s: "

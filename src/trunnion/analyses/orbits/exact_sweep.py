@@ -16,6 +16,7 @@ from trunnion.analyses.orbits.piecewise_branch import line_over
 from trunnion.analyses.orbits.spring_contacts import SpringContact
 from trunnion.analyses.orbits.sweeping import jumps, stepped, upwards
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
@@ -23,7 +24,7 @@ from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import frequency_unit, speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,8 +122,15 @@ class LineSweep(Result):
         """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """What was found, speeds in ``unit``."""
+    @property
+    def unit(self) -> str:
+        """What its speeds, or frequencies, read in: the unit of the description."""
+        of_line = speed_unit(self.line.assembly.line)
+        return of_line if self.line.clock == "speed" else frequency_unit(of_line)
+
+    def describe(self, unit: str | None = None) -> str:
+        """What was found, speeds in ``unit``, by default that of the description."""
+        unit = unit or self.unit
         rough, value = int((~self.settled).sum()), self.value * speed_factor(unit)
         rows = []
         for e, name in enumerate(self.springs):

@@ -11,7 +11,7 @@ sweep up, sweep down  settled motion step by step, as a bench would find it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import signature
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ from trunnion.numerics import harmonics as fourier
 from trunnion.results.declared import Held, Result, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder
@@ -73,7 +73,8 @@ class FrequencyResponse(Result):
 
     frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
     shaft's torque; stable (points,); marks: (kind, frequency, half peak-to-peak) of folds, flips, grazing, or of jumps
-    of a sweep; seconds it took; detail: the method's own result.
+    of a sweep; seconds it took; detail: the method's own result; unit: what frequencies read in, of a driveline the
+    unit of its description.
     """
 
     method: str
@@ -85,6 +86,7 @@ class FrequencyResponse(Result):
     seconds: float
     detail: Any
     curve: str = "x"
+    unit: str = "rad/s"
 
     @property
     def peak(self) -> tuple[float, float]:
@@ -134,8 +136,9 @@ class FrequencyResponse(Result):
         """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
-        """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``."""
+    def describe(self, unit: str | None = None) -> str:
+        """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``, by default in its own ``unit``."""
+        unit = unit or self.unit
         if not len(self.frequency):
             return f"no frequency response by {self.method}: {self.outcome}"
         at, size = self.peak
@@ -163,11 +166,17 @@ class ResponseComparison(Result):
         """One of them."""
         return self.responses[method]
 
-    def table(self, frequencies: Sequence[float] = (), unit: str = "rad/s") -> list[tuple[str, ...]]:
+    @property
+    def unit(self) -> str:
+        """What frequencies read in: that of the first."""
+        return next((r.unit for r in self.responses.values()), "rad/s")
+
+    def table(self, frequencies: Sequence[float] = (), unit: str | None = None) -> list[tuple[str, ...]]:
         """Rows of words: method, peak with its frequency, folds, the stable motions at some frequencies, seconds.
 
-        ``frequencies`` in rad/s; those in the table in ``unit``.
+        ``frequencies`` in rad/s; those in the table in ``unit``, by default the description's.
         """
+        unit = unit or self.unit
         factor = speed_factor(unit)
         stable = (f"stable at {f * factor:g}" for f in frequencies)
         rows: list[tuple[str, ...]] = [("method", "peak", f"at [{unit}]", "folds", *stable, "seconds")]
@@ -190,7 +199,7 @@ class ResponseComparison(Result):
         """All on one picture."""
         return drawing(self, "plot")(self, axes, **options)
 
-    def describe(self, unit: str = "rad/s") -> str:
+    def describe(self, unit: str | None = None) -> str:
         """The table as text."""
         rows = self.table(unit=unit)
         widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
@@ -293,7 +302,10 @@ def frequency_response(
         result = balance_springs(system, low, high, **options)
     else:
         result = _of_system(system, low, high, chosen, parameter, options)
-    return _gathered(chosen, result, perf_counter() - began, curve)
+    found = _gathered(chosen, result, perf_counter() - began, curve)
+    if isinstance(system, PiecewiseOscillator):
+        return replace(found, unit=frequency_unit(system.speed_unit))
+    return found
 
 
 def compare_responses(
@@ -401,7 +413,18 @@ def _gathered(method: str, result: Any, seconds: float, curve: str) -> Frequency
     marks = tuple((p.kind, p.parameter, float(p.peak_to_peak[i]) / 2) for p in branch.special)
     half = branch.peak_to_peak[:, i] / 2
     name = branch.curves[i]
-    return FrequencyResponse(method, branch.parameter, half, stable, marks, branch.outcome, seconds, result, name)
+    return FrequencyResponse(
+        method,
+        branch.parameter,
+        half,
+        stable,
+        marks,
+        branch.outcome,
+        seconds,
+        result,
+        name,
+        branch.axis.unit if branch.problem.over.speed_unit else "rad/s",
+    )
 
 
 def _curves(system: PiecewiseOscillator | SecondOrder | System | Driveline, speed: float) -> tuple[str, ...]:

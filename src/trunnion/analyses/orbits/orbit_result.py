@@ -15,7 +15,7 @@ from trunnion.numerics.integration.integration import Trajectory
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.units import with_unit
+from trunnion.results.quantity_axes import state_axis
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.system import System
 
@@ -119,11 +119,11 @@ class PeriodicOrbit(Result):
         changes = f", {self.regime_changes} changes of regime" if self.system.regimes else ""
         tangents = "" if self.system.exact_tangents else "; tangents differenced"
         what = "equilibrium" if self.outcome.kind == "at rest" else "periodic motion"
+        states = zip(self.system.states, self.system.units, strict=True)
+        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
         rows = [
-            with_unit(f"  {name}: {mean:.6g} ± {peak / 2:.6g}", unit)
-            for name, mean, peak, unit in zip(
-                self.system.states, self.mean, self.peak_to_peak, self.system.units, strict=True
-            )
+            f"  {name}: {mean * axis.factor:.6g} ± {axis.number(float(peak) / 2)}"
+            for name, mean, peak, axis in zip(self.system.states, self.mean, self.peak_to_peak, axes, strict=True)
         ]
         return "\n".join(
             [

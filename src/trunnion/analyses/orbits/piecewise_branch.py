@@ -17,6 +17,7 @@ from trunnion.analyses.orbits.exact_orbit import orbit_near, refuse_found_speed
 from trunnion.analyses.orbits.judging import ExactClosing
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.staged_line import StagedLine, staged_line
@@ -85,7 +86,7 @@ def piecewise_branch(
     size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
     scale = np.array([size, size * oscillator.frequency, (high - low) * longest_step / STEP])
     place = OscillatorMap(first, periods, oscillator)
-    problem = ExactClosing(place, scale, over=Names("frequency", "rad/s", ("x",)))
+    problem = ExactClosing(place, scale, over=Names("frequency", "rad/s", ("x",), speed_unit=oscillator.speed_unit))
     return followed(
         problem, np.append(orbit.start, first), low, high, most_points, orbit.outcome, tolerance=1e-11,
         progress=progress,
@@ -113,7 +114,9 @@ def _of_line(
         size[: len(prepared.springs)] = np.maximum(np.abs(orbit.twist_low), np.abs(orbit.twist_high))
     scale = np.append(place.scale(size), (high - low) * longest_step / STEP)
     name = "speed" if prepared.clock == "speed" else "frequency"
-    problem = ExactClosing(place, scale, over=Names(name, "rad/s", prepared.springs, "N*m"))
+    problem = ExactClosing(
+        place, scale, over=Names(name, "rad/s", prepared.springs, "N*m", speed_unit(prepared.assembly.line))
+    )
     begins = np.append(orbit.start[place.kept], first)
     return followed(problem, begins, low, high, most_points, orbit.outcome, tolerance=1e-10, progress=progress)
 

@@ -25,6 +25,7 @@ from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear.piecewise import Passage, move, states
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -118,8 +119,9 @@ class PiecewiseOrbit(Result):
     def __str__(self) -> str:
         if not self.outcome.ok:
             return f"no periodic motion of {self.oscillator.name}: {self.outcome}"
+        at = show_speed(self.oscillator.frequency, frequency_unit(self.oscillator.speed_unit))
         return (
-            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {self.oscillator.frequency:.6g} rad/s "
+            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {at} "
             f"over {self.periods} forcing period{'s' if self.periods > 1 else ''}: {MEANING[self.verdict]}\n"
             f"  x = {self.mean:.6g} with {self.peak_to_peak:.6g} peak to peak; contact {self.contact}, "
             f"{self.impacts:g} impacts per period; {self.clearance:.2g} from grazing\n"

@@ -25,6 +25,7 @@ from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 if TYPE_CHECKING:
@@ -90,15 +91,21 @@ class Sweep(Result):
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
         return drawing(self, "plot")(self, axes, **options)
 
+    @property
+    def unit(self) -> str:
+        """What its frequencies read in: Hz, or rad/s for equations of one's own."""
+        return frequency_unit(self.oscillator.speed_unit)
+
     def __str__(self) -> str:
-        best = int(np.nanargmax(self.peak_to_peak))
-        jumps = ", ".join(f"{a:.6g} → {b:.6g}" for a, b in self.jumps) or "none"
+        best, factor = int(np.nanargmax(self.peak_to_peak)), speed_factor(self.unit)
+        jumps = ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in self.jumps) or "none"
+        low, high, largest = (self.frequency[i] * factor for i in (0, -1, best))
         rough = int((~self.settled).sum())
         kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
         return (
             f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
-            f"{self.frequency[0]:.6g} to {self.frequency[-1]:.6g} rad/s, {rough} without a motion of one period\n"
-            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {self.frequency[best]:.6g}; "
+            f"{low:.6g} to {high:.6g} {self.unit}, {rough} without a motion of one period\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {largest:.6g}; "
             f"jumps: {jumps}\n"
             f"  contact: {kinds}; {self.outcome}"
         )

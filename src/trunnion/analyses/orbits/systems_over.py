@@ -12,7 +12,7 @@ from trunnion.analyses.orbits.branch import Names
 from trunnion.analyses.orbits.free_orbit import require_kept_speed
 from trunnion.analyses.orbits.periodic_response import require_forced
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
@@ -111,8 +111,8 @@ def system_over(
     columns = prepared.assembly.packed.resolve(parameter)
     scale = np.append(LINE_SCALE * np.asarray(prepared.system.scale), (high - low) * width)
     return SystemOver(
-        columns.label, columns.unit, prepared.shafts, "N*m", at=prepared.varied(parameter), scale=scale, begin=first,
-        line=prepared,
+        columns.label, columns.unit, prepared.shafts, "N*m", speed_unit(description),
+        at=prepared.varied(parameter), scale=scale, begin=first, line=prepared,
     )  # fmt: skip
 
 
