@@ -84,6 +84,12 @@ def test_printed_units_have_the_size_the_parser_gives_them(kind):
         assert q.parse(f"1 {unit}", kind) == size
 
 
+@pytest.mark.parametrize("kind", q.KINDS, ids=lambda kind: kind.name)
+def test_usual_units_have_the_size_that_their_definitions_give_them(kind):
+    for unit, size in q.USUAL[kind.unit].items():
+        assert q.size_by_pint(unit, kind) == size, unit
+
+
 def test_door_converters_agree_with_strings():
     assert q.deg(12) == q.parse("12 deg", q.ANGLE) == math.radians(12)
     assert q.rpm(1500) == q.parse("1500 rpm", q.SPEED)

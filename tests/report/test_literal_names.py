@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import trunnion as tn
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.plots.layout import sketch
-from trunnion.plots.style import new_axes
+from trunnion.plots.style import HEIGHT, WIDTH, new_axes
 from trunnion.reporting.pictures import picture
 
 NAMES = ["load $a_$", "$x$", "$", "a$b$c$", r"$\frac{1}{$", "{", r"\alpha $\undefined$", "^$_^$"]
@@ -47,6 +49,28 @@ def test_powers_at_the_axes_stay_powers():
     axes.set(xscale="log", xlim=(1, 1e6), title="$x$")
     axes.figure.draw_without_rendering()
     assert all(text.get_parse_math() for text in axes.get_xticklabels()) and not axes.title.get_parse_math()
+
+
+@pytest.mark.parametrize("ending", ["svg", "png", "pdf"])
+def test_a_saved_figure_is_drawn_once_and_laid_out_as_matplotlib_would(ending, monkeypatch):
+    def fill(axes):
+        axes.plot([1, 1e6], [1, 1e6], label="a label")
+        axes.set(xlabel="speed", ylabel="amplitude of something", title="title", xscale="log")
+        axes.figure.legend(loc="outside lower left")
+
+    axes, plain = new_axes(), Figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
+    fill(axes)
+    fill(plain)
+    plain.figure.savefig(io.BytesIO(), format=ending)
+    drawn, draw = [], type(axes).draw
+    monkeypatch.setattr(type(axes), "draw", lambda self, renderer: drawn.append(1) or draw(self, renderer))
+    for _ in range(2):
+        axes.figure.savefig(io.BytesIO(), format=ending)
+    assert len(drawn) == 2
+    np.testing.assert_allclose(axes.get_position().extents, plain.get_position().extents, atol=0.01)
+    assert axes.figure.get_layout_engine() is not None
+    axes.figure.draw_without_rendering()  # a user's own drawing, laid out as ever
+    np.testing.assert_allclose(axes.get_position().extents, plain.get_position().extents, atol=0.01)
 
 
 def test_drawings_of_a_line():

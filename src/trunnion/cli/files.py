@@ -11,7 +11,8 @@ from trunnion.errors import InputError
 from trunnion.plots.style import FORMATS
 
 if TYPE_CHECKING:
-    from trunnion.driveline.operation import Operation
+    from matplotlib.figure import Figure
+
     from trunnion.results.chart import StabilityChart
 
 DATA_FORMATS = ("nc", "csv")
@@ -64,16 +65,14 @@ def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> 
     raise InputError(problem, key="--output", value=str(path), remedy=remedy) from None
 
 
-def chart_files(
-    chart: StabilityChart, folder: Path, stem: str, unit: str, operating: Operation | None = None
-) -> list[Path]:
-    """Picture and data of a chart in ``folder``."""
+def chart_files(chart: StabilityChart, folder: Path, stem: str, unit: str, drawn: Figure | None = None) -> list[Path]:
+    """Picture and data of a chart in ``folder``; ``drawn``: its picture, where there is one already."""
     names = [folder / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
-    return [write_chart(chart, path, unit, operating) for path in names]
+    return [write_chart(chart, path, unit, drawn) for path in names]
 
 
-def write_chart(chart: StabilityChart, path: Path, unit: str, operating: Operation | None = None) -> Path:
-    """Write ``chart`` in the format that the ending of ``path`` names."""
+def write_chart(chart: StabilityChart, path: Path, unit: str, drawn: Figure | None = None) -> Path:
+    """Write ``chart`` in the format that the ending of ``path`` names; ``drawn``: its picture, if there already."""
     ending = path.suffix.removeprefix(".").lower()
     if ending == "nc":
         chart.save(path)
@@ -83,5 +82,5 @@ def write_chart(chart: StabilityChart, path: Path, unit: str, operating: Operati
         from trunnion.plots.stability_chart import draw
         from trunnion.plots.style import save
 
-        save(draw(chart, unit=unit, operating=operating).figure.figure, path)
+        save(drawn or draw(chart, unit=unit).figure.figure, path)
     return path

@@ -102,7 +102,7 @@ def _written(page: Report, to: Path, file: str) -> list[Path]:
     with folder_written_whole(to) as temporary:
         written = [page.save(temporary / f"{stem}-report.html")]
         if seen.chart is not None:
-            written += chart_files(seen.chart, temporary, stem, seen.unit, seen.operation)
+            written += chart_files(seen.chart, temporary, stem, seen.unit, page.pictures["chart"].figure)
     return [to / path.name for path in written]
 
 

@@ -1,8 +1,8 @@
 """Quantities: an SI number, or a string with a unit ("12 deg", "1500 rpm", "11.1 kN*m/rad").
 
 The number is read by a strict pattern first, so that "1,5 mm" or "nan" never reaches the unit parser; the
-unit is read by pint with the small table in ``units.txt``, in which the angle is a base dimension. pint is
-imported when the first unit is met, not before.
+unit is read by pint with the small table in ``units.txt``, in which the angle is a base dimension. pint takes longer
+to load than most files to read: it is imported at the first unit that is not one of the ``USUAL``.
 """
 
 from __future__ import annotations
@@ -102,6 +102,26 @@ KINDS = (
     RATIO,
 )
 
+USUAL: dict[str, dict[str, float]] = {
+    "rad": {"rad": 1.0, "deg": DEGREE},
+    "rad/s": {"rad/s": 1.0, "rpm": RPM, "Hz": HERTZ},
+    "rad/s^2": {"rad/s^2": 1.0},
+    "N*m/rad": {"N*m/rad": 1.0, "kN*m/rad": 1e3, "MN*m/rad": 1e6, "N*m/deg": 1 / DEGREE},
+    "N*m*s/rad": {"N*m*s/rad": 1.0, "kN*m*s/rad": 1e3},
+    "N*m*s^2/rad^2": {"N*m*s^2/rad^2": 1.0},
+    "N/m": {"N/m": 1.0},
+    "N*s/m": {"N*s/m": 1.0},
+    "kg*m^2": {"kg*m^2": 1.0, "t*m^2": 1e3},
+    "N*m": {"N*m": 1.0, "kN*m": 1e3},
+    "m": {"m": 1.0, "mm": 1e-3},
+    "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "kg/m^3": {"kg/m^3": 1.0},
+    "kg": {"kg": 1.0, "t": 1e3},
+    "W": {"W": 1.0, "kW": 1e3},
+    "1": {"percent": 0.01},
+}
+"""Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
+
 OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, TORQUE)
 """Kinds that computations leave as good as zero, and that nothing is divided by."""
 
@@ -167,6 +187,12 @@ def _registry() -> Any:
 @cache
 def _factor(unit: str, kind: Kind) -> float:
     """Size of `unit` in the SI unit of `kind`; raises InputError (uncached) when there is none."""
+    usual = USUAL.get(kind.unit, {}).get(unit)
+    return size_by_pint(unit, kind) if usual is None else usual
+
+
+def size_by_pint(unit: str, kind: Kind) -> float:
+    """The same for any unit that ``units.txt`` defines."""
     registry = _registry()
     needed = registry.parse_units("" if kind is RATIO else kind.unit)
     try:

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.stability_chart import edges
-from trunnion.plots.style import INK, SMALL, TEXT, plain
+from trunnion.plots.style import INK, SMALL, TEXT, plain, settle
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
 
@@ -59,7 +59,7 @@ def draw(
     if caption:
         axes.set_title(caption, fontsize=SMALL, color=INK, loc="left", y=1.0, pad=42 if resonances else 6)
     if resonances:
-        axes.figure.figure.draw_without_rendering()
+        settle(axes)
         room = mark_resonances(axes, resonances, 1.0, along="x")
         axes.set_title(caption, fontsize=SMALL, color=INK, loc="left", pad=room + 6)
     return axes

@@ -14,7 +14,7 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
 from trunnion.plots.resonance_marks import mark_resonances
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain, settle
 from trunnion.plots.tongues import draw as draw_tongues
 from trunnion.plots.tongues import hidden_key
 from trunnion.results.chart import StabilityChart
@@ -73,8 +73,7 @@ def draw(
         apart = float(np.diff(chart.x).max()) if len(chart.x) > 1 else 0.0
         draw_tongues(tongues, axes, unit=unit, pixel=apart)
         handles += [hidden_key()] if tongues.narrower_than(apart) else []
-    settle = axes.figure.figure.draw_without_rendering
-    settle()  # the width decides what fits side by side
+    settle(axes)  # the width decides what fits side by side
     width = 72 * axes.get_window_extent().width / axes.figure.dpi
     _legend(axes, handles, width)
     title, look = _title(chart, unit, int(width / (0.5 * TITLE))), {"fontsize": TITLE, "color": INK}
@@ -83,7 +82,7 @@ def draw(
         resonances = resonance_speeds(line)
     if resonances and SPEED in (chart.x_label, chart.y_label):
         along = "x" if chart.x_label == SPEED else "y"
-        settle()  # now under title and legend: the length decides how many names fit
+        settle(axes)  # now under title and legend: the length decides how many names fit
         room = mark_resonances(axes, resonances, speed_factor(unit), along=along)
         if along == "x":
             axes.set_title(title, look, loc="left", linespacing=1.35, pad=room + 10)

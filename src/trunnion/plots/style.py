@@ -45,6 +45,17 @@ def plain(axes: Axes) -> None:
         spine.set_color(INK)
 
 
+def settle(axes: Axes) -> None:
+    """Give the axes of a figure the places that they will have, for what is fitted to the room there is."""
+    from trunnion.plots.literal_figure import LiteralFigure
+
+    figure = axes.figure.figure
+    if isinstance(figure, LiteralFigure):
+        figure.settle()
+    else:
+        figure.draw_without_rendering()
+
+
 def check_format(path: str | os.PathLike[str]) -> str:
     """``png``, ``pdf`` or ``svg`` by the file's ending; InputError for another."""
     ending = Path(path).suffix.removeprefix(".").lower()

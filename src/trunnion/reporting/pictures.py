@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -16,18 +16,19 @@ RASTER_DPI = 200
 
 @dataclass(frozen=True)
 class Picture:
-    """An image for a page: its address, words for those who cannot see it, a caption."""
+    """An image for a page: its address, words for those who cannot see it, a caption, the figure it shows."""
 
     address: str
     alt: str
     caption: str
+    figure: Figure | None = field(default=None, repr=False, compare=False)
 
 
 def picture(figure: Figure, alt: str, caption: str = "") -> Picture:
     """``figure`` as SVG; meshes in it as pixels."""
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", dpi=RASTER_DPI, metadata={"Date": None})
-    return Picture(address("image/svg+xml", stream.getvalue()), alt, caption)
+    return Picture(address("image/svg+xml", stream.getvalue()), alt, caption, figure)
 
 
 def address(kind: str, content: bytes) -> str:

@@ -16,7 +16,6 @@ from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from trunnion.analyses.charts.stability_chart import Task
 from trunnion.analyses.linear.mode_content import excited
@@ -103,6 +102,8 @@ def _named(
 
 def _followed(start: Array, every: Complex) -> Array:
     """Phases (modes,) at the end of the way, from ``start``; ``every`` (steps, 2n) are the multipliers on it."""
+    from scipy.optimize import linear_sum_assignment  # here, as it loads much that a report does without
+
     phase, pace = start.copy(), np.zeros(len(start))
     for step, values in enumerate(every):
         ahead = phase + pace + np.where(pace < 0, -NUDGE, NUDGE) * (step > 0)
