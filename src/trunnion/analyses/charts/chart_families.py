@@ -21,10 +21,11 @@ from trunnion.analyses.charts.few_nodes import leading_patches
 from trunnion.analyses.charts.leading_group import told_apart
 from trunnion.analyses.charts.prices import without_groups
 from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.first_order import LARGEST_DENSE, LineRates
+from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
+from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import (
     Window,
     chain_monodromy,
@@ -154,6 +155,11 @@ class LineFamily:
         """The equations at points (x, y), each a case."""
         return LineRates.of(self.assembly, self._table(x, y), self.statically_twisted)
 
+    def exponentials(self, x: Array, y: Array) -> ChainExponentials:
+        """Points (x, y) as lanes of the kernel of exponential steps."""
+        steps = steps_that_see(fastest_cycles(self.assembly, self.period))
+        return ChainExponentials(self.program, self.lanes(x, y), self.period, steps)
+
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
         return self.assembly.coefficients(self._table(x, y), statically_twisted=self.statically_twisted)
 
@@ -235,7 +241,7 @@ class LineFamily:
 
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""
-        return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and told_apart(self.rates(x, y))
+        return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and told_apart(self.exponentials(x, y))
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""

@@ -8,12 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.numerics.chain.characteristic import LARGEST, radii, radii_on_rows, roots_of, without_ones
-from trunnion.numerics.patches.patches import Patch
+from trunnion.numerics.chain.eigenvalues_in_rows import conditions, eigenvalues_in_rows
+from trunnion.numerics.patches.patches import Blocks, Patch
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.verdict import verdicts
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+FEW = 256
+"""Matrices that a library is quick enough for."""
+ROUNDING = 4e-15
+"""Of a matrix's norm, what of it eigenvalues are found for."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,7 @@ def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:
         left = (values[:m], bounds[:m])
         radius, error, critical = radii(*(without_ones(*left, set_aside) if set_aside else left))
     else:
-        radius, error, critical = _largest(values.T, bounds.T, m, set_aside)
+        radius, error, critical = _largest(values[:-1], np.sqrt(np.sum(bounds[:-1] ** 2, axis=0)), m, set_aside)
     return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
 
 
@@ -55,22 +60,35 @@ def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
 def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_aside: int) -> Pixels:
     """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
     m, shape = _multipliers_in(along, size), (len(v), len(u))
+    column_block, row_block = patch.blocks(u, v)
     if m > LARGEST or set_aside:
-        values, bounds = patch.rows(along, v), patch.error_grid(u, v)
-        found = judge(values.reshape(len(values), -1), bounds.reshape(len(values), -1), size, set_aside)
+        values = patch.rows(along, v)
+        found = _judge_in_blocks(values.reshape(len(values), -1), patch, row_block, column_block, size, set_aside)
         return Pixels(
             found.radius.reshape(shape),
             found.error.reshape(shape),
             found.critical.reshape(shape),
             found.verdict.reshape(shape),
         )
-    column_block, row_block = patch.blocks(u, v)
     radius, error, critical = np.empty(shape), np.empty(shape), np.empty((*shape, 2))
     bounds = np.ascontiguousarray(patch.error[:m])  # however its file kept it: compiled once
     radii_on_rows(patch.weights(v), along[:m], bounds, row_block, column_block, radius, error, critical)
     trace = patch.rows(along[-1:], v)[0]
     code = verdicts(radius, error, np.abs(trace) < 1e-12 * size)
     return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
+
+
+def _judge_in_blocks(values: Array, patch: Patch, rows: Blocks, columns: Blocks, size: int, set_aside: int) -> Pixels:
+    """``judge`` of pixels that lie in the blocks ``rows`` × ``columns`` of a patch.
+
+    Of matrices only the norm of the bounds is needed, which is the same all over a block.
+    """
+    m = _multipliers_in(values, size)
+    if m <= LARGEST:
+        return judge(values, patch.error[:, rows[:, None], columns].reshape(len(values), -1), size, set_aside)
+    norm = np.sqrt(np.sum(patch.error[:-1] ** 2, axis=0))[rows[:, None], columns].ravel()
+    found = _largest(values[:-1], norm, m, set_aside)
+    return Pixels(*found, verdicts(found[0], found[1], np.abs(values[-1]) < 1e-12 * size))
 
 
 def _multipliers_in(quantities: Array, size: int) -> int:
@@ -96,17 +114,14 @@ def multipliers_of(values: Array, size: int, set_aside: int) -> Complex:
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
-def _largest(values: Array, bounds: Array, m: int, set_aside: int) -> tuple[Array, Array, Complex]:
-    """Critical eigenvalue of interpolated matrices, with its own condition number.
+def _largest(matrices: Array, bound: Array, m: int, set_aside: int) -> tuple[Array, Array, Complex]:
+    """Critical eigenvalue of matrices (m², points) known to ``bound`` (points,), with its own condition number.
 
     Eigenvectors of the critical multiplier alone come from two steps of inverse iteration; a full
     decomposition would cost several times more.
     """
-    matrix = values[:, :-1].reshape(-1, m, m)
-    matrix_error = np.sqrt(np.sum(bounds[:, :-1] ** 2, axis=1)) + 1e-15 * np.linalg.norm(matrix, axis=(1, 2))
-    every = np.full((len(values), m), np.nan, dtype=complex)
-    finite = np.isfinite(matrix).all(axis=(1, 2))
-    every[finite] = np.linalg.eigvals(matrix[finite])
+    matrix_error = bound + ROUNDING * np.sqrt(np.sum(matrices**2, axis=0))
+    every, hessenberg = _eigenvalues(matrices, m)
     if set_aside:
         keep = np.argsort(np.abs(every - 1), axis=1)[:, set_aside:]
         every = np.take_along_axis(every, keep, axis=1)
@@ -115,15 +130,36 @@ def _largest(values: Array, bounds: Array, m: int, set_aside: int) -> tuple[Arra
     apart = np.abs(every - critical[:, None])
     np.put_along_axis(apart, which, np.inf, axis=1)
     nearest = apart.min(axis=1)
-    moved = matrix_error * _condition(matrix, critical)
+    moved = matrix_error * _condition(hessenberg, critical)
     error = 2 * np.minimum(moved, np.sqrt(moved * np.maximum(nearest, matrix_error)))
     return np.abs(critical), error, critical
+
+
+def _eigenvalues(matrices: Array, m: int) -> tuple[Complex, Array]:
+    """Eigenvalues (points, m) of matrices (m², points), and matrices (points, m, m) similar to these by rotations.
+
+    NaN where they are not finite. Few are left to the library: nothing is compiled for them.
+    """
+    points = matrices.shape[1]
+    alike = np.ascontiguousarray(matrices.T).reshape(points, m, m)
+    every = np.full((points, m), np.nan, dtype=complex)
+    if points > FEW:
+        parts = np.empty((m, points, 2))
+        eigenvalues_in_rows(np.ascontiguousarray(matrices), m, parts, hessenberg := np.empty((points, m, m)))
+        every, alike = parts.view(np.complex128)[..., 0].T.copy(), hessenberg
+    left = np.isnan(every).any(axis=1) & np.isfinite(alike).all(axis=(1, 2))
+    if left.any():
+        every[left] = np.linalg.eigvals(alike[left])
+    return every, alike
 
 
 def _condition(matrix: Array, value: Complex) -> Array:
     """‖left‖‖right‖/|left·right| of one eigenvalue of each matrix."""
     count, m = matrix.shape[:2]
     out = np.full(count, np.nan)
+    if count > FEW:
+        conditions(matrix, value, out)
+        return np.clip(out, 1.0, 1e10)
     finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(value)
     if not finite.any():
         return out

@@ -8,7 +8,7 @@ for itself; the matrices come from exponential steps, whose number the joints se
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.leading_group import Settling, group_sizes, known, settle
 from trunnion.analyses.charts.prices import HALVINGS, pixel_price, step_price
 from trunnion.equations.first_order import LineRates
+from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
 from trunnion.numerics.patches.nested import FIRST_DEGREES, HIGHEST_DEGREE, Grid, Series
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
@@ -33,10 +34,13 @@ PROBES = 16
 
 
 class Rated(Protocol):
-    """What is charted: ``rates`` are the equations at points (x, y)."""
+    """What is charted."""
 
     def rates(self, x: Array, y: Array) -> LineRates:
-        """Equations of each point as a case."""
+        """The equations at points (x, y), each a case."""
+
+    def exponentials(self, x: Array, y: Array) -> ChainExponentials:
+        """The same as lanes of the compiled kernel."""
 
     def from_patch(self, value: Array, of_x: bool) -> Array:
         """Patch variable → axis value."""
@@ -55,12 +59,13 @@ def leading_patches(
 
     None where that costs more than ``price_elsewhere`` [µs], or no group of multipliers stands apart.
     """
-    corners = _rates(family, *_corners(box))
-    states = 2 * corners.root.shape[1]
-    spared = price_elsewhere - pixels * pixel_price(6)
-    if not _forecast(corners) * step_price(states) < spared:
+    corners = _at_nodes(family, *_corners(box))
+    price, spared = step_price(corners.states), price_elsewhere - pixels * pixel_price(6)
+    group, nodes_expected = _forecast(family.rates(*_from_patch(family, *_corners(box))))
+    dearest = spared / (nodes_expected * HALVINGS * price)
+    if not LIKELY_STEPS < dearest or not _settles(corners, group, tolerance, dearest):
         return None
-    most_work = SHARE * spared / step_price(states)
+    most_work = SHARE * spared / price
     todo, patches = [(box, 0)], list[Patch]()
     nodes, work, whole = 0, 0.0, 0.0
     while todo:
@@ -79,40 +84,48 @@ def leading_patches(
     return PatchedFunction(tuple(_alike(patches)), (), nodes)
 
 
-def _rates(family: Rated, u: Array, v: Array) -> LineRates:
-    return family.rates(family.from_patch(u, True), family.from_patch(v, False))
+def _from_patch(family: Rated, u: Array, v: Array) -> tuple[Array, Array]:
+    return family.from_patch(u, True), family.from_patch(v, False)
+
+
+def _at_nodes(family: Rated, u: Array, v: Array) -> ChainExponentials:
+    return family.exponentials(*_from_patch(family, u, v))
 
 
 def _corners(box: Box) -> tuple[Array, Array]:
     return np.array([box.u0, box.u1, box.u0, box.u1]), np.array([box.v0, box.v0, box.v1, box.v1])
 
 
-def _forecast(corners: LineRates) -> float:
-    """Steps that a box will take, from the mean equations at its corners; infinite where no group stands apart."""
+def _forecast(corners: LineRates) -> tuple[int, float]:
+    """The size of the group and the nodes that a box will take, from the mean equations at its corners.
+
+    Infinitely many where no group stands apart.
+    """
     tau = corners.period * np.arange(PROBES) / PROBES
     mean = corners(np.arange(4), tau).mean(axis=1)
     if not np.isfinite(mean).all():
-        return np.inf
+        return 0, np.inf
     exponents = np.linalg.eigvals(mean) * corners.period
     exponents = np.take_along_axis(exponents, np.argsort(-exponents.real, axis=1), axis=1)
     sizes = group_sizes(np.exp(exponents))
     if not sizes:
-        return np.inf
+        return 0, np.inf
     d = sizes[0]
     phase = np.abs(exponents.imag[:, :d]).sum(axis=1)
     along_u, along_v = (
         first + 1 + float(np.abs(phase[list(one)] - phase[list(other)]).max()) / 2
         for first, one, other in ((FIRST_DEGREES[0], (1, 3), (0, 2)), (FIRST_DEGREES[1], (2, 3), (0, 1)))
     )
-    return along_u * along_v * LIKELY_STEPS * HALVINGS
+    return d, along_u * along_v
 
 
-@dataclass
-class _Sampled:
-    """Equations of all points sampled so far, and the place of each node of the grid among them."""
+def _settles(corners: ChainExponentials, d: int, tolerance: float, dearest: float) -> bool:
+    """Whether the corners of a box, its slowest and steepest among them, are known from fewer steps than ``dearest``.
 
-    rates: LineRates
-    place: NDArray[np.intp]
+    A few points tell what hundreds would cost, before those are begun.
+    """
+    found = Settling(corners, 1)
+    return settle(found, d, tolerance, HALVINGS * dearest * corners.count) and bool(found.steps.mean() <= dearest)
 
 
 class _OneBox:
@@ -121,10 +134,8 @@ class _OneBox:
     def __init__(self, family: Rated, box: Box, tolerance: float, threads: int, most_work: float) -> None:
         self.family, self.box, self.tolerance, self.most_work = family, box, tolerance, most_work
         self.grid = Grid(box, *FIRST_DEGREES)
-        rates = _rates(family, *self.grid.nodes())
-        self.sampled = _Sampled(rates, np.arange(rates.table.shape[0]))
-        self.found = Settling(2 * rates.root.shape[1], rates.period, rates.steps, threads)
-        self.found.add(rates, len(self.sampled.place))
+        self.found = Settling(_at_nodes(family, *self.grid.nodes()), threads)
+        self.place = np.arange(len(self.found.steps))  # of each node of the grid among all points
         self.split_u = True
 
     def patch(self) -> Patch | None:
@@ -134,7 +145,7 @@ class _OneBox:
             if not sizes:
                 return None
             d = min(sizes, key=lambda size: float(self._tails(size)[2].max()))
-            if not settle(self.found, lambda: self.sampled.rates, d, self.tolerance, self.most_work):
+            if not settle(self.found, d, self.tolerance, self.most_work):
                 return None
             series, error, tails = self._tails(d)
             of_u, of_v = (tails > 1).tolist()
@@ -149,10 +160,9 @@ class _OneBox:
 
     def _tails(self, d: int) -> tuple[Series, Array, Array]:
         """The series of d multipliers, the errors of its samples, and its tails along u and v over what is allowed."""
-        place = self.sampled.place
         e, errors, _ = known(self.found, d)
-        trace = self.sampled.rates.trace[place]
-        values = np.column_stack([e[place], trace])
+        trace = self.found.trace[self.place]
+        values = np.column_stack([e[self.place], trace])
         series = Series.of(self.grid, values)
         error = np.append(errors.max(axis=0), 1e-12 * np.abs(trace).max())
         allowed = np.maximum(self.tolerance * np.maximum(np.abs(values).max(axis=0), 1.0), error)
@@ -164,7 +174,7 @@ class _OneBox:
         while len(rough := self.found.rough()):
             if self.found.work > self.most_work or self.found.steps[rough].max() >= MOST_STEPS:
                 return False
-            self.found.sharpen(self.sampled.rates, rough)
+            self.found.sharpen(rough)
         return True
 
     def _refine(self, of_u: bool, of_v: bool) -> bool:
@@ -174,12 +184,11 @@ class _OneBox:
         if self.found.work * (1 + fresh / len(self.found.steps)) > self.most_work:
             return False
         u, v = grid.nodes()
-        rates = _rates(self.family, u[~old], v[~old])
         place = np.empty(len(u), dtype=np.intp)
-        place[old] = self.sampled.place
+        place[old] = self.place
         place[~old] = len(self.found.steps) + np.arange(fresh)
-        self.found.add(rates, fresh)
-        self.grid, self.sampled = grid, _Sampled(self.sampled.rates.and_also(rates), place)
+        self.found.add(_at_nodes(self.family, u[~old], v[~old]))
+        self.grid, self.place = grid, place
         return True
 
 

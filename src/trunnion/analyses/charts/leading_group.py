@@ -8,14 +8,13 @@ matrix has no part in them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.first_order import LineRates
+from trunnion.numerics.chain.chain_exponentials import ChainExponentials
+from trunnion.numerics.chain.chain_tables import LANES
 from trunnion.numerics.chain.characteristic import LARGEST
-from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS, Rates, marched
+from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
 from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
@@ -30,32 +29,33 @@ NOTABLE = 1e-3
 """Of the largest multiplier, what one must be to matter for the group."""
 TELLING = 100
 """Difference over its error at which two points are told apart without a second look."""
-AT_ONCE = 32
-"""Matrices that a thread integrates together."""
 
 
 class Settling:
     """Multipliers (point, m) at a growing number of points, of N/2, N and 2N ``steps``; ``work``: steps taken so far.
 
-    Those of N/2 steps are NaN until a point is sharpened.
+    Those of N/2 steps are NaN until a point is sharpened. trace (point,): ∫ tr(M⁻¹C) dτ over the period.
     """
 
-    def __init__(self, size: int, period: float, first_steps: int, threads: int) -> None:
-        """``size``: of the matrices."""
-        self.size, self.period, self.first, self.threads = size, period, first_steps, threads
-        self.fine, self.coarse, self.coarser = (np.empty((0, size), complex) for _ in range(3))
-        self.norm, self.steps = np.empty(0), np.empty(0, dtype=np.intp)
-        self.work = 0
+    def __init__(self, points: ChainExponentials, threads: int) -> None:
+        self.points, self.threads, self.work = points, threads, 0
+        self.fine, self.coarse, self.coarser = (np.empty((0, points.states), complex) for _ in range(3))
+        self.norm, self.trace, self.steps = np.empty(0), np.empty(0), np.empty(0, dtype=np.intp)
+        self._add(points.count)
 
-    def add(self, rates: Rates, count: int) -> None:
-        """Multipliers of ``count`` further points whose equations are ``rates``."""
-        which = np.arange(count)
-        coarse, _ = self._multipliers(rates, which, self.first)
-        fine, norm = self._multipliers(rates, which, 2 * self.first)
+    def add(self, points: ChainExponentials) -> None:
+        """Multipliers of further points."""
+        self.points = self.points.and_also(points)
+        self._add(points.count)
+
+    def _add(self, count: int) -> None:
+        which, first = len(self.steps) + np.arange(count), self.points.steps
+        coarse, _, _ = self._multipliers(which, first)
+        fine, norm, trace = self._multipliers(which, 2 * first)
         self.coarser = np.concatenate([self.coarser, np.full_like(coarse, np.nan)])
         self.coarse, self.fine = np.concatenate([self.coarse, coarse]), np.concatenate([self.fine, fine])
-        self.norm = np.concatenate([self.norm, norm])
-        self.steps = np.concatenate([self.steps, np.full(count, 2 * self.first)])
+        self.norm, self.trace = np.concatenate([self.norm, norm]), np.concatenate([self.trace, trace])
+        self.steps = np.concatenate([self.steps, np.full(count, 2 * first)])
 
     def rough(self) -> NDArray[np.intp]:
         """Points whose larger multipliers are not yet known well enough to tell groups apart."""
@@ -64,31 +64,31 @@ class Settling:
             moved = np.where(fine > fine[:, :1] + np.log(NOTABLE), np.abs(fine - coarse), 0.0)
         return np.flatnonzero(~(moved.max(axis=1) < ROUGH))
 
-    def sharpen(self, rates: Rates, which: NDArray[np.intp]) -> None:
+    def sharpen(self, which: NDArray[np.intp]) -> None:
         """Twice the steps at the points ``which``."""
         for steps in np.unique(self.steps[which]).tolist():
             some = which[self.steps[which] == steps]
             self.coarser[some], self.coarse[some] = self.coarse[some], self.fine[some]
-            self.fine[some], self.norm[some] = self._multipliers(rates, some, 2 * steps)
+            self.fine[some], self.norm[some], self.trace[some] = self._multipliers(some, 2 * steps)
             self.steps[some] = 2 * steps
 
-    def _multipliers(self, rates: Rates, which: NDArray[np.intp], steps: int) -> tuple[Complex, Array]:
+    def _multipliers(self, which: NDArray[np.intp], steps: int) -> tuple[Complex, Array, Array]:
         self.work += len(which) * steps
 
-        def run(some: NDArray[np.intp]) -> tuple[Complex, Array]:
+        def run(some: NDArray[np.intp]) -> tuple[Complex, Array, Array]:
             # Steps that are far too long overflow, and are halved.
+            z, trace = self.points.monodromies(some, steps)
             with np.errstate(over="ignore", invalid="ignore"):
-                z = marched(rates, some, self.size, self.period, steps)
                 norm = np.linalg.norm(z, axis=(1, 2))
             finite = np.asarray(np.isfinite(z).all(axis=(1, 2)))
             values = np.linalg.eigvals(np.where(finite[:, None, None], z, 0.0)).astype(complex)
             values[~finite] = np.nan
             order = np.argsort(-np.abs(values), axis=1)
-            return np.take_along_axis(values, order, axis=1), norm
+            return np.take_along_axis(values, order, axis=1), norm, trace
 
-        pieces = np.array_split(which, max(1, -(-len(which) // AT_ONCE)))
-        found = on_threads(run, pieces, self.threads if len(pieces) > 1 else 1)
-        return np.concatenate([values for values, _ in found]), np.concatenate([norm for _, norm in found])
+        pieces = np.array_split(which, max(1, -(-len(which) // LANES)))
+        values, norm, trace = zip(*on_threads(run, pieces, self.threads if len(pieces) > 1 else 1), strict=True)
+        return np.concatenate(values), np.concatenate(norm), np.concatenate(trace)
 
 
 def group_sizes(values: Complex) -> list[int]:
@@ -113,7 +113,7 @@ def symmetric_functions(values: Complex) -> Array:
     return np.asarray(e[:, 1:].real)
 
 
-def settle(found: Settling, rates_of: Callable[[], Rates], d: int, tolerance: float, most_work: float) -> bool:
+def settle(found: Settling, d: int, tolerance: float, most_work: float) -> bool:
     """Halve steps until e₁ … e_d of every point are known to ``tolerance`` of their size (1 at least).
 
     False where more than ``most_work`` steps would not do.
@@ -126,7 +126,7 @@ def settle(found: Settling, rates_of: Callable[[], Rates], d: int, tolerance: fl
             return True
         if found.work > most_work or found.steps[left].max() >= MOST_STEPS:
             return False
-        found.sharpen(rates_of(), left)
+        found.sharpen(left)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # as steps that are far too long overflow
@@ -138,21 +138,22 @@ def known(found: Settling, d: int) -> tuple[Array, Array, Array]:
     """
     coarser, coarse, fine = (symmetric_functions(part[:, :d]) for part in (found.coarser, found.coarse, found.fine))
     # Rounding of the matrix reaches every multiplier; that of their products is far smaller.
-    rounding = 1e-15 * found.size * found.norm[:, None] * np.maximum(np.abs(fine).max(axis=1, keepdims=True), 1.0)
+    rounding = (
+        1e-15 * found.points.states * found.norm[:, None] * np.maximum(np.abs(fine).max(axis=1, keepdims=True), 1.0)
+    )
     change, before = np.abs(fine - coarse), np.abs(coarse - coarser)
     falls = before.max(axis=1) >= FALLS * change.max(axis=1)
     change = np.where(falls[:, None], np.maximum(change, change.max(axis=1, keepdims=True) / 4) * (3 / FALLS), change)
     return fine, change + rounding, rounding
 
 
-def told_apart(rates: LineRates) -> bool:
+def told_apart(both: ChainExponentials) -> bool:
     """Whether e₁ … e_m of two cases differ by far more than steps that are too long can make them."""
-    found = Settling(2 * rates.root.shape[1], rates.period, rates.steps, 1)
-    found.add(rates, 2)
+    found = Settling(both, 1)
     for _ in range(3):
-        values, errors, _ = known(found, found.size)
+        values, errors, _ = known(found, both.states)
         noise = errors.sum(axis=0)
         if np.isfinite(noise).all() and bool((np.abs(values[1] - values[0]) > TELLING * noise).any()):
             return True
-        found.sharpen(rates, np.arange(2))
+        found.sharpen(np.arange(2))
     return False

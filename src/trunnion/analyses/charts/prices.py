@@ -6,6 +6,8 @@ accuracy.
 
 from __future__ import annotations
 
+from trunnion.numerics.chain.chain_tables import LANES
+
 SLAB_NODES = 4000
 """Nodes at which the propagators of slabs are sampled, and what multiplying them takes, in integrations."""
 HALVINGS = 2
@@ -24,7 +26,7 @@ def pixel_price(coefficients: int) -> float:
 
 def step_price(states: int) -> float:
     """One exponential step of a system of ``states``."""
-    return 8 + 22 * (states / 12) ** 3
+    return 0.7 + 2.6 * (states / 12) ** 2 * -(-states // LANES)
 
 
 def without_groups(size: int, pixels: int, mean_phase: float, longest_phase: float, fewest_for_slabs: int) -> float:

@@ -1,0 +1,47 @@
+"""Monodromy matrices of chosen lanes by a chosen number of exponential steps: what stiff lines are charted from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
+from trunnion.numerics.chain.exponential_lanes import TOGETHER, integrate_exponentials
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ChainExponentials:
+    """Lines as lanes over one ``period`` of input angle; ``steps``: as many as see their fastest coefficient."""
+
+    program: ChainProgram
+    lanes: ChainLanes
+    period: float
+    steps: int
+
+    def __post_init__(self) -> None:
+        assert self.steps % TOGETHER == 0
+
+    @property
+    def count(self) -> int:
+        """Number of lanes."""
+        return int(self.lanes.stiffness.shape[1])
+
+    @property
+    def states(self) -> int:
+        """Size of the matrices."""
+        return 2 * int(self.lanes.stiffness.shape[0])
+
+    def monodromies(self, which: NDArray[np.intp], steps: int) -> tuple[Array, Array]:
+        """Z (lane, m, m) in scaled units and ∫ tr(M⁻¹C) dτ (lane,) of the lanes ``which``, by so many steps."""
+        matrix, trace = np.empty((len(which), self.states, self.states)), np.empty(len(which))
+        integrate_exponentials(self.program, self.lanes, which, self.period, steps, matrix, trace)
+        return matrix, trace
+
+    def and_also(self, other: ChainExponentials) -> ChainExponentials:
+        """These lanes and then those of ``other``, of the same program."""
+        pairs = zip(self.lanes, other.lanes, strict=True)
+        return replace(self, lanes=ChainLanes(*(np.concatenate(pair, axis=-1) for pair in pairs)))

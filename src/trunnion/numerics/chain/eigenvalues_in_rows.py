@@ -1,0 +1,335 @@
+"""Eigenvalues of many small matrices, sixteen at a time, and how sensitive one of each is.
+
+A library finds the eigenvalues of one matrix after the other, in loops too short for vector registers. Here each
+instruction serves sixteen matrices: reduction to Hessenberg form by reflections, then Francis's steps with double
+shifts (Golub and Van Loan, Matrix Computations, algorithms 7.4.2 and 7.5.1). Each matrix has its own range of rows that
+are still to be parted; outside of it nothing is reflected.
+"""
+
+# mypy: ignore-errors
+# Types are inferred by the compiler of this code, from its arguments.
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.numerics.chain.chain_tables import LANES
+from trunnion.numerics.chain.rows import load, spread, store
+from trunnion.numerics.jit import njit
+
+MOST_SWEEPS = 30
+"""Steps for one eigenvalue after which a matrix is given up."""
+STUCK = 10
+"""Steps after which shifts of another kind are tried once."""
+EPS = 30
+"""Steps for one pair of eigenvalues after which a matrix is given up."""
+EPS = 2.2e-16
+EXACT = {"contract", "nsz"}
+"""Liberties of the compiler that leave NaN what it is."""
+
+
+@njit(nogil=True)
+def eigenvalues_in_rows(matrices, size, values, hessenberg):
+    """Eigenvalues of ``matrices`` (size², points), an even size, their entries by rows: values (size, points, 2) real
+    and imaginary, NaN where they were not found; hessenberg (points, size, size) similar to each by rotations."""
+    points = matrices.shape[1]
+    h, work = np.empty(size * size * LANES), np.empty((size + 9) * LANES)
+    low, high, tried = np.empty(LANES, np.int64), np.empty(LANES, np.int64), np.empty(LANES, np.int64)
+    for at in range(0, points, LANES):
+        used = min(LANES, points - at)
+        for q in range(size * size):
+            for l in range(LANES):
+                h[q * LANES + l] = matrices[q, at + min(l, used - 1)]
+        _reduce(h, size, work)
+        for l in range(LANES):
+            high[l], tried[l] = size - 1 if l < used else -1, 0
+        for l in range(used):
+            own = hessenberg[at + l]
+            for i in range(size):
+                values[i, at + l, 0] = values[i, at + l, 1] = np.nan
+                for j in range(size):
+                    own[i, j] = h[(i * size + j) * LANES + l]
+        while True:
+            first, last = size, -1
+            for l in range(used):
+                _part(h, size, l, low, high, tried, values[:, at + l])
+                if high[l] >= 0:
+                    first, last = min(first, low[l]), max(last, high[l])
+            if last < 0:
+                break
+            _shifts(h, size, low, high, tried, work)
+            _sweep(h, size, first, last, low, high, work)
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _reduce(h, size, work):
+    """Hessenberg form in place."""
+    zero = spread(0.0)
+    for c in range(size - 2):
+        first, count = c + 1, size - c - 1
+        for l in range(LANES):
+            square = 0.0
+            for i in range(first + 1, size):
+                entry = h[(i * size + c) * LANES + l]
+                square += entry * entry
+            head = h[(first * size + c) * LANES + l]
+            norm = np.sqrt(head * head + square)
+            beta = -norm if head >= 0.0 else norm
+            v = head - beta
+            # 2/‖v‖², v = (head − β, the rest); none where there is nothing to reflect.
+            weight = 2.0 / (v * v + square) if square > 0.0 else 0.0
+            work[l] = weight
+            work[LANES + l] = v
+            for i in range(first + 1, size):
+                work[(i - first + 1) * LANES + l] = h[(i * size + c) * LANES + l]
+                h[(i * size + c) * LANES + l] = 0.0
+            h[(first * size + c) * LANES + l] = beta if square > 0.0 else head
+        weight = load(work, 0, zero)
+        for j in range(c + 1, size):
+            dot = zero
+            for i in range(count):
+                dot = dot + load(work, (i + 1) * LANES, zero) * load(h, ((first + i) * size + j) * LANES, zero)
+            dot = dot * weight
+            for i in range(count):
+                to = ((first + i) * size + j) * LANES
+                store(h, to, load(h, to, zero) - load(work, (i + 1) * LANES, zero) * dot)
+        for i in range(size):
+            dot = zero
+            for j in range(count):
+                dot = dot + load(work, (j + 1) * LANES, zero) * load(h, (i * size + first + j) * LANES, zero)
+            dot = dot * weight
+            for j in range(count):
+                to = (i * size + first + j) * LANES
+                store(h, to, load(h, to, zero) - load(work, (j + 1) * LANES, zero) * dot)
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _part(h, size, lane, low, high, tried, values):
+    """Take eigenvalues off the end of a lane's range while they stand apart, and find where what is left begins.
+
+    A lane without anything left, or that has been tried too often, has the range … −1.
+    """
+    while high[lane] >= 0:
+        last = high[lane]
+        begin = last
+        while begin > 0:
+            here, above = h[(begin * size + begin) * LANES + lane], h[((begin - 1) * size + begin - 1) * LANES + lane]
+            between = (begin * size + begin - 1) * LANES + lane
+            if abs(h[between]) <= EPS * (abs(here) + abs(above)):
+                h[between] = 0.0
+                break
+            begin -= 1
+        low[lane] = begin
+        if begin == last:
+            values[last, 0], values[last, 1] = h[(last * size + last) * LANES + lane], 0.0
+            high[lane], tried[lane] = last - 1, 0
+        elif begin == last - 1:
+            _pair(h, size, lane, last, values)
+            high[lane], tried[lane] = last - 2, 0
+        else:
+            tried[lane] += 1
+            if tried[lane] > MOST_SWEEPS or not abs(h[(last * size + last) * LANES + lane]) < np.inf:
+                high[lane] = -1
+            return
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _pair(h, size, lane, last, values):
+    """Eigenvalues of rows ``last`` − 1 and ``last``, parted from all others."""
+    upper, lower = ((last - 1) * size + last - 1) * LANES + lane, (last * size + last - 1) * LANES + lane
+    p, q, r, s = h[upper], h[upper + LANES], h[lower], h[lower + LANES]
+    mean, half = (p + s) / 2, (p - s) / 2
+    inside = half * half + q * r
+    root = np.sqrt(abs(inside))
+    if inside >= 0.0:
+        # The larger one without cancellation, the other from the product.
+        large = mean + root if mean >= 0.0 else mean - root
+        values[last, 0], values[last, 1] = large, 0.0
+        values[last - 1, 0], values[last - 1, 1] = (p * s - q * r) / large if large != 0.0 else 0.0, 0.0
+    else:
+        values[last, 0], values[last, 1] = mean, root
+        values[last - 1, 0], values[last - 1, 1] = mean, -root
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _shifts(h, size, low, high, tried, work):
+    """First column of (H − σ₁)(H − σ₂) of each lane's range, σ the eigenvalues of its last two rows."""
+    for l in range(LANES):
+        if high[l] < 0:
+            continue
+        upper, lower = ((high[l] - 1) * size + high[l] - 1) * LANES + l, (high[l] * size + high[l] - 1) * LANES + l
+        p, q, r, s = h[upper], h[upper + LANES], h[lower], h[lower + LANES]
+        total, det = p + s, p * s - q * r
+        if tried[l] % STUCK == 0:
+            stride = abs(r) + abs(h[upper - LANES])
+            total, det = 1.5 * stride + 2 * s, stride * stride + 1.5 * stride * s + s * s
+        at, below = (low[l] * size + low[l]) * LANES + l, ((low[l] + 1) * size + low[l]) * LANES + l
+        a, b, c, d, e = h[at], h[at + LANES], h[below], h[below + LANES], h[below + (size + 1) * LANES]
+        work[6 * LANES + l] = a * (a - total) + b * c + det
+        work[7 * LANES + l] = c * (a + d - total)
+        work[8 * LANES + l] = c * e
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _sweep(h, size, first, last, low, high, work):
+    """One step of Francis on rows ``first`` … ``last``, of each lane on those of its own range."""
+    zero = spread(0.0)
+    for k in range(first, last):
+        three = k < last - 1
+        for l in range(LANES):
+            begins = k == low[l]
+            x, y = work[6 * LANES + l] if begins else work[l], work[7 * LANES + l] if begins else work[LANES + l]
+            z = work[8 * LANES + l] if begins else work[2 * LANES + l]
+            z = z if k < high[l] - 1 else 0.0
+            square = y * y + z * z
+            norm = np.sqrt(x * x + square)
+            v = x + norm if x >= 0.0 else x - norm
+            length = v * v + square
+            idle = k < low[l] or k >= high[l] or not length > 0.0
+            over = 0.0 if idle else 1.0 / v
+            # v = (1, y, z) with its weight 2/‖v‖²
+            work[3 * LANES + l] = 0.0 if idle else 2.0 * v * v / length
+            work[4 * LANES + l], work[5 * LANES + l] = y * over, z * over
+        weight, y, z = load(work, 3 * LANES, zero), load(work, 4 * LANES, zero), load(work, 5 * LANES, zero)
+        for j in range(max(first, k - 1), last + 1):
+            one, two = (k * size + j) * LANES, ((k + 1) * size + j) * LANES
+            p, q = load(h, one, zero), load(h, two, zero)
+            if three:
+                end = ((k + 2) * size + j) * LANES
+                r = load(h, end, zero)
+                dot = weight * (p + y * q + z * r)
+                store(h, end, r - z * dot)
+            else:
+                dot = weight * (p + y * q)
+            store(h, one, p - dot)
+            store(h, two, q - y * dot)
+        for i in range(k + 1, min(k + 2, last) + 1):
+            if k > first:
+                store(h, (i * size + k - 1) * LANES, zero)
+        for i in range(min(k + 3, last) + 1):
+            one = (i * size + k) * LANES
+            two = one + LANES
+            p, q = load(h, one, zero), load(h, two, zero)
+            if three:
+                end = two + LANES
+                r = load(h, end, zero)
+                dot = weight * (p + y * q + z * r)
+                store(h, end, r - z * dot)
+            else:
+                dot = weight * (p + y * q)
+            store(h, one, p - dot)
+            store(h, two, q - y * dot)
+        for m in range(3):
+            i = k + 1 + m
+            if i <= last:
+                store(work, m * LANES, load(h, (i * size + k) * LANES, zero))
+
+
+@njit(nogil=True, fastmath=EXACT, inner=True)
+def _last_pair(h, size, last, pair):
+    """Eigenvalues of the last two rows: real and imaginary part of one, then of the other."""
+    for l in range(LANES):
+        p, q = h[((last - 1) * size + last - 1) * LANES + l], h[((last - 1) * size + last) * LANES + l]
+        r, s = h[(last * size + last - 1) * LANES + l], h[(last * size + last) * LANES + l]
+        mean, half = (p + s) / 2, (p - s) / 2
+        inside = half * half + q * r
+        root = np.sqrt(abs(inside))
+        real = inside >= 0.0
+        # The larger one without cancellation, the other from the product.
+        large = mean + (root if mean >= 0.0 else -root)
+        small = (p * s - q * r) / large if large != 0.0 else 0.0
+        pair[l] = large if real else mean
+        pair[LANES + l] = 0.0 if real else root
+        pair[2 * LANES + l] = small if real else mean
+        pair[3 * LANES + l] = 0.0 if real else -root
+
+
+@njit(nogil=True)
+def conditions(hessenberg, chosen, out):
+    """‖left‖‖right‖/|left·right| of the eigenvalue ``chosen`` (points,) of each of ``hessenberg`` (points, m, m).
+
+    Two steps of inverse iteration on each side, from one elimination with rows exchanged.
+    """
+    m = hessenberg.shape[1]
+    a = np.empty((m, m), np.complex128)
+    factor, swapped = np.empty(m, np.complex128), np.empty(m, np.bool_)
+    right, left = np.empty(m, np.complex128), np.empty(m, np.complex128)
+    for point in range(len(chosen)):
+        own, value = hessenberg[point], chosen[point]
+        if not (abs(value) < np.inf and abs(own[0, 0]) < np.inf):
+            out[point] = np.nan
+            continue
+        shift, largest = value * (1 + 1e-9) + 1e-9j, 0.0
+        for i in range(m):
+            for j in range(max(i - 1, 0), m):
+                a[i, j] = own[i, j]
+                largest = max(largest, abs(own[i, j]))
+            a[i, i] -= shift
+            right[i] = left[i] = np.exp(1j * i)
+        _eliminate(a, factor, swapped, EPS * largest)
+        for _ in range(2):
+            _solve(a, factor, swapped, right)
+            _solve_transposed(a, factor, swapped, left)
+        dot = 0j
+        for i in range(m):
+            dot += left[i] * right[i]
+        out[point] = 1.0 / max(abs(dot), 1e-300)
+
+
+@njit(nogil=True, inner=True)
+def _eliminate(a, factor, swapped, least):
+    """Upper triangle of a Hessenberg matrix in place, with what was subtracted and which rows changed places."""
+    m = len(factor)
+    for k in range(m - 1):
+        swapped[k] = abs(a[k + 1, k]) > abs(a[k, k])
+        if swapped[k]:
+            for j in range(k, m):
+                a[k, j], a[k + 1, j] = a[k + 1, j], a[k, j]
+        if abs(a[k, k]) < least:
+            a[k, k] = least
+        factor[k] = a[k + 1, k] / a[k, k] if a[k, k] != 0 else 0j
+        for j in range(k + 1, m):
+            a[k + 1, j] -= factor[k] * a[k, j]
+    if abs(a[m - 1, m - 1]) < least:
+        a[m - 1, m - 1] = least
+
+
+@njit(nogil=True, inner=True)
+def _solve(a, factor, swapped, x):
+    """x from a x = x, scaled to length 1."""
+    m = len(x)
+    for k in range(m - 1):
+        if swapped[k]:
+            x[k], x[k + 1] = x[k + 1], x[k]
+        x[k + 1] -= factor[k] * x[k]
+    for i in range(m - 1, -1, -1):
+        for j in range(i + 1, m):
+            x[i] -= a[i, j] * x[j]
+        x[i] /= a[i, i]
+    _to_length_one(x)
+
+
+@njit(nogil=True, inner=True)
+def _solve_transposed(a, factor, swapped, x):
+    """x from aᵀ x = x, scaled to length 1."""
+    m = len(x)
+    for i in range(m):
+        x[i] /= a[i, i]
+        for j in range(i + 1, m):
+            x[j] -= a[i, j] * x[i]
+    for k in range(m - 2, -1, -1):
+        x[k] -= factor[k] * x[k + 1]
+        if swapped[k]:
+            x[k], x[k + 1] = x[k + 1], x[k]
+    _to_length_one(x)
+
+
+@njit(nogil=True, inner=True)
+def _to_length_one(x):
+    largest = 0.0
+    for value in x:
+        largest = max(largest, abs(value.real), abs(value.imag))
+    square = 0.0
+    for i in range(len(x)):
+        x[i] /= max(largest, 1e-300)
+        square += x[i].real ** 2 + x[i].imag ** 2
+    x /= np.sqrt(square)
