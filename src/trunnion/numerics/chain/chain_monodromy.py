@@ -23,6 +23,8 @@ from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
 MOST_STEPS = 200_000
+SMALL = 3
+"""Unknowns up to which a block of lanes takes less time than starting a thread."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def chain_propagator(
     def run(first: int, last: int) -> None:
         integrate(program, lanes, order, first, last, begin, length, tolerance, MOST_STEPS, matrix, error, trace)
 
-    _in_pieces(run, count, threads)
+    _in_pieces(run, count, threads, LANES if n > SMALL else 4 * LANES)
     return matrix, error, trace
 
 
@@ -86,7 +88,7 @@ def complete(
     def run(first: int, last: int) -> None:
         whole_periods(program, lanes, first, last, window.begin, window.period / 2, phi, error, matrix)
 
-    _in_pieces(run, len(phi), threads)
+    _in_pieces(run, len(phi), threads, 4 * LANES)
     return matrix, error, 2 * trace
 
 
@@ -99,9 +101,12 @@ def _fast_ones_together(frequency: Array) -> NDArray[np.int64]:
     return np.argsort(np.frexp(frequency)[1], kind="stable")
 
 
-def _in_pieces(run: Callable[[int, int], None], count: int, threads: int) -> None:
-    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together."""
-    if threads <= 1 or count <= 4 * LANES:
+def _in_pieces(run: Callable[[int, int], None], count: int, threads: int, few: int) -> None:
+    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together.
+
+    ``few`` lanes are done before other threads have begun.
+    """
+    if threads <= 1 or count <= few:
         run(0, count)
         return
     blocks = -(-count // LANES)

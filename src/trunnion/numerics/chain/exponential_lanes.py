@@ -31,6 +31,7 @@ from trunnion.numerics.chain.chain_tables import (
     fill,
     gather,
 )
+from trunnion.numerics.chain.lane_blocks import pick
 from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
 
@@ -61,9 +62,7 @@ def integrate_exponentials(program, lanes, order, period, steps, matrix, trace):
     picked, block_trace = np.empty(LANES, np.int64), np.empty(LANES)
     length = period / steps
     for at in range(0, len(order), LANES):
-        used = min(LANES, len(order) - at)
-        for l in range(LANES):
-            picked[l] = order[min(at + l, len(order) - 1)]
+        used = pick(order, at, len(order), picked)
         block = gather(program, lanes, picked)
         table = empty_table(program, block)
         products[:] = 0.0

@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES, NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ORDER, ROWS, couplings, empty_series
+from trunnion.numerics.chain.lane_blocks import give_back, pick
 from trunnion.numerics.chain.rows import spread
 from trunnion.numerics.chain.series_step import (
     LAST,
@@ -36,17 +37,10 @@ def integrate_series(program, lanes, order, first, last, begin, length, toleranc
     block_error, block_trace, picked = np.empty(LANES), np.empty(LANES), np.empty(LANES, np.int64)
     steps = 0
     for at in range(first, last, LANES):
-        for l in range(LANES):
-            picked[l] = order[min(at + l, last - 1)]
+        used = pick(order, at, last, picked)
         block = gather(program, lanes, picked)
         steps += _propagate(program, block, begin, length, tolerance, most_steps, w, block_error, block_trace)
-        for l in range(min(LANES, last - at)):
-            own = matrix[picked[l]]
-            for i in range(wide):
-                for c in range(wide):
-                    own[i, c] = w[(c * wide + i) * ROWS + l]
-            error[picked[l]] = block_error[l]
-            trace[picked[l]] = block_trace[l]
+        give_back(w, ROWS, picked, used, block_error, block_trace, matrix, error, trace)
     return steps
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES, add_damping_trace, empty_table, fill, gather
+from trunnion.numerics.chain.lane_blocks import give_back, pick
 from trunnion.numerics.chain.stages_step import step_by_stages
 from trunnion.numerics.integration.runge_kutta import STAGES, B, C
 from trunnion.numerics.jit import njit
@@ -30,21 +31,14 @@ def integrate_stages(program, lanes, order, first, last, begin, length, toleranc
     block_error, block_trace, picked = np.empty(LANES), np.empty(LANES), np.empty(LANES, np.int64)
     steps = 0
     for at in range(first, last, LANES):
-        for l in range(LANES):
-            picked[l] = order[min(at + l, last - 1)]
+        used = pick(order, at, last, picked)
         block = gather(program, lanes, picked)
         swapped, count = _propagate(
             program, block, begin, length, tolerance, most_steps, u, un, spare, block_error, block_trace
         )
         steps += count
         result = un if swapped else u
-        for l in range(min(LANES, last - at)):
-            own = matrix[picked[l]]
-            for i in range(wide):
-                for c in range(wide):
-                    own[i, c] = result[(c * wide + i) * LANES + l]
-            error[picked[l]] = block_error[l]
-            trace[picked[l]] = block_trace[l]
+        give_back(result, LANES, picked, used, block_error, block_trace, matrix, error, trace)
     return steps
 
 
