@@ -103,7 +103,7 @@ def _charts_of_loaded_lines() -> None:
     for i in range(4):
         elements += [HookeJoint(angle=0.2)] if i else []
         elements += [Shaft(stiffness=1.0, damping=0.01), Disk(inertia=1.0, load_torque=0.01)]
-    stability_chart(Driveline(elements), ("speed", 0.5, 2.0, 12), ("HookeJoint *.angle", 0.0, 0.3, 8))
+    stability_chart(Driveline(elements), ("speed", 0.5, 2.0, 24), ("HookeJoint *.angle", 0.0, 0.3, 16))
 
 
 def _reports() -> None:
