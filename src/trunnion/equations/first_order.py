@@ -6,7 +6,7 @@ entries of A and of a monodromy matrix are comparable.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from threading import get_ident
 
 import numpy as np
@@ -92,13 +92,6 @@ class LineRates:
             co = self.assembly.coefficients(self.table[which], statically_twisted=self.twisted)
             kept = self.kept[get_ident()] = (which.copy(), co)
         return kept[1]
-
-    def and_also(self, other: LineRates) -> LineRates:
-        """These cases and then those of ``other``."""
-        table, root, unit, trace = (
-            np.concatenate([getattr(part, key) for part in (self, other)]) for key in ("table", "root", "unit", "trace")
-        )
-        return replace(self, table=table, root=root, unit=unit, trace=trace, kept={})
 
     def rest(self) -> Array | None:
         """Orthonormal columns (case, 2n, left) beside the motions that a straight free line keeps for ever; else None.
