@@ -56,8 +56,9 @@ def draw(
             size = 5 + 2.2 * min(np.log2(max(c.amplification, 1.0)), 6.0)
             label = {"label": "crossing, larger with 1/(2ζ)"} if i == 0 else {}
             axes.plot(
-                c.speed * x, c.frequency * y, "o", ms=size, mfc="white", mec=VERMILION, mew=1.5, zorder=5, **label
-            )
+                c.speed * x, c.frequency * y, "o", ms=size, mfc="white", mec=VERMILION, mew=1.5, zorder=5,
+                clip_on=False, **label,
+            )  # fmt: skip
     _name_lines(axes, result, top, x, y)
     _name_modes(axes, result, top, y, frequency_unit)
     if operating and operating.speed and speed[0] <= operating.speed <= speed[-1]:
@@ -105,5 +106,5 @@ def _name_modes(axes: Axes, result: CampbellDiagram, top: float, y: float, unit:
             f"{result.mode[m]}:  {last[m] * y:.4g} {unit}",
             xy=(1.0, last[m] / top), xycoords="axes fraction", xytext=(1.025, place), textcoords="axes fraction",
             fontsize=SMALL, color=INK, va="center", annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": FAINT, "lw": 0.6, "shrinkA": 0, "shrinkB": 0},
+            arrowprops={"arrowstyle": "-", "color": FAINT, "lw": 0.6, "shrinkA": 2, "shrinkB": 0, "relpos": (0, 0.5)},
         )  # fmt: skip

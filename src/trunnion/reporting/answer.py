@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.analyses.assessment.assess import by_case, checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.assessment.result import Assessment
-from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong
 from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies, natural_frequencies
@@ -34,6 +34,7 @@ from trunnion.reporting.overview_findings import (
     slow_findings,
 )
 from trunnion.reporting.ranges import speed_range
+from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
 NEARLY = 0.1
@@ -126,8 +127,9 @@ def _along(case: Case) -> StabilityAlong | None:
 
 
 def check_findings(assessment: Assessment) -> list[Finding]:
-    """What is exceeded, what nearly is, and what could not be judged, by margin."""
+    """What is exceeded, what nearly is, and what could not be judged, by margin; a reason that several share once."""
     found = []
+    unjudged: dict[tuple[Gravity, str], list[str]] = {}
     for check in assessment.checks:
         if check.status is Status.EXCEEDED:
             gravity = Gravity.CAUTION if check.guideline else Gravity.DANGER
@@ -136,7 +138,11 @@ def check_findings(assessment: Assessment) -> list[Finding]:
             found.append(Finding(Gravity.CAUTION, f"{_capital(check.name)} is nearly reached: {check.because}."))
         elif check.status is Status.NOT_JUDGED:
             gravity = Gravity.CAUTION if np.isfinite(check.margin) else Gravity.NOTE
-            found.append(Finding(gravity, f"{_capital(check.name)} is not judged: {check.because}."))
+            unjudged.setdefault((gravity, check.because.removeprefix(NO_RESPONSE)), []).append(check.name)
+    for (gravity, because), names in unjudged.items():
+        found.append(
+            Finding(gravity, f"{_capital(few(names))} {'is' if len(names) == 1 else 'are'} not judged: {because}.")
+        )
     return found
 
 

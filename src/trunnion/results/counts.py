@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+
+def few(names: Sequence[str], most: int = 3) -> str:
+    """ "a, b and 4 more": at most ``most`` names, or one more where only one would be left."""
+    if len(names) <= most + 1:
+        return ", ".join(names)
+    return f"{', '.join(names[:most])} and {len(names) - most} more"
+
 
 def counted(number: int, noun: str) -> str:
     """ "1 speed", "2 speeds", "0 speeds"."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.own_limits import spring_of
-from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.quantities import POWER, TORQUE, against
 from trunnion.driveline.shafts import Coupling
@@ -53,7 +53,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
             if rating is None:
                 yield Check(f"rating: {title}", Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):
-                yield Check(f"rating: {title}", Status.NOT_JUDGED, rule, f"no linear response: {case.answer}")
+                yield Check(f"rating: {title}", Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
             else:
                 yield _rated(subject, case, name, key, rating, rule)
 

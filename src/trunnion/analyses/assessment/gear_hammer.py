@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.own_limits import bands, spring_of
-from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.driveline.gears import GearPair
 
 RULE = Rule("half of peak-to-peak ≤ |mean torque|", "loss of contact", "known")
@@ -29,7 +29,7 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
     for name in pairs:
         title = f"gear hammer in {name}"
         if isinstance(case.answer, str):
-            yield Check(title, Status.NOT_JUDGED, RULE, f"no linear response: {case.answer}")
+            yield Check(title, Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
             continue
         c = spring_of(case.assembly, name)
         swing, mean = case.answer.vibratory_torque[:, c], np.abs(case.answer.mean_torque[:, c])

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
-from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.orders.totals import extremes
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
@@ -80,7 +80,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
     name = name_of(limit)
     rule = JUDGED[limit.key]
     if isinstance(case.answer, str):
-        return Check(name, Status.NOT_JUDGED, rule, f"no linear response: {case.answer}")
+        return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
     found = limited_values(case.assembly, case.answer, limit, case.assembly.table(1))
     if isinstance(found, str):
         return Check(name, Status.NOT_APPLICABLE, rule, found)

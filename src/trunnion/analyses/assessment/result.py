@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from trunnion.analyses.assessment.check import Check, Status, percent
+from trunnion.results.counts import few
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
@@ -47,7 +48,7 @@ class Assessment(Result):
             rule = " (a guideline)" if bind.guideline else ""
             return f"exceeded: {bind.name}{rule}, {bind.because}{more}"
         if self.verdict is Status.NOT_JUDGED:
-            names = ", ".join(c.name for c in open_ones[:4]) + (", ..." if len(open_ones) > 4 else "")
+            names = few([c.name for c in open_ones])
             open_end = f"{names} could not be judged" if names else "no limit is stated"
             return f"not judged: nothing that is judged is exceeded, but {open_end}"
         if self.barred:

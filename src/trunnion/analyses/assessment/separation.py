@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, above
 from trunnion.analyses.assessment.own_limits import unlimited
-from trunnion.analyses.assessment.subject import Case, Subject
-from trunnion.results.counts import counted
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
+from trunnion.results.counts import counted, few
 
 REQUIRED = 0.10
 WORTH = 0.01
@@ -28,7 +28,7 @@ RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical")
 def separation(subject: Subject, case: Case) -> Iterator[Check]:
     """One check a mode that an order meets, one for all the others together."""
     if case.response is None:
-        yield Check("separation of modes", Status.NOT_JUDGED, RULE, f"no linear response: {case.answer}")
+        yield Check("separation of modes", Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
         return
     orders = shaking_orders(case)
     if not len(orders):
@@ -49,19 +49,21 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
         gain = abs(here) / max(-2 * here.real, 1e-300)
         said = f"order {order:.4g} {what} {hertz} at {subject.shown(case.speeds[at])}, amplification {gain:.3g}"
-        without = unlimited(subject, case)
+        without = few(unlimited(subject, case))
         status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
         needs = (
-            f"; that needs a check of torque or stress: state limits for {', '.join(without)}"
+            f"; that needs a check of torque or stress: state limits for {without}"
             if without
             else "; the limits of torque and stress judge it"
         )
+        said += needs + case.suffix
         yield Check(
-            f"separation of mode {m + case.first}", status, RULE, said + needs, above(near, REQUIRED), 0.0, near,
-            REQUIRED, "1", float(case.speeds[at]), "", case.name, guideline=True,
+            f"separation of mode {m + case.first}", status, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED,
+            "1", float(case.speeds[at]), "", case.name, guideline=True,
         )  # fmt: skip
     if clear:
         near, said, speed = min(clear)
+        said += case.suffix
         yield Check(
             "separation of modes", Status.SATISFIED, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED, "1",
             speed, counted(len(orders), "order"), case.name, guideline=True,

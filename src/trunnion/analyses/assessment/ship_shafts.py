@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.own_limits import bands, spring_of, stress_factor
-from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.driveline.limits import SHIP_SHAFTS
 from trunnion.driveline.shafts import Shaft
 
@@ -54,7 +54,7 @@ def ship_shafts(subject: Subject, case: Case) -> Iterator[Check]:
 def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Check]:
     title = f"IACS UR M68 of {name}"
     if isinstance(case.answer, str):
-        yield Check(title, Status.NOT_JUDGED, RULE, f"no linear response: {case.answer}")
+        yield Check(title, Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
         return
     if subject.speed is None:
         yield Check(title, Status.NOT_JUDGED, RULE, "no rated speed: write speed under [operation]")

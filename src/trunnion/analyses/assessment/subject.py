@@ -27,6 +27,8 @@ from trunnion.results.verdict import Verdict
 Array = NDArray[np.float64]
 POINTS = 201
 """Speeds of the even part of the grid; the peaks of the modes get more."""
+NO_RESPONSE = "no linear response: "
+"""How checks that need the response begin to say why there is none."""
 
 
 @dataclass(frozen=True)
