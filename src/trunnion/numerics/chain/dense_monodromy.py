@@ -12,7 +12,7 @@ state is carried from step to step, so a long line needs little more memory than
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,8 @@ Complex = NDArray[np.complex128]
 MOST_STEPS = 1 << 15
 CHUNK = 32 * 2**20
 """Bytes that the coefficients evaluated together may take, per array."""
+KEPT = 4 * 2**20
+"""Bytes that the coefficients of a whole period may take, per array, to be kept for the motions that follow it."""
 SMALL = 16
 """Coordinates up to which a compiled loop is quicker than matrix products."""
 
@@ -143,12 +145,16 @@ class _March:
 
 @dataclass(frozen=True)
 class _Problem:
-    """The equations in energy-like units ``scale`` (2n,)."""
+    """The equations in energy-like units ``scale`` (2n,).
+
+    ``held``: by number of steps, the coefficients at all of them, of the last run whose are few.
+    """
 
     coefficients: CoefficientFunction
     period: float
     size: int
     scale: Array
+    held: dict[int, tuple[Array, Array, Array, Array]] = field(default_factory=dict, repr=False)
 
     def march(
         self, start: Array, steps: int, kept: Array | None = None, begin: int = 0, end: int | None = None
@@ -165,7 +171,7 @@ class _Problem:
         end = steps if end is None else end
         for first in range(begin, end, at_once):
             count = min(at_once, end - first)
-            q, d, g, damping = self._slopes(first, count, step)
+            q, d, g, damping = self._slopes(first, count, steps)
             trace += float(step * np.sum(damping * B))
             rows = record[first : first + count + 1]
             run = _march if self.size <= SMALL else _march_by_products
@@ -190,8 +196,17 @@ class _Problem:
             rows[part] = rows[part + 1] @ over
         return np.asarray(rows / self.scale)
 
-    def _slopes(self, first: int, count: int, step: float) -> tuple[Array, Array, Array, Array]:
-        """Q/ν, D, g and tr D at the stages of ``count`` steps, in the problem's units."""
+    def _slopes(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:
+        """Q/ν, D, g and tr D at the stages of ``count`` of the ``steps`` of a period, in the problem's units."""
+        if 8 * steps * STAGES * self.size**2 > KEPT:
+            return self._evaluated(first, count, self.period / steps)
+        if steps not in self.held:
+            self.held.clear()
+            self.held[steps] = self._evaluated(0, steps, self.period / steps)
+        q, d, g, damping = (part[first : first + count] for part in self.held[steps])
+        return q, d, g, damping
+
+    def _evaluated(self, first: int, count: int, step: float) -> tuple[Array, Array, Array, Array]:
         n, unit = self.size, self.scale[: self.size]
         frequency = self.scale[n:] / unit
         tau = (first + np.arange(count)[:, None] + C[None, :]) * step
