@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,6 +13,7 @@ from oracles.comparisons import set_distance
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.linear import line_matrices, periodic_linear_system
+from trunnion.numerics.chain import dense_monodromy
 from trunnion.numerics.chain.dense_monodromy import propagate
 
 
@@ -159,3 +161,24 @@ def test_a_motion_too_fast_for_any_step_is_refused_before_it_fills_the_memory() 
     )  # fmt: skip
     with pytest.raises(tn.ComputationError, match="a stiffness is very large or an inertia very small"):
         tn.stability(line, speed=1.0)
+
+
+def test_naming_a_resonance_evaluates_the_equations_no_more_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a propagator holds of the period serves its motions and their adjoint, kept or evaluated anew, alike."""
+    line = tn.catalogue("two-shaft-cardan").replace("HookeJoint 1", angle=0.7)
+    assembly = assemble(line)
+    system = periodic_linear_system(assembly, assembly.table(1, 0.5375))
+    asked: list[int] = []
+
+    def counted(tau: Any) -> Any:
+        asked.append(len(tau))
+        return system.coefficients(tau)
+
+    found = tn.stability(replace(system, coefficients=counted))
+    assert found.verdict.name == "UNSTABLE"
+    assert len(asked) < 12
+    monkeypatch.setattr(dense_monodromy, "KEPT", 0)
+    anew = tn.stability(replace(system, coefficients=counted))
+    assert len(asked) > 100
+    assert str(anew.resonance) == str(found.resonance) != "None"
+    np.testing.assert_array_equal(anew.multipliers, found.multipliers)
