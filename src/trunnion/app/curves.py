@@ -64,7 +64,7 @@ class Curves:
     def put_marks(self, name: str, x: Any, y: Any) -> None:
         """Marks in place of those of that name; the legend names them where there are any."""
         source, item = self.marks[name]
-        source.data = {"x": np.asarray(x, dtype=float), "y": np.asarray(y, dtype=float)}
+        figures.put(source, {"x": np.asarray(x, dtype=float), "y": np.asarray(y, dtype=float)})
         item.visible = len(source.data["x"]) > 0
 
     def set(
@@ -81,14 +81,17 @@ class Curves:
         """Curves as (name, x, y), at most ``MOST``; labels that are given replace the old ones."""
         shown = list(curves)[:MOST]
         looks = [figures.look(k) for k in range(len(shown))]
-        self.source.data = {
-            "xs": [np.asarray(a, dtype=float) for _, a, _ in shown],
-            "ys": [np.asarray(b, dtype=float) for _, _, b in shown],
-            "colour": [colours[k] if k < len(colours) else look["line_color"] for k, look in enumerate(looks)],
-            "dash": [dashes[k] if k < len(dashes) else look["line_dash"] for k, look in enumerate(looks)],
-            "width": [2.0] * len(shown),
-            "name": [name for name, _, _ in shown],
-        }
+        figures.put(
+            self.source,
+            {
+                "xs": [np.asarray(a, dtype=float) for _, a, _ in shown],
+                "ys": [np.asarray(b, dtype=float) for _, _, b in shown],
+                "colour": [colours[k] if k < len(colours) else look["line_color"] for k, look in enumerate(looks)],
+                "dash": [dashes[k] if k < len(dashes) else look["line_dash"] for k, look in enumerate(looks)],
+                "width": [2.0] * len(shown),
+                "name": [name for name, _, _ in shown],
+            },
+        )
         self.cursor.location = cursor
         if x:
             self.figure.xaxis.axis_label = x

@@ -49,11 +49,11 @@ class Point:
         """Show a point."""
         unit, factor = speed_unit
         z = data["multipliers"]
-        self.multipliers.data = {"x": z.real, "y": z.imag, "size": np.abs(z)}
+        figures.put(self.multipliers, {"x": z.real, "y": z.imag, "size": np.abs(z)})
         mode = data["mode"]
         if list(self.mode.x_range.factors) != data["names"]:
             self.mode.x_range.factors = data["names"]
-        self.shape.data = {"x": data["names"], "cos": mode.real, "sin": mode.imag}
+        figures.put(self.shape, {"x": data["names"], "cos": mode.real, "sin": mode.imag})
         self.mode.title.text = "the critical disturbance"
         rows = {
             "speed": f"{data['speed'] * factor:.6g} {unit}",
@@ -62,7 +62,7 @@ class Point:
             "growth per turn": f"{100 * data['per_turn']:.5g} %",
             "growth rate": f"{data['growth']:.6g} 1/s",
             "resonance": data["resonance"] or "none",
-            "multipliers": ", ".join(f"{abs(m):.9f}" for m in z),
+            "moduli of the multipliers": ", ".join(f"{abs(m):.9f}" for m in z),
         }
         cells = "".join(f"<tr><th>{k}</th><td data-value='{k}'>{figures.text(v)}</td></tr>" for k, v in rows.items())
         self.text.object = f"<table class='plain'>{cells}</table>"

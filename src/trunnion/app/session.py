@@ -28,7 +28,9 @@ from trunnion.driveline.files import loads
 from trunnion.errors import InputError, TrunnionError
 
 QUIET = 0.05
-"""Seconds without a further change before a computation begins."""
+"""Seconds without a further change before a computation takes the place of one under way."""
+UNSAID = 0.25
+"""Seconds that a computation takes without a word: a bar that comes and goes at once only makes the page jump."""
 KEPT, NOW = "kept", "now"
 KINDS: dict[str, type[View]] = {kind.name: kind for kind in VIEWS}
 
@@ -41,6 +43,7 @@ class Session:
         self.token = secrets.token_urlsafe(24)
         self.document = Document(toml)
         self.kept: str | None = None
+        self.said_from = 0.0
         self.task: asyncio.Task[None] | None = None
         self.side_tasks: set[asyncio.Task[None]] = set()
         query = _query()
@@ -160,7 +163,8 @@ class Session:
         sides = [NOW] if self.kept is None else [KEPT, NOW]
         self.page.show(self.view, [(side, self.view.of(side)) for side in sides])
         self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
-        self.start(self._compute(sides))
+        under_way = self.task is not None and not self.task.done()
+        self.start(self._compute(sides, QUIET if under_way else 0.0))
 
     # -- computations ---------------------------------------------------------------------------------------------
 
@@ -193,12 +197,20 @@ class Session:
                 traceback.print_exception(error)
             self.locked(partial(self.page.failed, str(error) or type(error).__name__))
 
-    async def _compute(self, sides: list[str]) -> None:
-        await asyncio.sleep(QUIET)
+    async def _compute(self, sides: list[str], quiet: float) -> None:
+        await asyncio.sleep(quiet)
+        loop = asyncio.get_running_loop()
+        self.said_from = loop.time() + UNSAID
+        saying = loop.call_at(self.said_from, self._progress, 0, 1, 0.0)
+        try:
+            await self._steps(sides)
+        finally:
+            saying.cancel()
+
+    async def _steps(self, sides: list[str]) -> None:
         view = self.view
         lines = {side: self._toml(side) for side in sides}
         steps = {side: view.steps(self.line(side)) for side in sides}
-        self.locked(partial(self._busy, 0.0))
         done, total = 0, sum(map(len, steps.values()))
         remarks: list[str] = []
         for place in range(max(map(len, steps.values()), default=0)):
@@ -231,7 +243,8 @@ class Session:
         return self.document.toml if side == NOW else self.kept or self.document.toml
 
     def _progress(self, done: int, total: int, share: float) -> None:
-        self.locked(partial(self._busy, (done + share) / total))
+        if asyncio.get_running_loop().time() >= self.said_from:
+            self.locked(partial(self._busy, (done + share) / total))
 
     def _busy(self, share: float) -> None:
         """Progress of what is wanted still."""

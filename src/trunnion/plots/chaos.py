@@ -254,6 +254,8 @@ def _labels(axes: Axes, x: str, y: str) -> None:
     axes.set_ylabel(y, fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
+    if axes.get_xscale() == "linear":
+        axes.locator_params(axis="x", nbins=5)  # small panels: more labels would touch
     plain(axes)
 
 

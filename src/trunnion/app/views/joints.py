@@ -204,9 +204,7 @@ class _Side(Side):
                 colours.append(colour)
                 dashes.append(dash)
             labels.append((centre, -1.45, name))
-        self.arms.data = {"xs": xs, "ys": ys, "colour": colours, "dash": dashes}
-        self.rings.data = {"x": [SPACING * k for k in range(len(labels))], "y": [0.0] * len(labels)}
-        self.labels.data = {k: [row[i] for row in labels] for i, k in enumerate(("x", "y", "text"))}
-        self.forks.title.text = (
-            f"forks seen along the line at input angle {cursor:g}°: input solid, output dashed, upright the joint plane"
-        )
+        figures.put(self.arms, {"xs": xs, "ys": ys, "colour": colours, "dash": dashes})
+        figures.put(self.rings, {"x": [SPACING * k for k in range(len(labels))], "y": [0.0] * len(labels)})
+        figures.put(self.labels, {k: [row[i] for row in labels] for i, k in enumerate(("x", "y", "text"))})
+        self.forks.title.text = f"forks at input angle {cursor:g}°, joint plane upright: input solid, output dashed"

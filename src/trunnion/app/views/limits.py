@@ -44,6 +44,15 @@ ASKS = {
     BEST: ("parameter", "low", "high", "aim"),
 }
 """Which controls a question has."""
+SAYS = {
+    STABLE: "The largest value up to which the line is stable, speed by speed, and where other limits are reached before.",
+    WINDOWS: "All ranges of the parameter that keep every speed stable, and the unstable regions between them.",
+    TOLERANCES: "How probable stability at the operating speed is, all stiffness, inertia, damping and angles scattering.",
+    RANKED: "The numbers that move the check that binds most, ranked.",
+    ASSEMBLY: "Which angle, off by a little, costs most uniformity.",
+    BEST: "The value, within bounds, that is best in an aim while limits and ratings hold.",
+}
+"""What a question asks."""
 AIMS = ("least spare margin", "irregularity", "growth rate")
 DESIGNS = 40
 """Lines computed in the search for one best value."""
@@ -58,13 +67,7 @@ class LimitsView(View):
 
     name = "limits"
     title = "Limits"
-    about = (
-        "The largest value of a parameter, from low to high, up to which the line is stable, speed by speed, and where "
-        "limits of the description are reached before; all windows of it that keep every speed stable, with the "
-        "regions between them; how probable stability is within tolerances of all stiffness, inertia, damping and "
-        "angles; the numbers that move the binding check most, ranked; which angle, off by a little, costs most "
-        "uniformity; and the value of a parameter, within bounds, that is best in an aim while limits and ratings hold."
-    )
+    about = "How far a number may go, how sure that is, and which numbers matter most."
     defaults = {
         "what": STABLE, "parameter": "", "low": None, "high": None, "speeds": 31, "error": 1.0, "tolerance": 5.0,
         "aim": AIMS[0],
@@ -83,7 +86,9 @@ class LimitsView(View):
         self.bind("aim", select("Best in", options=list(AIMS), width=260))
         self.use = pn.widgets.Button(name="Use the best value", width=160, align="end", disabled=True)
         self.use.on_click(lambda event: self._use())
-        return pn.FlexBox(*self.widgets.values(), self.use)
+        self.says = pn.pane.HTML("", sizing_mode="stretch_width", margin=(0, 5))
+        row = pn.FlexBox(*self.widgets.values(), self.use)
+        return pn.Column(row, self.says, sizing_mode="stretch_width", margin=0)
 
     def adapt(self, line: Driveline) -> None:
         """Parameters of the line."""
@@ -106,6 +111,7 @@ class LimitsView(View):
         for key, widget in self.widgets.items():
             widget.visible = key == "what" or key in ASKS[what]
         self.use.visible, self.use.disabled = what == BEST, True
+        self.says.object = SAYS[what]
         for side in self.sides.values():
             assert isinstance(side, _Side)
             side.begin(what)
@@ -232,7 +238,7 @@ class _Side(Side):
             self.bars.y_range.factors = names[::-1]
             self.bars.height = 80 + 24 * len(names)
             self.bars.xaxis.axis_label = data["label"]
-            self.rows.data = {"name": names, "value": [float(data["value"][i]) for i in order]}
+            figures.put(self.rows, {"name": names, "value": [float(data["value"][i]) for i in order]})
             return
         line = self.view.line_of(self)
         (unit, size), (speed, factor) = self.view.unit(line), unit_of(line)

@@ -161,11 +161,14 @@ class _Side(Side):
             title="Campbell diagram: modes (blue), excitations (grey), crossings (dots)",
             cursor=cursor,
         )
-        self.crossings.data = {
-            "x": data["crossing_speed"] * factor,
-            "y": data["crossing_frequency"] / (2 * np.pi),
-            "name": data["crossing"],
-        }
+        figures.put(
+            self.crossings,
+            {
+                "x": data["crossing_speed"] * factor,
+                "y": data["crossing_frequency"] / (2 * np.pi),
+                "name": data["crossing"],
+            },
+        )
 
 
 class Mode:
@@ -188,7 +191,7 @@ class Mode:
               set(Math.cos(performance.now() / 300)); requestAnimationFrame(move)
             }
             const set = (c) => {
-              source.data = {...source.data, y: Array.from(source.data.shape, v => v * c)}
+              figures.put(source, {...source.data, y: Array.from(source.data.shape, v => v * c)})
             }
             move()
             """,
@@ -204,7 +207,7 @@ class Mode:
         names = [str(n) for n in data["names"]]
         if list(self.figure.x_range.factors) != names:
             self.figure.x_range.factors = names
-        self.source.data = {"x": names, "y": shape, "shape": shape}
+        figures.put(self.source, {"x": names, "y": shape, "shape": shape})
         self.figure.title.text = (
             f"mode {k + 1} of {len(data['frequency'])}: {data['frequency'][k] / (2 * np.pi):.5g} Hz, "
             f"damping ratio {data['damping'][k]:.3g}"

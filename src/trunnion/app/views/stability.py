@@ -179,7 +179,8 @@ class StabilityView(View):
         chart = Call("tn.stability_chart", (LINE, x.request(across), y.request(up)), fixed)
         unit = {"unit": unit_of(line)[0]}
         full = Step("chart", chart, "chart", drawing=unit, title="stability chart")
-        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",))
+        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",),
+                     title="resonance speeds")  # fmt: skip
         return [*steps, *self._at(line, x, y), full, *([names] if x.path == SPEED else [])]
 
     def _at(self, line: Driveline, x: Axis, y: Axis) -> list[Step]:
@@ -244,7 +245,7 @@ class _Side(Side):
         bar = ColorBar(color_mapper=mapper, title="growth per turn [%]", width=14, padding=4)
         bar.formatter = CustomJSTickFormatter(code="return (100 * tick).toFixed(0)")
         self.figure.add_layout(bar, "right")
-        self.figure.add_tools(HoverTool(renderers=[drawn], tooltips=[("growth per turn", "@image")]))
+        self.figure.add_tools(HoverTool(renderers=[drawn], tooltips=[("growth per turn", "@image{0.000 %}")]))
         self.box = BoxAnnotation(line_color=figures.BLUE, line_width=2, fill_alpha=0.0)
         self.figure.add_layout(self.box)
         self.names = ColumnDataSource(data={"x0": [], "y0": [], "x1": [], "y1": [], "name": []})
@@ -290,7 +291,7 @@ class _Side(Side):
             self.figure.y_range.update(start=y.low / y.size, end=y.high / y.size)
             self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = x.label, y.label
         at = self.view.point(line)
-        self.here.data = {"x": [at[0] / x.size], "y": [at[1] / y.size]}
+        figures.put(self.here, {"x": [at[0] / x.size], "y": [at[1] / y.size]})
         self._operating(line, x, y)
         if name == "chart":
             self.chart_call = next(s for s in self.view.steps(line) if s.name == "chart")
@@ -299,13 +300,16 @@ class _Side(Side):
 
     def _image(self, data: Any, x: Axis, y: Axis) -> None:
         step_x, step_y = (float(data[k][1] - data[k][0]) for k in ("x", "y"))
-        self.image.data = {
-            "image": [data["growth"].astype(np.float32)],
-            "x": [(data["x"][0] - step_x / 2) / x.size],
-            "y": [(data["y"][0] - step_y / 2) / y.size],
-            "dw": [(data["x"][-1] - data["x"][0] + step_x) / x.size],
-            "dh": [(data["y"][-1] - data["y"][0] + step_y) / y.size],
-        }
+        figures.put(
+            self.image,
+            {
+                "image": [data["growth"].astype(np.float32)],
+                "x": [(data["x"][0] - step_x / 2) / x.size],
+                "y": [(data["y"][0] - step_y / 2) / y.size],
+                "dw": [(data["x"][-1] - data["x"][0] + step_x) / x.size],
+                "dh": [(data["y"][-1] - data["y"][0] + step_y) / y.size],
+            },
+        )
 
     def _operating(self, line: Driveline, x: Axis, y: Axis) -> None:
         ends: dict[str, float | None] = {"left": None, "right": None, "bottom": None, "top": None}
@@ -321,13 +325,16 @@ class _Side(Side):
     def _named(self, data: Any) -> None:
         x, y = self.view.axes(self.view.line_of(self))
         inside = [(s, n) for s, n in zip(data["speed"], data["name"], strict=True) if x.low <= s <= x.high]
-        self.names.data = {
-            "x0": [s / x.size for s, _ in inside],
-            "x1": [s / x.size for s, _ in inside],
-            "y0": [y.low / y.size] * len(inside),
-            "y1": [y.high / y.size] * len(inside),
-            "name": [n for _, n in inside],
-        }
+        figures.put(
+            self.names,
+            {
+                "x0": [s / x.size for s, _ in inside],
+                "x1": [s / x.size for s, _ in inside],
+                "y0": [y.low / y.size] * len(inside),
+                "y1": [y.high / y.size] * len(inside),
+                "name": [n for _, n in inside],
+            },
+        )
 
     def _zoomed(self, event: Any) -> None:
         """More points of the same chart where the picture shows a part of it."""

@@ -21,6 +21,8 @@ MOST = 14
 """Bars of checks that are judged, and lines of those that are not."""
 FAR = 2.0
 """Margin at which a bar ends, either way."""
+PLACE = 0.03
+"""Share of the bars' range that a letter behind the longest bar takes, in the narrowest picture."""
 COLOURS = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
 
 
@@ -128,18 +130,22 @@ class _Side(Side):
         self.margins.y_range.factors = names[::-1]
         self.margins.height = 70 + 26 * len(rows)
         self.margins.visible = bool(rows)
-        self.bars.data = {
-            "check": names,
-            "margin": [100 * max(-FAR, min(FAR, m)) for _, m in rows],
-            "colour": [COLOURS.get(r["status"], figures.FAINT) for r, _ in rows],
-            "hatch": ["right_diagonal_line" if b else " " for b in bad],
-            "said": [r["because"] for r, _ in rows],
-            "words": [_words(r["status"], m) for r, m in rows],
-            "end": [max(0.0, 100 * min(FAR, m)) for _, m in rows],
-        }
+        figures.put(
+            self.bars,
+            {
+                "check": names,
+                "margin": [100 * max(-FAR, min(FAR, m)) for _, m in rows],
+                "colour": [COLOURS.get(r["status"], figures.FAINT) for r, _ in rows],
+                "hatch": ["right_diagonal_line" if b else " " for b in bad],
+                "said": [r["because"] for r, _ in rows],
+                "words": [_words(r["status"], m) for r, m in rows],
+                "end": [max(0.0, 100 * min(FAR, m)) for _, m in rows],
+            },
+        )
         margins = [m for _, m in rows]
         low, high = 100 * max(-FAR, min([0.0, *margins])), 100 * min(FAR, max([0.2, *margins]))
-        place = 0.25 * (high - low)  # for the words behind the longest bar
+        longest = max((len(w) for w in self.bars.data["words"]), default=0)
+        place = PLACE * longest * (high - low)  # for the words behind the longest bar
         self.margins.x_range.update(start=low, end=high + place)
         self.table.object = _table(data)
         self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.keywords())
