@@ -45,9 +45,9 @@ ASKS = {
 }
 """Which controls a question has."""
 SAYS = {
-    STABLE: "The largest value up to which the line is stable, speed by speed, and where other limits are reached before.",
+    STABLE: "The largest value up to which the line is stable, speed by speed, and where limits come first.",
     WINDOWS: "All ranges of the parameter that keep every speed stable, and the unstable regions between them.",
-    TOLERANCES: "How probable stability at the operating speed is, all stiffness, inertia, damping and angles scattering.",
+    TOLERANCES: "How probable stability at the operating speed is while stiffness, inertia, damping, angles scatter.",
     RANKED: "The numbers that move the check that binds most, ranked.",
     ASSEMBLY: "Which angle, off by a little, costs most uniformity.",
     BEST: "The value, within bounds, that is best in an aim while limits and ratings hold.",
