@@ -172,3 +172,5 @@ def test_a_call_reaches_public_functions_only() -> None:
     for name in ("os.system", "tn._HOME", "np.__class__", "eval"):
         with pytest.raises(ValueError):
             Call(name).evaluate(None)
+    with pytest.raises(ValueError):
+        Call("__class__", of=Call("tn.catalogue", ("gear-rattle",))).evaluate(None)

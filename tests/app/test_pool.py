@@ -63,6 +63,29 @@ def test_a_cancelled_job_ends_and_the_next_one_is_answered(message: tuple[str, .
     on_pool(work)
 
 
+def test_a_cancelled_job_that_does_not_listen_ends_with_its_process() -> None:
+    """And frees the one who cancelled: the next job is another process's."""
+
+    async def work(pool: Pool) -> None:
+        owner = object()
+        await pool.run(MODES, owner)
+        task = asyncio.ensure_future(pool.run(LONG, owner))
+        while not pool.busy:
+            await asyncio.sleep(0.01)
+        (worker,) = pool.busy
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+        while pool.busy:
+            await asyncio.sleep(0.01)
+        assert worker.process.wait(60) != 0
+        assert worker not in pool.idle
+        assert (await pool.run(MODES, owner)).kind == "done"
+        assert all(w.alive for w in pool.idle)
+
+    on_pool(work)
+
+
 def test_who_waits_for_a_worker_gets_one() -> None:
     async def work(pool: Pool) -> None:
         answers = await asyncio.gather(*(pool.run(MODES, object()) for _ in range(6)))

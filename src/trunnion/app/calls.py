@@ -26,18 +26,20 @@ LINE = Line()
 class Call:
     """``function(*arguments, **keywords)``, the function as "tn.order_response" or "np.linspace".
 
-    Arguments are numbers, texts, tuples of them, ``LINE``, or further calls.
+    Arguments are numbers, texts, tuples of them, ``LINE``, or further calls. ``of``: the call whose result the function
+    is a method of, then named without a library.
     """
 
     function: str
     arguments: tuple[Any, ...] = ()
     keywords: Mapping[str, Any] = field(default_factory=dict)
+    of: Call | None = None
 
     def evaluate(self, line: Any, given: Mapping[str, Any] | None = None) -> Any:
         """What the call gives for ``line``; ``given`` adds those of its arguments that the outermost function takes."""
         if self == THE_LINE:
             return line
-        function = _function(self.function)
+        function = _function(self.function) if self.of is None else _method(self.of.evaluate(line), self.function)
         arguments = [_value(a, line) for a in self.arguments]
         keywords = {key: _value(value, line) for key, value in self.keywords.items()}
         if given:
@@ -48,7 +50,8 @@ class Call:
     def text(self) -> str:
         """The call as Python."""
         parts = [_text(a) for a in self.arguments] + [f"{k}={_text(v)}" for k, v in self.keywords.items()]
-        return f"{self.function}({', '.join(parts)})"
+        owner = "" if self.of is None else f"{self.of.text()}."
+        return f"{owner}{self.function}({', '.join(parts)})"
 
 
 THE_LINE = Call("line")
@@ -103,6 +106,12 @@ def _function(name: str) -> Callable[..., Any]:
     import trunnion as tn
 
     return getattr(tn, attribute)  # type: ignore[no-any-return]
+
+
+def _method(owner: Any, name: str) -> Callable[..., Any]:
+    if name.startswith("_"):
+        raise ValueError(f"no call of {name}")
+    return getattr(owner, name)  # type: ignore[no-any-return]
 
 
 def _value(argument: Any, line: Any) -> Any:

@@ -36,11 +36,22 @@ ASKS = {
     "periodic": ("speed",),
     "run-up": ("rate",),
     "rattle": ("spring", "points"),
-    "section": ("speed", "returns"),
-    "exponents": ("speed",),
-    "chaos": ("speed",),
+    "section": ("of", "speed", "returns"),
+    "exponents": ("of", "speed"),
+    "chaos": ("of", "speed"),
 }
 """Which controls a motion has."""
+OF_LINE = "line"
+SYSTEMS: dict[str, Call] = {
+    "double-tripod": Call("system", ("input",), of=Call("tn.catalogue", ("double-tripod",))),
+    "gear-rattle": Call("as_system", of=Call("tn.catalogue", ("gear-rattle",))),
+}
+"""Published equations that are no driveline, for the motions that take any system."""
+SUBJECTS = {
+    "this driveline": OF_LINE,
+    "double tripod, input element (catalogue)": "double-tripod",
+    "gear pair with backlash (catalogue)": "gear-rattle",
+}
 PICTURES = ("map", "exponents", "certificate")
 """Steps that show the picture that their result draws of itself."""
 METHODS = {"exact": figures.INK, "shooting": figures.GREEN, "harmonic balance": figures.SKY}
@@ -57,12 +68,23 @@ class MotionView(View):
         "Motions of the line with everything that linear theory leaves out. Long computations can be cancelled; what "
         "is found by then stays."
     )
-    defaults = {"what": "periodic", "speed": None, "rate": 100.0, "points": 40, "spring": "", "returns": 400}
+    defaults = {
+        "what": "periodic",
+        "of": OF_LINE,
+        "speed": None,
+        "rate": 100.0,
+        "points": 40,
+        "spring": "",
+        "returns": 400,
+    }
 
     def make_controls(self) -> Any:
         """Which motion, at which speed."""
         what = self.bind("what", select("Motion", options=MOTIONS))
         what.param.watch(lambda event: self._ask(), "value")
+        self.bind("of", select("Motion of", options=SUBJECTS, width=290)).param.watch(
+            lambda event: self._ask(), "value"
+        )
         self.speed = self.bind("speed", optional("Speed", start=0.0, width=170))
         self.bind("rate", number("Acceleration [rad/s²]", 100.0, start=0.01, width=170))
         self.bind("spring", select("Torque of", options=[]))
@@ -84,6 +106,7 @@ class MotionView(View):
         what = str(self.widgets["what"].value)
         for key, widget in self.widgets.items():
             widget.visible = key == "what" or key in ASKS[what]
+        self.speed.visible &= "of" not in ASKS[what] or self.widgets["of"].value == OF_LINE
         for side in self.sides.values():
             assert isinstance(side, _Side)
             side.begin(what)
@@ -91,6 +114,7 @@ class MotionView(View):
     def steps(self, line: Driveline) -> list[Step]:
         """The motion that is asked for."""
         speed = at_speed(line, self.typed("speed"))
+        subject, at = self._subject(speed)
         match self.settings["what"]:
             case "run-up":
                 return self._run_up(line)
@@ -98,20 +122,23 @@ class MotionView(View):
                 return self._rattle(line)
             case "section":
                 returns = bounded(self.settings["returns"], 10, 20_000)
-                return [
-                    Step("map", Call("tn.poincare_map", (LINE, returns), {"speed": speed}), "plotted", title=POINCARE)
-                ]
+                return [Step("map", Call("tn.poincare_map", (subject, returns), at), "plotted", title=POINCARE)]
             case "exponents":
-                call = Call("tn.lyapunov_spectrum", (LINE,), {"speed": speed})
+                call = Call("tn.lyapunov_spectrum", (subject,), at)
                 return [Step("exponents", call, "plotted", title=EXPONENTS)]
             case "chaos":
-                call = Call("tn.certify_chaos", (LINE,), {"speed": speed, "sweep": False})
+                call = Call("tn.certify_chaos", (subject,), {**at, "sweep": False})
                 return [Step("certificate", call, "plotted", title="verdict on chaos", files=("nc",))]
         linear = Call("tn.order_response", (LINE, (speed,)))
         return [
             Step("periodic", Call("tn.periodic_response", (LINE, speed)), "periodic", title=PERIODIC),
             Step("linear", linear, "waves", picture="", files=("nc",), title="linear theory", soft=True),
         ]
+
+    def _subject(self, speed: float) -> tuple[Any, dict[str, float]]:
+        """What moves, and the speed for it: equations have a frequency of their own."""
+        system = SYSTEMS.get(str(self.settings["of"]))
+        return (LINE, {"speed": speed}) if system is None else (system, {})
 
     def _run_up(self, line: Driveline) -> list[Step]:
         """The run-up alone at first, since the steady motions beside it may take long."""

@@ -259,6 +259,7 @@ class _Side(Side):
         self.motion = Curves("turns of the input", "twist [deg]", height=240)
         self.said = pn.pane.HTML("", sizing_mode="stretch_width")
         self.extent: tuple[Axis, Axis] | None = None
+        self.count = 0
         self.panel = pn.Column(
             pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"),
             self.said,
@@ -296,7 +297,8 @@ class _Side(Side):
         if name == "chart":
             self.chart_call = next(s for s in self.view.steps(line) if s.name == "chart")
         text = "coarse, the full chart follows" if name == "coarse" else data["text"].replace("\n", "<br>")
-        self.said.object = f"<div style='font-size:13px' data-chart='{name}'>{text}</div>"
+        self.count += 1
+        self.said.object = f"<div style='font-size:13px' data-chart='{name}' data-count='{self.count}'>{text}</div>"
 
     def _image(self, data: Any, x: Axis, y: Axis) -> None:
         step_x, step_y = (float(data[k][1] - data[k][0]) for k in ("x", "y"))
