@@ -1,12 +1,14 @@
 """How long the application takes to answer, as a browser sees it: medians and 95th percentiles.
 
-    PYTHONPATH=tests/app python benchmarks/app_latency.py [STARTER] [REPEATS]
+    PYTHONPATH=src:tests/app python benchmarks/app_latency.py [STARTER] [REPEATS]
 
-Needs the extra ``app``, playwright and Chromium. Times are from the key press to the changed page.
+Needs the extra ``app``, playwright and Chromium. Times are from the key press, the click or the start of the command to
+the changed page; each line names the load of the machine, since the server, its workers and the browser share it.
 """
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -20,7 +22,12 @@ from typing import Any
 import numpy as np
 from playwright.sync_api import sync_playwright
 from served import Server, browser_path, start_server
+from test_views import laborious
 
+from trunnion.app.address import pack
+from trunnion.app.calls import LINE, Call
+from trunnion.app.jobs import Job
+from trunnion.app.pool import Pool
 from trunnion.driveline.starter import starter
 
 WAIT = 300_000
@@ -33,27 +40,55 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "line.toml"
         path.write_text(starter(name), encoding="utf-8")
+        begins = [first_page(str(path)) for _ in range(max(3, repeats // 5))]
+        report(f"{name}: start of the command to the first page, the browser's own start included", begins)
         measure(name, str(path), repeats)
+    report("a job that does not listen, cancelled, to the end of its process", asyncio.run(ends(max(3, repeats // 4))))
 
 
-def measure(name: str, file: str, repeats: int) -> None:
+def first_page(file: str) -> float:
+    """Seconds from the command to its first page."""
     begin = time.perf_counter()
     server = start_server(file)
     try:
         with sync_playwright() as driver:
             browser = driver.chromium.launch(executable_path=browser_path(), args=["--no-sandbox"])
-            page = browser.new_page(viewport={"width": 1280, "height": 900})
-            page.set_default_timeout(WAIT)
+            page = opened(browser)
             page.goto(server.address)
             page.get_by_label("Begin with").wait_for()
-            print(f"{name}: start to first page, browser's own start included: {time.perf_counter() - begin:.2f} s")
-            for view, query in (("orders", ""), ("stability", "")):
-                page.goto(f"{server.address}?view={view}{query}")
-                page.wait_for_selector("[data-state=idle]")
-                slide(page, repeats // 4 + 1, finished)
-                report(f"{name}: number typed to updated {view} view, all of it", slide(page, repeats, finished))
-                if view == "stability":
-                    report(f"{name}: point typed to its multipliers", points(page, repeats))
+            taken = time.perf_counter() - begin
+            browser.close()
+    finally:
+        stop(server)
+    return taken
+
+
+def opened(browser: Any) -> Any:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.set_default_timeout(WAIT)
+    return page
+
+
+def measure(name: str, file: str, repeats: int) -> None:
+    server = start_server(file)
+    try:
+        with sync_playwright() as driver:
+            browser = driver.chromium.launch(executable_path=browser_path(), args=["--no-sandbox"])
+            page = opened(browser)
+            page.goto(f"{server.address}?view=orders")
+            page.wait_for_selector("[data-state=idle]")
+            slide(page, repeats // 4 + 1)
+            report(f"{name}: number typed to updated orders view, all four pictures", slide(page, repeats))
+            page.goto(f"{server.address}?view=stability")
+            page.wait_for_selector("[data-chart=chart]")
+            page.wait_for_selector("[data-state=idle]")
+            charts(page, repeats // 4 + 1)
+            coarse, full = zip(*charts(page, repeats), strict=True)
+            report(f"{name}: number typed to updated 16 × 12 chart", list(coarse))
+            report(f"{name}: number typed to updated 60 × 60 chart", list(full))
+            report(f"{name}: click in the chart to the multipliers there", clicks(page, repeats))
+            page.goto(f"{server.address}?view=stability&line={pack(laborious())}")
+            report("a chart of minutes, Cancel pressed to the page saying so", cancels(page, max(3, repeats // 4)))
             browser.close()
     finally:
         stop(server)
@@ -68,46 +103,116 @@ def stop(server: Server) -> None:
         os.killpg(server.process.pid, signal.SIGKILL)
 
 
-def slide(page: Any, repeats: int, wait: Callable[[Any], None]) -> list[float]:
-    """Seconds from a new value of the slider's number to the finished view."""
+def slide(page: Any, repeats: int) -> list[float]:
+    """Seconds from a new value of the slider's number, a joint angle, to the finished view."""
     box = page.get_by_label("Value [deg]", exact=True)
     times = []
     for k in range(repeats):
-        box.fill(f"{3 + 0.37 * (k % 17):.2f}")
-        times.append(timed(page, box, wait))
+        box.fill(f"{3 + 0.37 * (k % 17) + 0.01 * k:.2f}")
+        times.append(timed(lambda: box.press("Enter"), lambda mark: finished(page, mark), done(page)))
     return times
 
 
-def points(page: Any, repeats: int) -> list[float]:
-    """Seconds from a new point to its table."""
-    box = page.get_by_label("Look at input speed [rpm]", exact=True)
+def charts(page: Any, repeats: int) -> list[tuple[float, float]]:
+    """Seconds from a new stiffness to the coarse chart and to the full one."""
+    path = page.get_by_label("Parameter to move", exact=True)
+    if path.input_value() != "Shaft 1.stiffness":
+        path.select_option("Shaft 1.stiffness")
+        page.get_by_label("Value [kN*m/rad]", exact=True).wait_for()
+    box = page.get_by_label("Value [kN*m/rad]", exact=True)
+    now, times = float(box.input_value()), []
+    for k in range(repeats):
+        count = int(page.locator("[data-count]").get_attribute("data-count"))
+        box.fill(f"{now * (0.8 + 0.02 * (k % 19) + 0.0007 * k):.5g}")
+        mark = done(page)
+        begin = time.perf_counter()
+        box.press("Enter")
+        page.locator(f"[data-count='{count + 1}'], [data-count='{count + 2}']").wait_for()
+        coarse = time.perf_counter() - begin
+        page.locator(f"[data-count='{count + 2}']").wait_for()
+        times.append((coarse, time.perf_counter() - begin))
+        finished(page, mark)
+    return times
+
+
+def clicks(page: Any, repeats: int) -> list[float]:
+    """Seconds from a click to its table."""
+    chart = page.locator(".bk-Canvas").first
+    chart.scroll_into_view_if_needed()
+    box, value = chart.bounding_box(), page.locator("td[data-value='speed']")
     times = []
     for k in range(repeats):
-        speed = f"{900 + 37 * (k % 23)}"
-        box.fill(speed)
-        times.append(
-            timed(page, box, lambda p, s=speed: p.locator("td[data-value='speed']", has_text=f"{s} rpm").wait_for())
-        )
-        finished(page)
+        before = value.inner_text()
+        x, y = box["x"] + (0.2 + 0.027 * (k % 19)) * box["width"], box["y"] + 0.5 * box["height"]
+        mark = done(page)
+        begin = time.perf_counter()
+        page.mouse.click(x, y)
+        value.filter(has_not_text=before).wait_for()
+        times.append(time.perf_counter() - begin)
+        finished(page, mark)
     return times
 
 
-def timed(page: Any, box: Any, wait: Callable[[Any], None]) -> float:
-    page.evaluate("n => { window.before = n }", int(page.locator("[data-state]").get_attribute("data-done") or 0))
+def cancels(page: Any, repeats: int) -> list[float]:
+    """Seconds from the button to the page that is free again; a change of the angle begins anew."""
+    times = []
+    for k in range(repeats):
+        page.wait_for_selector("[data-state=busy]")
+        begin = time.perf_counter()
+        page.get_by_role("button", name="Cancel").click()
+        page.get_by_text("cancelled", exact=True).wait_for()
+        times.append(time.perf_counter() - begin)
+        box = page.get_by_label("Value [deg]", exact=True)
+        box.fill(f"{10 + 0.5 * k}")
+        box.press("Enter")
+    return times
+
+
+async def ends(repeats: int) -> list[float]:
+    """Seconds until the process of a cancelled job has ended."""
+    pool = Pool(asyncio.get_running_loop(), 1, 2)
+    long = Job(starter("two-shaft"), Call("tn.simulate", (LINE,), {"turns": 1e6, "dense": False}), "nothing")
+    short = Job(starter("two-shaft"), Call("tn.natural_frequencies", (LINE,)), "text")
+    times = []
+    try:
+        for _ in range(repeats):
+            await pool.run(short, pool)
+            task = asyncio.ensure_future(pool.run(long, pool))
+            await asyncio.sleep(0.5)
+            (worker,) = pool.busy
+            begin = time.perf_counter()
+            task.cancel()
+            while worker.process.poll() is None:
+                await asyncio.sleep(0.005)
+            times.append(time.perf_counter() - begin)
+            while pool.busy:
+                await asyncio.sleep(0.005)
+    finally:
+        pool.close()
+    return times
+
+
+def timed(act: Callable[[], None], wait: Callable[[int], None], mark: int) -> float:
     begin = time.perf_counter()
-    box.press("Enter")
-    wait(page)
+    act()
+    wait(mark)
     return time.perf_counter() - begin
 
 
-def finished(page: Any) -> None:
-    before = page.evaluate("window.before")
+def done(page: Any) -> int:
+    """How many computations the page has finished."""
+    return int(page.locator("[data-state]").get_attribute("data-done") or 0)
+
+
+def finished(page: Any, before: int) -> None:
     page.locator(f"[data-done='{before + 1}']").wait_for()
 
 
 def report(what: str, seconds: list[float]) -> None:
     middle, late = np.percentile(seconds, [50, 95])
-    print(f"{what}: median {1e3 * middle:.0f} ms, 95th percentile {1e3 * late:.0f} ms ({len(seconds)} times)")
+    load = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
+    print(f"{what}: median {1e3 * middle:.0f} ms, 95th percentile {1e3 * late:.0f} ms ({len(seconds)} times, {load})")
+    sys.stdout.flush()
 
 
 if __name__ == "__main__":
