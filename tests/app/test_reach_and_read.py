@@ -100,7 +100,7 @@ CROWDED = (
   const boxes = [], found = []
   walk(document, (node) => {
     if (!shown(node)) return
-    if (!node.matches('input, select, button, textarea, canvas')) return
+    if (!node.matches('input, select, button, textarea, canvas') || node.closest('.bk-spin-btn')) return
     boxes.push([node.getBoundingClientRect(), named(node), node])
   })
   const inner = boxes.filter(([, , node]) => !node.matches('canvas'))
@@ -156,13 +156,16 @@ def test_the_tab_key_reaches_every_control(look: Look, view: str) -> None:
     assert [name for k, name in enumerate(controls) if k not in reached] == []
 
 
-@pytest.mark.parametrize("width", [512, 640, 1024, 1920])
 @pytest.mark.parametrize("view", VIEWS)
-def test_nothing_overlaps_from_twice_enlarged_to_wide(look: Look, view: str, width: int) -> None:
+def test_nothing_overlaps_from_twice_enlarged_to_wide(look: Look, view: str) -> None:
     """512 and 640 points are what windows of 1024 and 1280 have at 200 %."""
-    look.page.set_viewport_size({"width": width, "height": 800})
     look.at(QUERY.format(view))
-    assert look.page.evaluate(CROWDED) == []
+    found = {}
+    for width in (512, 640, 1024, 1920):
+        look.page.set_viewport_size({"width": width, "height": 800})
+        look.page.wait_for_timeout(700)  # pictures follow the page with a delay
+        found[width] = look.page.evaluate(CROWDED)
+    assert found == {width: [] for width in found}
 
 
 def test_a_click_on_a_speed_and_the_same_number_typed_are_one(look: Look) -> None:

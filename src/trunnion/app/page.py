@@ -31,6 +31,7 @@ body { margin: 0; font-family: system-ui, "Segoe UI", "DejaVu Sans", sans-serif;
 header { display: flex; align-items: center; gap: 4px 20px; flex-wrap: wrap; background: #12324a; color: #fff;
   padding: 6px 16px; }
 header h1 { font-size: 19px; margin: 0; }
+header > div { min-width: 0; max-width: 100%; }
 .layout { display: grid; grid-template-columns: minmax(0, 1fr) 330px; gap: 0 18px; padding: 4px 16px 24px; }
 .side { border-left: 1px solid #d5d9de; padding-left: 14px; }
 h2 { font-size: 16px; margin: 10px 0 2px; }
@@ -167,6 +168,7 @@ class Page:
 
 
 _NAVIGATION = """
+:host { max-width: 100%; } .bk-btn-group { flex-wrap: wrap; }
 .bk-btn { background: #12324a; color: #fff; border: 1px solid #6f8ba0; font-size: 15px; }
 .bk-btn.bk-active { background: #fff !important; color: #12324a !important; font-weight: 600; }
 .bk-btn:focus-visible { outline: 3px solid #f0b400; outline-offset: 1px; z-index: 2; }

@@ -97,7 +97,7 @@ class _Side(Side):
     def __init__(self, view: OrdersView) -> None:
         self.view = view
         self.orders = Curves("input speed", "torque [N·m]", tap=view.clicked)
-        self.wave = Curves("time [ms]", "torque [N·m]", height=240)
+        self.wave = Curves("time [ms]", "torque [N·m]", height=290)
         self.campbell = Curves("input speed", "frequency [Hz]", height=380, tap=view.clicked)
         self.crossings = ColumnDataSource(data={"x": [], "y": [], "name": []})
         marks = self.campbell.figure.scatter("x", "y", size=8, color=figures.INK, source=self.crossings)

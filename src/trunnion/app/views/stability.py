@@ -256,7 +256,7 @@ class _Side(Side):
         self.figure.on_event(Tap, lambda event: view.clicked(float(event.x), float(event.y)))
         self.figure.on_event(RangesUpdate, self._zoomed)
         self.point = Point()
-        self.motion = Curves("turns of the input", "twist [deg]", height=240)
+        self.motion = Curves("turns of the input", "twist [deg]", height=290)
         self.said = pn.pane.HTML("", sizing_mode="stretch_width")
         self.extent: tuple[Axis, Axis] | None = None
         self.count = 0
