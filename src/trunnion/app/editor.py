@@ -157,7 +157,8 @@ button { cursor: pointer; background: #f2f4f6; }
 .note { color: #8d0016; font-size: 13px; max-width: 34em; white-space: pre-line; }
 .add { font-size: 12px; margin-top: 3px; color: #444; }
 .new { align-items: center; flex-wrap: wrap; }
-@media (max-width: 700px) { .group { flex-direction: column; } .head { flex-basis: auto; } }
+@media (max-width: 700px) { .group { flex-direction: column; } .head { flex-basis: auto; }
+  .new { flex-direction: row; } }
 """
 
 

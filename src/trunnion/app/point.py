@@ -37,9 +37,9 @@ class Point:
         self.mode.legend.orientation = "horizontal"
         self.mode.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        row = pn.Row(
+        row = pn.FlexBox(  # one below the other where the page is narrow
             pn.pane.Bokeh(self.circle, width=330, height=300),
-            pn.pane.Bokeh(self.mode, sizing_mode="stretch_width"),
+            pn.pane.Bokeh(self.mode, sizing_mode="stretch_width", min_width=280, styles={"flex": "1 1 280px"}),
             sizing_mode="stretch_width",
             margin=0,
         )
