@@ -32,13 +32,17 @@ class Help:
         self.toml = ""
         self.search = pn.widgets.Button(name="What would help?", button_type="primary", width=180)
         self.search.on_click(lambda event: self.session.beside(self._search()))
+        self.limits = pn.widgets.Button(name="State limits", width=140)
+        self.limits.on_click(lambda event: self.session.guarded(self.session.state_limits))
         self.list = pn.Column(sizing_mode="stretch_width", margin=0)
-        self.panel = pn.Column(self.search, self.list, sizing_mode="stretch_width", margin=0)
+        row = pn.Row(self.search, self.limits, margin=0)
+        self.panel = pn.Column(row, self.list, sizing_mode="stretch_width", margin=0)
 
     def clear(self, needed: bool, keywords: Mapping[str, Any]) -> None:
         """A new verdict makes old remedies void."""
         self.keywords = keywords
         self.search.visible = needed
+        self.limits.visible = needed and not self.session.document.line.limits
         if self.session.document.toml != self.toml:
             self.list.objects = []
 

@@ -142,6 +142,12 @@ class Session:
         self.page.message("")
         self.guarded(self._view_changed)
 
+    def state_limits(self) -> None:
+        """Give every shaft a limit to fill in, and go where it stands."""
+        self.document.add_limit("Shaft *")
+        self.show_view("driveline")
+        self.page.message("500 N·m stands for every shaft at the end of the table: type what yours may bear.")
+
     def _line_changed(self) -> None:
         self.sliders.adapt(self.document.line)
         self.difference.object = difference(self.kept, self.document.line)

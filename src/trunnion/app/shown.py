@@ -313,9 +313,9 @@ def best(result: Any, path: str) -> Plain:
     return {"value": result.values[path], "text": str(result)}
 
 
-def swept(result: Any, spring: str, unit: str) -> Plain:
+def swept(result: Any, spring: str) -> Plain:
     """Half peak-to-peak torque of one spring at every step of a sweep."""
-    return {"speed": result.value, "half": result.swing_of(spring) / 2, "text": result.describe(unit)}
+    return {"speed": result.value, "half": result.swing_of(spring) / 2, "text": str(result)}
 
 
 def followed(result: Any, unit: str) -> Plain:

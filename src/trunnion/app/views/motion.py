@@ -160,7 +160,7 @@ class MotionView(View):
         ends = {"up": (low, high), "down": (high, low)}
         steps = [
             Step(f"sweep_{way}", Call("tn.sweep", (LINE, Call("np.linspace", (*ends[way], points)))), "swept",
-                 {"spring": spring, "unit": unit_of(line)[0]}, title=title, soft=True)
+                 {"spring": spring}, title=title, soft=True)
             for way, (title, _, _) in SWEEPS.items()
         ]  # fmt: skip
         known = [m for m in METHODS if m in methods_of(line)]
