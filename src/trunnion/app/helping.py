@@ -33,7 +33,7 @@ class Help:
         self.search = pn.widgets.Button(name="What would help?", button_type="primary", width=180)
         self.search.on_click(lambda event: self.session.beside(self._search()))
         self.limits = pn.widgets.Button(name="State limits", width=140)
-        self.limits.on_click(lambda event: self.session.guarded(self.session.state_limits))
+        self.limits.on_click(lambda event: self.session.state_limits())
         self.list = pn.Column(sizing_mode="stretch_width", margin=0)
         row = pn.Row(self.search, self.limits, margin=0)
         self.panel = pn.Column(row, self.list, sizing_mode="stretch_width", margin=0)

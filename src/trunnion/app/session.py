@@ -144,8 +144,8 @@ class Session:
 
     def state_limits(self) -> None:
         """Give every shaft a limit to fill in, and go where it stands."""
-        self.document.add_limit("Shaft *")
-        self.show_view("driveline")
+        self.view = self.view_of("driveline")
+        self.edit(lambda document: document.add_limit("Shaft *"))
         self.page.message("500 N·m stands for every shaft at the end of the table: type what yours may bear.")
 
     def _line_changed(self) -> None:
