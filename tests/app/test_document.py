@@ -125,6 +125,19 @@ def test_slider_moves_are_undone_as_one() -> None:
     assert document.line == start
 
 
+def test_a_number_that_a_slider_moves_is_written_short_and_the_others_stay() -> None:
+    document = Document(starter("two-shaft"))
+    before = fields(document)
+    document.set_numbers(document.line.replace("HookeJoint 1", angle="2.9 deg"))
+    assert fields(document).pop(("element", 3, "angle")) == ("2.9 deg", "")
+    assert {k: v for k, v in fields(document).items() if v != before.get(k)} == {
+        ("element", 3, "angle"): ("2.9 deg", "")
+    }
+    third = 1 / 3
+    document.set_numbers(document.line.replace("Shaft 1", stiffness=third))
+    assert document.line.elements[1].stiffness == third
+
+
 def test_elements_are_added_moved_and_removed() -> None:
     document = Document(starter("two-shaft"))
     document.add_element(2, "Disk")

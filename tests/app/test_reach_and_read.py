@@ -100,6 +100,7 @@ CROWDED = (
   const boxes = [], found = []
   walk(document, (node) => {
     if (!shown(node)) return
+    if (node.matches('.bk-Figure') && node.getBoundingClientRect().width < 120) found.push('a squeezed picture')
     if (!node.matches('input, select, button, textarea, canvas') || node.closest('.bk-spin-btn')) return
     boxes.push([node.getBoundingClientRect(), named(node), node])
   })

@@ -18,11 +18,13 @@ from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.files import FORMAT, dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, Kind, parse
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
 """Steps that can be undone."""
+ROUNDING = 1e-15
+"""What a number may lose when it is written short."""
 LARGEST_FILE = 1_000_000
 """Characters of a file that is taken from the browser."""
 Path = tuple[str | int, ...]
@@ -96,7 +98,7 @@ class Document:
 
     def set_numbers(self, line: Driveline, by: str = "") -> None:
         """Take over a line whose numbers were changed elsewhere; moves of one slider ``by`` are undone as one."""
-        data = tomllib.loads(dumps(line))
+        data = _texts_kept(tomllib.loads(dumps(line)), self.data)
         if by and by == self._mover:
             self.data = data
             self._judge()
@@ -332,6 +334,31 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
 }
 """What a new element starts with."""
+
+
+def _texts_kept(data: dict[str, Any], before: dict[str, Any]) -> dict[str, Any]:
+    """``data`` with the numbers of elements as ``before`` wrote them where they stay, and short where they change."""
+    for new, old in zip(data.get("element", []), before.get("element", []), strict=False):
+        model = KINDS.get(str(new.get("type", "")))
+        if model is None or old.get("type") != new.get("type"):
+            continue
+        for key, text in new.items():
+            kind = model.quantity_of(key) if key in model.model_fields else None
+            if kind is not None and isinstance(text, str | int | float):
+                new[key] = _kept(text, old.get(key), kind)
+    return data
+
+
+def _kept(text: str | float, old: Any, kind: Kind) -> Any:
+    try:
+        value = parse(text, kind)
+        if isinstance(old, str | int | float) and not isinstance(old, bool) and parse(old, kind) == value:
+            return old
+        unit, size = next(((u, s) for u, s, least in kind.shown if abs(value) >= least), (kind.unit, 1.0))
+        short = f"{value / size:.8g} {unit}"
+        return short if abs(parse(short, kind) - value) <= ROUNDING * abs(value) else text
+    except InputError:
+        return text
 
 
 def empty() -> str:

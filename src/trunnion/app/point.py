@@ -37,9 +37,9 @@ class Point:
         self.mode.legend.orientation = "horizontal"
         self.mode.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        row = pn.FlexBox(  # one below the other where the page is narrow
+        row = pn.Row(
             pn.pane.Bokeh(self.circle, width=330, height=300),
-            pn.pane.Bokeh(self.mode, sizing_mode="stretch_width", min_width=280, styles={"flex": "1 1 280px"}),
+            pn.pane.Bokeh(self.mode, sizing_mode="stretch_width"),
             sizing_mode="stretch_width",
             margin=0,
         )
@@ -54,7 +54,7 @@ class Point:
         if list(self.mode.x_range.factors) != data["names"]:
             self.mode.x_range.factors = data["names"]
         figures.put(self.shape, {"x": data["names"], "cos": mode.real, "sin": mode.imag})
-        self.mode.title.text = "the critical disturbance"
+        self.mode.title.text = "what grows first"
         rows = {
             "speed": f"{data['speed'] * factor:.6g} {unit}",
             "verdict": data["verdict"],
