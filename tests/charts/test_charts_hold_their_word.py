@@ -55,6 +55,7 @@ def test_free_line_of_three_inertias_as_stability_sees_it() -> None:
         assert off <= one.error_estimate + chart.error_estimate[i, j]
 
 
+@pytest.mark.slow
 def test_a_failed_check_builds_the_chart_anew(tmp_path: Path) -> None:
     """Coefficients that vanish at every node of a patch: the check finds out, and smaller patches have other nodes."""
 

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from trunnion.cli import output
 from trunnion.cli.motion import START, Set, Tolerance, _state
-from trunnion.cli.options import Json, LoadCase, Speed, Unit, file_stem, read_line, read_speed, read_unit
+from trunnion.cli.options import (
+    Json,
+    LoadCase,
+    OutputNoTable,
+    Speed,
+    Unit,
+    file_stem,
+    read_line,
+    read_set,
+    read_speed,
+    read_unit,
+)
 from trunnion.cli.places import PICTURES_AND_DATA, check_places, print_result, write_results
 from trunnion.errors import InputError
 
@@ -32,10 +42,6 @@ Section = Annotated[
     str | None,
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
 ]
-Output = Annotated[
-    list[Path] | None,
-    typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
-]
 TRIPOD = "double-tripod"
 
 
@@ -51,7 +57,7 @@ def lyapunov_spectrum(
     unit: Unit = None,
     load_case: LoadCase = None,
     tolerance: Tolerance = 1e-10,
-    to: Output = None,
+    to: OutputNoTable = None,
     as_json: Json = False,
 ) -> None:
     """Lyapunov exponents with intervals of confidence, and the sum rule.
@@ -102,7 +108,7 @@ def poincare_map(
     unit: Unit = None,
     load_case: LoadCase = None,
     tolerance: Tolerance = 1e-10,
-    to: Output = None,
+    to: OutputNoTable = None,
     as_json: Json = False,
 ) -> None:
     """Points of a settled motion, once per forcing period or on a section.
@@ -153,7 +159,7 @@ def certify_chaos(
         str | None, typer.Option("--sweep", metavar="NAME:LOW:HIGH:N", help="Exponents over this in the figure.")
     ] = None,
     tolerance: Tolerance = 1e-10,
-    to: Output = None,
+    to: OutputNoTable = None,
     as_json: Json = False,
 ) -> None:
     """Regular, chaotic, unbounded or undecided, with reasons and one figure.
@@ -211,14 +217,7 @@ def _subject(
 
 
 def _with(system: System, parameters: list[str] | None) -> System:
-    values = {}
-    for text in parameters or []:
-        key, _, value = text.partition("=")
-        try:
-            values[key.strip()] = float(value)
-        except ValueError:
-            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write damping_ratio=0.01") from None
-    return system.with_parameters(values)
+    return system.with_parameters(read_set(parameters))
 
 
 def _only_for_lines(speed: str | None, load_case: str | None) -> None:

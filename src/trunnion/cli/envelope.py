@@ -8,8 +8,7 @@ import typer
 
 from trunnion.cli import output
 from trunnion.cli.limits import written_paths
-from trunnion.cli.motion import Output
-from trunnion.cli.options import File, Json, Unit, file_stem, read_line, read_speed_ends, read_unit
+from trunnion.cli.options import File, Json, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
 from trunnion.cli.places import check_places, print_result, write_results
 
 

@@ -12,6 +12,7 @@ from trunnion.cli.options import (
     File,
     Json,
     LoadCase,
+    Output,
     Speed,
     Unit,
     file_stem,
@@ -64,15 +65,7 @@ def kinetostatics(
     pitch: Annotated[str | None, typer.Option("--pitch", help='Spline pitch for --phase, such as "10 deg".')] = None,
     turns: Annotated[int, typer.Option("--turns", help="Turns of the input.", min=1)] = 1,
     points: Annotated[int, typer.Option("--points", help="Points per turn.", min=8)] = 720,
-    to: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="PATH",
-            help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more.",
-        ),
-    ] = None,
+    to: Output = None,
     as_json: Json = False,
 ) -> None:
     """Motion, torques, secondary couples and support forces over a turn; fork phasing.

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.motion import Output
 from trunnion.cli.options import (
     File,
     Json,
     LoadCase,
+    Output,
     Speed,
     Unit,
     file_stem,

@@ -12,11 +12,13 @@ from trunnion.cli.options import (
     File,
     Json,
     LoadCase,
+    Output,
     Speed,
     Unit,
     file_stem,
     is_number,
     read_line,
+    read_set,
     read_speed,
     read_time,
     read_unit,
@@ -32,12 +34,6 @@ if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
     from trunnion.systems.system import System
 
-Output = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more."
-    ),
-]
 Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
 Set = Annotated[
     list[str] | None,
@@ -202,13 +198,7 @@ def _system(name: str, parameters: list[str] | None) -> System | None:
             remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
             raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
         return None
-    values = {}
-    for text in parameters or ():
-        key, _, value = text.partition("=")
-        if not is_number(value):
-            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
-        values[key.strip()] = float(value)
-    return reference_system(name, **values)
+    return reference_system(name, **read_set(parameters))
 
 
 def _only_for_lines(*given: tuple[str, object], remedy: str = "use --set for a reference system") -> None:

@@ -22,6 +22,16 @@ Unit = Annotated[
     str | None,
     typer.Option("--unit", "-u", metavar="rpm|Hz|rad/s", help="Unit of speeds; default: the file's."),
 ]
+Output = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more."
+    ),
+]
+OutputNoTable = Annotated[
+    list[Path] | None,
+    typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
+]
 Speed = Annotated[
     str | None,
     typer.Option(
@@ -211,3 +221,14 @@ def _quantity(text: str, kind_name: str, unit: str, *, key: str) -> float:
         return parse(number / speed_factor(unit) if kind_name == "speed" else number, kind)
     except InputError as error:
         raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
+
+
+def read_set(texts: Sequence[str] | None) -> dict[str, float]:
+    """The parameters that ``--set NAME=VALUE`` gives a reference system."""
+    values = {}
+    for text in texts or ():
+        key, _, value = text.partition("=")
+        if not is_number(value):
+            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
+        values[key.strip()] = float(value)
+    return values

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.motion import Output
 from trunnion.cli.options import (
     File,
     Json,
     LoadCase,
+    Output,
     Unit,
     file_stem,
     is_number,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.options import Json, file_stem, read_line, read_speed
+from trunnion.cli.options import Json, OutputNoTable, file_stem, read_line, read_set, read_speed
 from trunnion.cli.places import PICTURES_AND_DATA, check_places, write_results
 from trunnion.errors import InputError
 
@@ -35,10 +35,6 @@ To = Annotated[str | None, typer.Option("--to", help="Highest frequency or speed
 Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
 ]
-Output = Annotated[
-    list[Path] | None,
-    typer.Option("--output", "-o", metavar="PATH", help="File ending in .png, .pdf, .svg or .nc; repeat it for more."),
-]
 
 
 def frequency_response(
@@ -57,7 +53,7 @@ def frequency_response(
     curve: Annotated[
         str, typer.Option("--curve", help="State of a system or shaft of a line to look at; default: the first.")
     ] = "",
-    to: Output = None,
+    to: OutputNoTable = None,
     as_json: Json = False,
 ) -> None:
     """Frequency response with folds, jumps and stability, by one method or several.
@@ -108,7 +104,7 @@ def sweep(
     direction: Annotated[str, typer.Option("--direction", help="up, down or both.")] = "both",
     curve: Annotated[str, typer.Option("--curve", help="Shaft or mesh of a longer line to draw.")] = "",
     parameters: Set = None,
-    to: Output = None,
+    to: OutputNoTable = None,
     as_json: Json = False,
 ) -> None:
     """Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.
@@ -217,7 +213,7 @@ def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillat
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
     from trunnion.systems.reference import SYSTEMS
 
-    values = _values(parameters)
+    values = read_set(parameters)
     if name == GEARS:
         return catalogue("gear-rattle", **values), "rad"
     if name in SYSTEMS:
@@ -274,17 +270,6 @@ def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, h
     elif isinstance(subject, PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
         usual = 0.5 * subject.frequency, 1.5 * subject.frequency
     return usual[0] if first is None else first, usual[1] if last is None else last
-
-
-def _values(parameters: list[str] | None) -> dict[str, float]:
-    values = {}
-    for text in parameters or []:
-        key, _, value = text.partition("=")
-        try:
-            values[key.strip()] = float(value)
-        except ValueError:
-            raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write damping=0.1") from None
-    return values
 
 
 def _shares(advance: Callable[[float], None], methods: list[str]) -> dict[str, Callable[[float], None]]:

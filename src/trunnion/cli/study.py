@@ -12,6 +12,7 @@ from trunnion.cli.options import (
     File,
     Json,
     LoadCase,
+    Output,
     Points,
     Speed,
     Unit,
@@ -142,15 +143,7 @@ def stability_chart(
     unit: Unit = None,
     load_case: LoadCase = None,
     points: Points = "200x150",
-    to: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="PATH",
-            help="File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more.",
-        ),
-    ] = None,
+    to: Output = None,
     as_json: Json = False,
 ) -> None:
     """Stability over any two parameters, as picture and data.

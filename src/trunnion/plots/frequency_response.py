@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from trunnion.analyses.orbits.basins import Basins
     from trunnion.analyses.orbits.exact_sweep import LineSweep
-    from trunnion.analyses.orbits.frequency_response import ResponseComparison
     from trunnion.analyses.orbits.piecewise_sweep import Sweep
 
 STYLES = {
@@ -257,7 +256,7 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
 
 
 def draw_response(
-    response: Any,
+    found: Any,
     axes: Axes | None = None,
     *,
     length: str = "",
@@ -266,23 +265,11 @@ def draw_response(
     jumps: bool = True,
     top: float | None = None,
 ) -> Axes:
-    """One method's curve: ``draw_responses`` of it alone."""
-    alone = {response.method: response}
-    return draw_responses(alone, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
+    """``draw_responses`` of one method's curve, or of all that a comparison holds."""
+    from trunnion.analyses.orbits.frequency_response import ResponseComparison
 
-
-def draw_compared(
-    comparison: ResponseComparison,
-    axes: Axes | None = None,
-    *,
-    length: str = "",
-    unit: str | None = None,
-    marks: bool = True,
-    jumps: bool = True,
-    top: float | None = None,
-) -> Axes:
-    """Every method's curve: ``draw_responses`` of all."""
-    return draw_responses(comparison.responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
+    responses = found.responses if isinstance(found, ResponseComparison) else {found.method: found}
+    return draw_responses(responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
 def draw_sweep(sweep: Sweep, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.chart_families import Sampler, grid_by_grid, quantities
+from trunnion.analyses.charts.chart_families import ChartFamily, Sampler, grid_by_grid, quantities
 from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.chain.characteristic import LARGEST
@@ -21,8 +21,44 @@ from trunnion.systems.family import PeriodicLinearFamily
 Array = NDArray[np.float64]
 
 
+class PointByPoint:
+    """What families share whose equations are not known in lanes."""
+
+    def sampler(
+        self: ChartFamily, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True
+    ) -> Sampler:
+        """See ``ChartFamily``."""
+        return grid_by_grid(self, box, tolerance, threads)
+
+    def leading(
+        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """Its equations are not known in lanes."""
+        return None
+
+    def differ(self, x: Array, y: Array) -> bool:
+        """Nothing is cheaper than its matrices."""
+        return False
+
+    def settled(self, x: Array, y: Array) -> Pixels | None:
+        """There is no other way than ``matrices``."""
+        return None
+
+    def over_whole_periods(self) -> Self:
+        """Own families are always integrated over whole periods."""
+        return self
+
+    def to_patch(self, value: Array, of_x: bool) -> Array:
+        """Parameters are taken as they are."""
+        return np.asarray(value, dtype=float)
+
+    def from_patch(self, value: Array, of_x: bool) -> Array:
+        """The inverse of ``to_patch``."""
+        return np.asarray(value, dtype=float)
+
+
 @dataclass(frozen=True)
-class OwnFamily:
+class OwnFamily(PointByPoint):
     """A user's ``PeriodicLinearFamily`` over two of its parameters; ``middle`` is a typical point."""
 
     family: PeriodicLinearFamily
@@ -86,28 +122,6 @@ class OwnFamily:
         """See ``ChartFamily``."""
         return quantities(*self.matrices(x, y, tolerance, threads))
 
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
-        """See ``ChartFamily``."""
-        return grid_by_grid(self, box, tolerance, threads)
-
-    def leading(
-        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
-    ) -> PatchedFunction | None:
-        """Its equations are not known in lanes."""
-        return None
-
-    def differ(self, x: Array, y: Array) -> bool:
-        """Nothing is cheaper than its matrices."""
-        return False
-
-    def settled(self, x: Array, y: Array) -> Pixels | None:
-        """There is no other way than ``matrices``."""
-        return None
-
-    def over_whole_periods(self) -> OwnFamily:
-        """Own families are always integrated over whole periods."""
-        return self
-
     def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
         values = {self.x_name: np.array([x]), self.y_name: np.array([y])}
 
@@ -117,17 +131,9 @@ class OwnFamily:
 
         return at
 
-    def to_patch(self, value: Array, of_x: bool) -> Array:
-        """Parameters are taken as they are."""
-        return np.asarray(value, dtype=float)
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """The inverse of ``to_patch``."""
-        return np.asarray(value, dtype=float)
-
 
 @dataclass(frozen=True)
-class PatchesAlone:
+class PatchesAlone(PointByPoint):
     """A family read from a file without its function: only its patches answer."""
 
     size: int
@@ -155,33 +161,3 @@ class PatchesAlone:
             element="chart",
             remedy="load_chart(path, family=…)",
         )
-
-    def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
-        """See ``ChartFamily``."""
-        return grid_by_grid(self, box, tolerance, threads)
-
-    def leading(
-        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
-    ) -> PatchedFunction | None:
-        """Its equations are not known in lanes."""
-        return None
-
-    def differ(self, x: Array, y: Array) -> bool:
-        """Nothing is cheaper than its matrices."""
-        return False
-
-    def settled(self, x: Array, y: Array) -> Pixels | None:
-        """There is no other way than ``matrices``."""
-        return None
-
-    def over_whole_periods(self) -> PatchesAlone:
-        """Own families are always integrated over whole periods."""
-        return self
-
-    def to_patch(self, value: Array, of_x: bool) -> Array:
-        """Parameters are taken as they are."""
-        return np.asarray(value, dtype=float)
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """The inverse of ``to_patch``."""
-        return np.asarray(value, dtype=float)

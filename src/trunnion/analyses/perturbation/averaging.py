@@ -12,14 +12,10 @@ held, not by the formulas (61), (62), to which they are compared in the tests.
 
 from __future__ import annotations
 
-from math import sqrt
-
 import numpy as np
 from scipy.optimize import brentq
 
-from trunnion.analyses.perturbation.cubic_fit import CubicFit, cubic_fit
-from trunnion.analyses.perturbation.slow_flow import SlowFlow
-from trunnion.errors import InputError
+from trunnion.analyses.perturbation.fitted_slow_flow import FittedSlowFlow
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 SAMPLES = 16
@@ -28,7 +24,7 @@ _FAST = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
 _COS, _SIN = np.cos(_FAST), np.sin(_FAST)
 
 
-class Averaging(SlowFlow):
+class Averaging(FittedSlowFlow):
     """The averaged rates of an oscillator with a cubic in place of its force; parameters as ``MultipleScales``."""
 
     method = "averaging"
@@ -36,15 +32,8 @@ class Averaging(SlowFlow):
     def __init__(
         self, oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
     ) -> None:
-        super().__init__(oscillator)
-        if not 0 < epsilon < float("inf"):
-            raise InputError("must be positive", key="epsilon", value=epsilon, remedy="the paper takes 0.01")
-        self.fit: CubicFit = cubic_fit(oscillator, fit_range)
-        self.note = str(self.fit)
-        self.epsilon = epsilon
+        super().__init__(oscillator, epsilon, fit_range)
         m = oscillator.inertia
-        self.T = self.fit.linear**-0.5
-        self.U = sqrt(epsilon * self.fit.linear / abs(self.fit.cubic))
         self.cubic = float(np.sign(self.fit.cubic)) or 1.0
         self.two_mu = oscillator.damping / m * self.T / epsilon
         self.B_0, self.B_1 = (f / m * self.T**2 / (epsilon * self.U) for f in (oscillator.mean_force, oscillator.force))

@@ -22,13 +22,11 @@ from __future__ import annotations
 import cmath
 from math import cos, sin, sqrt
 
-from trunnion.analyses.perturbation.cubic_fit import CubicFit, cubic_fit
-from trunnion.analyses.perturbation.slow_flow import SlowFlow
-from trunnion.errors import InputError
+from trunnion.analyses.perturbation.fitted_slow_flow import FittedSlowFlow
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
-class MultipleScales(SlowFlow):
+class MultipleScales(FittedSlowFlow):
     """The slow flow (37) of an oscillator.
 
     Parameters
@@ -42,16 +40,8 @@ class MultipleScales(SlowFlow):
     def __init__(
         self, oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
     ) -> None:
-        super().__init__(oscillator)
-        if not 0 < epsilon < float("inf"):
-            raise InputError("must be positive", key="epsilon", value=epsilon, remedy="the paper takes 0.01")
-        self.fit: CubicFit = cubic_fit(oscillator, fit_range)
-        self.note = str(self.fit)
-        lambda_1, lambda_2 = self.fit.linear, self.fit.cubic
-        self.epsilon = epsilon
-        self.T = 1 / sqrt(lambda_1)
-        self.U = sqrt(epsilon * lambda_1 / abs(lambda_2))
-        self.softening = -1.0 if lambda_2 < 0 else 1.0
+        super().__init__(oscillator, epsilon, fit_range)
+        self.softening = -1.0 if self.fit.cubic < 0 else 1.0
         self.mu = oscillator.damping / oscillator.inertia * self.T / (2 * epsilon)
         self.B_1 = oscillator.force / oscillator.inertia * self.T**2 / (epsilon * self.U)
 
