@@ -711,6 +711,15 @@ PYTHON = [
         "there are none",
     ),
     (
+        lambda: tn.stability_chart(
+            line(operation=Operation(schedules=[Schedule(name="p", speed=[1, 2], loads={"Disk 1": [1, 2]})])),
+            ("speed", 1, 2, 2),
+            ("p", 1, 2, 2),
+        ),
+        "p: is a schedule, which moves several numbers along straight pieces, and no parameter",
+        'ask line.at_schedule("p", value)',
+    ),
+    (
         lambda: line(operation=Operation(schedules=[Schedule(name="p", speed=[1, 2], loads={"Dsk 1": [1, 2]})])),
         "schedule p.Dsk 1: is not a Disk of this driveline",
         'did you mean "Disk 1"?',

@@ -175,6 +175,13 @@ class PackedLine:
         return columns
 
     def _unknown(self, path: str) -> InputError:
+        schedules = self.line.operation.schedules if self.line.operation else ()
+        if path.removeprefix("schedule ") in [one.name for one in schedules]:
+            name = path.removeprefix("schedule ")
+            return InputError(
+                "is a schedule, which moves several numbers along straight pieces, and no parameter", key=path,
+                remedy=f'ask line.at_schedule("{name}", value) at each of its points, or envelope(line) for all',
+            )  # fmt: skip
         known = list(self.labels)
         kinds = {e.kind for e in self.line.elements}
         known += [f"{k} *.{label.rpartition('.')[2]}" for k in sorted(kinds) for label in self.labels]

@@ -91,6 +91,10 @@ class Case:
             return str(error).splitlines()[0]
         return replace(found, judged=self._judged) if self.parametric else found
 
+    def respond(self) -> None:
+        """Compute the response, so that cases can do it side by side."""
+        _ = self.answer
+
     def prepare(self) -> None:
         """Compute what the checks look at, so that cases can do it side by side."""
         _ = self.answer, self.modes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from math import inf, isfinite, nan
@@ -10,8 +11,8 @@ import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
-from trunnion.analyses.assessment.range_extremes import exact_torque, largest_growth
-from trunnion.analyses.assessment.subject import POINTS, Subject
+from trunnion.analyses.assessment.range_extremes import NEAR, exact_torque, largest_growth, largest_torque
+from trunnion.analyses.assessment.subject import POINTS, Case, Subject
 from trunnion.analyses.kinetostatics.chain import chain
 from trunnion.analyses.kinetostatics.phasing import irregularity_of
 from trunnion.analyses.linear.forced_response import shaft_names
@@ -19,6 +20,7 @@ from trunnion.analyses.orders.response import order_response
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import ComputationError, InputError
+from trunnion.numerics.threads import on_threads
 
 IRREGULARITY, GROWTH, SPARE = "irregularity", "growth rate", "least spare margin"
 TORQUES = ("peak torque of ", "vibratory torque of ")
@@ -158,10 +160,15 @@ def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[
     if aim.judged:
         return min(_margins(aim, checks), default=nan)
     word, _, spring = aim.name.partition(" torque of ")
+    on_threads(Case.respond, subject.cases, os.cpu_count() or 1)
     cases = [case for case in subject.cases if case.response is not None]
     if not cases:
         order_response(subject.cases[0].assembly, subject.cases[0].speeds)  # raises what refuses it
-    return max((exact_torque(case, word, shaft_names(case.assembly).index(spring))[0] for case in cases), default=nan)
+    places = [(case, shaft_names(case.assembly).index(spring)) for case in cases]
+    coarse = [largest_torque(case, word, place)[0] for case, place in places]
+    # Another case's peaks between two speeds of the grid are no larger than those that already show.
+    near = [one for one, value in zip(places, coarse, strict=True) if value >= NEAR * max(coarse)]
+    return max((exact_torque(case, word, place)[0] for case, place in near), default=nan)
 
 
 def _margins(aim: Aim, checks: Iterable[Check]) -> Iterator[float]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import differential_evolution, minimize
+from scipy.optimize import OptimizeResult, differential_evolution, minimize
 
 from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
 from trunnion.analyses.optimisation.aims import Answer, Question
@@ -27,8 +27,14 @@ POPULATION = 8
 """Designs of one generation, per free number."""
 SIMPLEX = (0.05, 0.002)
 """Sizes of simplices, as shares of the bounds, from which the best design is improved in turn."""
+CLOSE, ROUGH = (1e-9, 1e-11), 1e-2
+"""Where the last simplex ends, as shares of the bounds and of the merit; the one before, as shares of itself."""
 POLISH = 60
 """Designs of one polishing, per free number; between the ends of a front a third of that."""
+SETTLED = 1e-3
+"""Spread of a generation's merits, over their mean, at which the search from everywhere ends: simplices are faster."""
+STALE, FALLS = 6, 0.01
+"""Generations in which the best merit has to fall by this share of itself for the search from everywhere to go on."""
 VALLEYS, DISTANCE = 3, 0.15
 """Designs that are improved first, and how far apart they are, as a share of the bounds."""
 WEIGHTS = np.linspace(0.0, 1.0, 9)[1:-1]
@@ -95,15 +101,16 @@ class Search:
         for place, size in enumerate(sizes):
             ordered = sorted(self.tried.values(), key=lambda one: function(one.shares))
             for start in _apart(ordered, VALLEYS if not place and len(sizes) > 1 else 1):
-                self._simplex(function, start.shares, size, most)
+                self._simplex(function, start.shares, size, most, last=size == sizes[-1])
         return min(self.tried.values(), key=lambda one: function(one.shares))
 
-    def _simplex(self, function: Merit, start: Array, size: float, most: int) -> None:
+    def _simplex(self, function: Merit, start: Array, size: float, most: int, *, last: bool) -> None:
         corners = np.array([start, *(_moved(start, i, size) for i in range(len(start)))])
-        close = 1e-11 * abs(function(start))
+        near, close = CLOSE if last else (ROUGH * size, ROUGH)
         minimize(
             function, start, method="Nelder-Mead", bounds=[(0.0, 1.0)] * len(start),
-            options={"initial_simplex": corners, "maxfev": most * len(start), "xatol": 1e-9, "fatol": close},
+            options={"initial_simplex": corners, "maxfev": most * len(start), "xatol": near,
+                     "fatol": close * abs(function(start))},
         )  # fmt: skip
 
     def _evolved(self, function: Merit) -> None:
@@ -112,9 +119,15 @@ class Search:
         generations = max(1, self.most // generation - 1)
         first = np.random.default_rng(self.seed).random((generation, size))
         first[0] = self.space.start
+        best: list[float] = []
+
+        def stale(intermediate_result: OptimizeResult) -> bool:
+            best.append(float(intermediate_result.fun))
+            return len(best) > STALE and best[-1 - STALE] - best[-1] < FALLS * abs(best[-1])
+
         differential_evolution(
             function, [(0.0, 1.0)] * size, init=first, maxiter=generations, seed=self.seed, polish=False,
-            tol=1e-8, atol=1e-14,
+            tol=SETTLED, atol=1e-14, callback=stale,
         )  # fmt: skip
 
     def _of(self, merit: Callable[[Array], float]) -> Merit:

@@ -57,17 +57,24 @@ class Nodes:
         return np.asarray(found.reshape(-1, *values.shape[1:]))
 
 
-def nodes_of(speed: Array, co: LineCoefficients) -> Nodes:
-    """Three nodes where the coefficients ``co`` of ``speed`` (case,) are the same at all speeds, else all."""
+def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
+    """Three speeds (3,) that stand for all where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
+    None where each case has to stand for itself."""
     laws = [np.broadcast_to(n, (len(speed), 1)) for law in co.joints for n in law.numbers]
     parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, *laws, co.shift, co.loss)
     constant = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in parts)
     low, high = speed.min(), speed.max()
     if not constant or len(speed) <= 3 or high - low < NARROW * high or np.any(co.viscous) or np.any(co.quadratic):
+        return None
+    return np.array([low, (low + high) / 2, high])
+
+
+def nodes_at(few: Array | None, speed: Array) -> Nodes:
+    """What carries the equations at ``few`` speeds, or each by itself, to those of ``speed`` (case,)."""
+    if few is None:
         return Nodes(speed, None)
-    nodes = np.array([low, (low + high) / 2, high])
-    a, b, c = (speed[:, None] - nodes).T / (high - low)
-    return Nodes(nodes, np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1))
+    a, b, c = (speed[:, None] - few).T / (few[-1] - few[0])
+    return Nodes(few, np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1))
 
 
 class HillBlocks:
@@ -83,13 +90,12 @@ class HillBlocks:
         matrices: LineMatrices,
         loss: Array,
         step: Array,
-        nodes: Nodes,
         *,
         linearised: bool = False,
     ) -> None:
         """``step`` (node,) is bΩ [rad/s]; loss (node, compliance) [N m/rad]; ``matrices`` at the nodes; with
-        ``linearised`` every case is solved to first order about the first."""
-        self.topo, self.loss, self.step, self.nodes, self.linearised = topo, loss, step, nodes, linearised
+        ``linearised`` every case is a node, and solved to first order about the first."""
+        self.topo, self.loss, self.step, self.linearised = topo, loss, step, linearised
         self.times = matrices.mass.shape[1]
         self.mass, self.damping, self.stiffness, self.ratio = (
             np.fft.fft(part, axis=1) / self.times
@@ -98,8 +104,9 @@ class HillBlocks:
         parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
         self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
 
-    def solve(self, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
-        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n); ``carrier`` (node,) is ω₀ [rad/s].
+    def solve(self, nodes: Nodes, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
+        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n), of the cases that ``nodes`` carry to; ``carrier``
+        (node,) is ω₀ [rad/s].
 
         Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
@@ -117,9 +124,8 @@ class HillBlocks:
             self._add_loss(matrix, apart, np.sign(frequency))
         if self.topo.free and not carrier.any():
             self._hold(matrix, np.flatnonzero(harmonics == 0))
-        matrix, right = self.nodes.everywhere(matrix), self.nodes.everywhere(right)
         if not self.linearised:
-            return _with_rim(matrix, rim, right)
+            return _with_rim(matrix, rim, nodes.everywhere(right), nodes)
         first = _with_rim(matrix[:1], rim, right[:1])
         rest = right - _times(matrix, rim, first)
         size = np.abs(right).max() + np.abs(matrix[0]).max() * np.abs(first).max()
@@ -161,21 +167,27 @@ def rigid_rotation(topo: Topology) -> Array:
     return turn
 
 
-def _with_rim(matrix: Complex, rim: Flags, right: Complex, *, bounded: bool = True) -> Complex:
-    """X (case, h, n) of matrices (case, h, n, h, n), harmonics on the rim by their own diagonal blocks; ``bounded`` as
-    of ``_solve``."""
+def _with_rim(
+    matrix: Complex, rim: Flags, right: Complex, nodes: Nodes | None = None, *, bounded: bool = True
+) -> Complex:
+    """X (case, h, n) of matrices (node, h, n, h, n), which are those of the cases without ``nodes``; harmonics on the
+    rim by their own diagonal blocks; ``bounded`` as of ``_solve``."""
     cases, count, n = right.shape
     inner = np.flatnonzero(~rim)
     inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
     size = len(inner) * n
     x = np.zeros((cases, count, n), dtype=complex)
-    x[:, inner] = _solve(
-        inside.reshape(cases, size, size), right[:, inner].reshape(cases, size), bounded=bounded
-    ).reshape(cases, len(inner), n)
+    whole = _carried(nodes, inside.reshape(-1, size, size))
+    x[:, inner] = _solve(whole, right[:, inner].reshape(cases, size), bounded=bounded).reshape(cases, len(inner), n)
     for end in np.flatnonzero(rim):
-        known = (matrix[:, end].reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
-        x[:, end] = _solve(matrix[:, end, :, end], right[:, end] - known, bounded=False)
+        row = _carried(nodes, np.ascontiguousarray(matrix[:, end]))
+        known = (row.reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
+        x[:, end] = _solve(row[:, :, end], right[:, end] - known, bounded=False)
     return x
+
+
+def _carried(nodes: Nodes | None, values: Complex) -> Complex:
+    return values if nodes is None else nodes.everywhere(values)
 
 
 def _times(matrix: Complex, rim: Flags, x: Complex) -> Complex:

@@ -7,7 +7,7 @@ Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}]
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
-from trunnion.analyses.orders.hill import HillBlocks, Nodes, nodes_of
+from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
 from trunnion.analyses.orders.straight import straight_about_first, straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
@@ -136,6 +136,19 @@ def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
     require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
 
 
+@dataclass(frozen=True)
+class _Written:
+    """Equations of one reach of harmonics, written out for the rows of ``table``."""
+
+    table: Array
+    co: LineCoefficients
+    groups: list[Group]
+    layers: dict[int, int]
+    matrices: LineMatrices
+    base: BaseOfExcitation
+    blocks: HillBlocks
+
+
 class _Case:
     """What solving takes, apart from the speeds."""
 
@@ -161,6 +174,10 @@ class _Case:
         self.own = _own_orders(assembly, self.turns) if self.topo.free and bent(assembly) else None
         self.reach = _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
+        self.few: Array | None = None
+        self.written: dict[int, _Written] = {}
+        if self.varies and self.alike and not self.loss_in_time and self.own is None:
+            self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
             self.batch = 1
         elif self.varies:
@@ -226,32 +243,45 @@ class _Case:
         self._add_static(total, co)
         return total
 
-    def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
-        topo, cycles, speed = self.topo, 1 / self.turns, cases[:, 0]
-        every = self.coefficients(cases)
-        nodes = Nodes(speed, None) if self.loss_in_time or not self.alike else nodes_of(speed, every)
-        table, co = cases, every
-        if nodes.weights is not None:
-            table = np.repeat(cases[:1], len(nodes.speed), axis=0)
-            table[:, 0] = nodes.speed
-            co = self.coefficients(table)
+    def _written(self, reach: int, cases: Array) -> _Written:
+        """The equations at the speeds that stand for all, or at those of ``cases``."""
+        if self.few is not None and reach in self.written:
+            return self.written[reach]
+        table = cases
+        if self.few is not None:
+            table = np.repeat(self.numbers[:1], len(self.few), axis=0)
+            table[:, 0] = self.few
+        co = self.coefficients(table)
         groups, layers, times = self._plan(reach)
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
-        matrices, base = line_matrices(topo, co, tau), self._base(table, co, tau)
-        step = float(cycles) * nodes.speed
-        blocks = HillBlocks(topo, matrices, co.loss, step, nodes, linearised=self.linearised)
-        alike = slice(0, 1) if nodes.weights is not None else slice(None)  # ratios do not depend on the speed
+        matrices, base = line_matrices(self.topo, co, tau), self._base(table, co, tau)
+        step = table[:, 0] / float(self.turns)
+        blocks = HillBlocks(self.topo, matrices, co.loss, step, linearised=self.linearised)
+        found = _Written(table, co, groups, layers, matrices, base, blocks)
+        if self.few is not None:
+            self.written[reach] = found
+        return found
+
+    def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
+        topo, cycles, speed = self.topo, 1 / self.turns, cases[:, 0]
+        nodes, out = nodes_at(self.few, speed), self._written(reach, cases)
+        table, co, layers, matrices, base, blocks = (
+            out.table, out.co, out.layers, out.matrices, out.base, out.blocks,
+        )  # fmt: skip
+        every = co if self.few is None else self.springs
+        step, times = blocks.step, blocks.times
+        alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
         ratio, relative = matrices.ratio[alike], base.relative[alike]
         places = channels_of(topo)
         total = OrderSum(len(speed), places.count, topo.size)
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
-        for group in groups:
-            carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * nodes.speed
+        for group in out.groups:
+            carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * table[:, 0]
             h, rim = group.harmonics(layers, reach)
             nu = carrier[:, None] + h * step[:, None]
             right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
             least = np.maximum(least, 1e-6 * np.abs(nodes.everywhere(right)).max(axis=(1, 2)))
-            x = blocks.solve(carrier, h, rim, right)
+            x = blocks.solve(nodes, carrier, h, rim, right)
             seen = _seen(topo, x, h, times, ratio, relative)
             seen[..., places.twist] += nodes.everywhere(error)
             self._add_torque(seen, every, nodes.everywhere(nu))
