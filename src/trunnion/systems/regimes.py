@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.errors import InputError
-from trunnion.systems.user_functions import CFunction, guard_function, jump_function
+from trunnion.systems.jump_functions import jump_function
+from trunnion.systems.user_functions import CFunction, guard_function
 
 if TYPE_CHECKING:
     from trunnion.systems.system import System

@@ -35,10 +35,9 @@ MOVES, WEIGHTS = (1.0, -1.0, 2.0, -2.0), (8.0, -1.0)
 REACH = 1e-6
 """Of a state's size, what its scale counts as at least: a step below rounding would find no slope at all."""
 
-_POINTER = types.CPointer(types.float64)
-RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER)
-GUARD = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER, _POINTER)
-JUMP = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, types.int64, _POINTER)
+POINTER = types.CPointer(types.float64)
+RATE = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, POINTER)
+GUARD = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, POINTER, POINTER)
 
 
 @dataclass(frozen=True)
@@ -286,7 +285,7 @@ def rate_function(
                     out[1:] = y[1:] @ np.asarray(slopes, dtype=float).T
                 elif k and not failed:
                     for v, slope in zip(y[1:], out[1:], strict=True):
-                        slope[:] = _differences(lambda x: plain(t, x, p, regime), y[0], v, scale)
+                        slope[:] = differences(lambda x: plain(t, x, p, regime), y[0], v, scale)
             except BaseException as error:
                 raised[:] = [error]
                 return RAISED
@@ -301,7 +300,8 @@ def rate_function(
     return wrap(function, size, names, regimes=regimes, kind=RATE, call_back=call_back, build=build, compiled=compiled)
 
 
-def _differences(f: Callable[[Array], Any], x: Array, v: Array, scale: Array) -> Array:
+def differences(f: Callable[[Array], Any], x: Array, v: Array, scale: Array) -> Array:
+    """Slope of ``f`` along ``v``, by fourth-order differences in units of ``scale``."""
     length = float(np.max(np.abs(v) / np.maximum(scale, REACH * np.abs(x)), initial=0.0))
     if length == 0.0:
         return np.zeros_like(x)
@@ -374,7 +374,7 @@ def guard_function(
                         v = np.zeros(size)
                         v[j] = weight[j]
                         slope[:, j] = (
-                            _differences(lambda z: np.atleast_1d(plain(t, z, p, regime)), x, v, weight) / weight[j]
+                            differences(lambda z: np.atleast_1d(plain(t, z, p, regime)), x, v, weight) / weight[j]
                         )
                     moved = [np.atleast_1d(plain(t + m * step, x, p, regime)) for m in (-2, -1, 1, 2)]
                     slope[:, size] = (moved[0] - 8 * moved[1] + 8 * moved[2] - moved[3]) / (12 * step)
@@ -393,75 +393,3 @@ def guard_function(
         function, size, names, regimes=regimes, kind=GUARD, call_back=call_back, build=build, compiled=compiled,
         machine=machine,
     )  # fmt: skip
-
-
-def jump_function(
-    function: Callable[..., Any], size: int, names: tuple[str, ...], scale: Array, *, compiled: bool = True
-) -> CFunction:
-    """A jump (t, x, p, which) → n numbers as a C function; tangents by differences along (x, t)."""
-    takes(function, (4,), "jump")
-    count, step, weight = len(names), STEP, np.array(scale, dtype=float)
-
-    def build(uniform: Any) -> Any:
-        @njit
-        def evaluate(t, y, p, k, which, delay):
-            x, near, out = np.empty(size), np.empty(size), np.empty(size)
-            failed = 0
-            for i in range(size):
-                x[i] = y[i]
-            for b in range(1, k + 1):
-                v = y[b * size : (b + 1) * size]
-                length = abs(delay[b - 1])
-                for i in range(size):
-                    length = max(length, abs(v[i]) / weight[i])
-                if length == 0.0:
-                    continue
-                h = step / length
-                total = np.zeros(size)
-                for m in range(4):
-                    move = (-2.0, -1.0, 1.0, 2.0)[m] * h
-                    for i in range(size):
-                        near[i] = x[i] + move * v[i]
-                    failed = max(failed, store(out, uniform(t + move * delay[b - 1], near, p, which)))
-                    for i in range(size):
-                        total[i] += (1.0, -8.0, 8.0, -1.0)[m] / (12 * h) * out[i]
-                v[:] = total
-            failed = max(failed, store(out, uniform(t, x, p, which)))
-            y[:size] = out
-            return failed
-
-        def jump(t, y_, p_, k, regime, which, delay_):
-            y, p, delay = carray(y_, ((1 + k) * size,)), carray(p_, (count,)), carray(delay_, (max(k, 1),))
-            try:
-                failed = evaluate(t, y, p, k, which, delay)
-            except Exception:
-                failed = 1
-            return failed
-
-        return jump
-
-    def call_back(plain: Callable[..., Any], raised: list[BaseException]) -> CFunction:
-        pointer = ctypes.POINTER(ctypes.c_double)
-
-        def jump(t: float, y_: Any, p_: Any, k: int, regime: int, which: int, delay_: Any) -> int:
-            y = np.ctypeslib.as_array(y_, (1 + k, size))
-            p = np.ctypeslib.as_array(p_, (count,)) if count else np.zeros(0)
-            delay = np.ctypeslib.as_array(delay_, (max(k, 1),))
-            try:
-                for v, late in zip(y[1:], delay, strict=False):
-                    whole, units = np.append(v, late), np.append(weight, 1.0)
-                    point = np.append(y[0], t)
-                    v[:] = _differences(lambda z: plain(z[-1], z[:-1], p, which), point, whole, units)[:size]
-                return store(y[0], plain(t, y[0].copy(), p, which))
-            except BaseException as error:
-                raised[:] = [error]
-                return RAISED
-
-        signature = ctypes.CFUNCTYPE(
-            ctypes.c_int64, ctypes.c_double, pointer, pointer,
-            ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, pointer,
-        )  # fmt: skip
-        owner = signature(jump)
-        return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
-
-    return wrap(function, size, names, regimes=True, kind=JUMP, call_back=call_back, build=build, compiled=compiled)
