@@ -266,15 +266,21 @@ def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
 def shown(value: float, kind: Kind, unit: str | None = None, digits: int = 6) -> str:
     """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
     symbol, size = _pick(value, kind, unit)
-    return f"{value / size:.{digits}g}" + ("" if kind is RATIO else f" {symbol}")
+    return _plain(value / size, digits) + ("" if kind is RATIO else f" {symbol}")
 
 
 def against(value: float, limit: float, kind: Kind, digits: int = 4) -> str:
     """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
     small = min(abs(value), abs(limit))
     symbol, size = _pick(small if small > SAME_UNIT * abs(limit) else limit, kind, None)
-    left, right = (f"{x / size:.{digits}g}" + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
+    left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
     return f"{left} against {right}"
+
+
+def _plain(value: float, digits: int) -> str:
+    """``value`` to so many figures, 10000 and not 1e+04."""
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:.10g}" if 1 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
 
 
 SAME_UNIT = 1e-3

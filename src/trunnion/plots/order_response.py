@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.result import OrderResponse, order_name
 from trunnion.driveline.operation import Operation
+from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.errors import InputError
 from trunnion.plots.kinetostatics import COLOURS, DASHES
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
@@ -76,7 +77,8 @@ def draw(
     stated = result.limits[result.springs[column]] if limits is None and limit is None else limits
     known = ({} if limit is None else {"limit": limit}) | dict(stated or {})
     for i, (name, value) in enumerate(known.items()):
-        axes.axhline(value, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=f"{name} {value:.4g} N·m")
+        said = shown(value, TORQUE, digits=4).replace("*", "·")
+        axes.axhline(value, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=f"{name} {said}")
     if "max torque" in known:
         peak = result.peak_torque[:, column]
         axes.plot(x, peak, color=INK, lw=1.2, ls=(0, (1, 1)), label="largest torque, mean and all")
