@@ -72,7 +72,7 @@ def test_a_full_disk_costs_the_cache_only(tmp_path):
 
 def test_machine_code_belongs_to_all_sources_it_comes_from(tmp_path):
     """numba would keep a caller's code when only the function it calls has changed, in another file."""
-    from trunnion.numerics import jit
+    from trunnion.numerics import sources
     from trunnion.numerics.chain import characteristic
 
     (tmp_path / "part").mkdir()
@@ -81,11 +81,11 @@ def test_machine_code_belongs_to_all_sources_it_comes_from(tmp_path):
     found = []
     for text in ("def f(): return 1\n", "def f(): return 2\n", "def f(): return 1\n"):
         callee.write_text(text)
-        jit.digest_of.cache_clear()
-        found.append(jit.digest_of(tmp_path))
+        sources.digest_of.cache_clear()
+        found.append(sources.digest_of(tmp_path))
     assert found[0] == found[2] != found[1]
     kept = Path(characteristic.coefficients_from_matrices._cache.cache_path)
-    assert f"package-{jit.digest_of(jit.SOURCES)}" in kept.parts
+    assert f"package-{sources.digest_of(sources.SOURCES)}" in kept.parts
 
 
 TWINS = """

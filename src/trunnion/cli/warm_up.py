@@ -45,7 +45,7 @@ def _folder() -> Path:
     InputError : it cannot be written.
     """
     from trunnion.numerics.cache_folder import cache_folder
-    from trunnion.numerics.jit import SOURCES, digest_of
+    from trunnion.numerics.sources import SOURCES, digest_of
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the error says it

@@ -56,5 +56,5 @@ def _probe(folder: Path) -> None:
 
 @cache
 def _say_once(folder: str, why: str = "it cannot be written") -> None:
-    remark = f"the cache folder {folder} is not used ({why}), so every run compiles anew"
+    remark = f"the cache folder {folder} is not used ({why}), so every run compiles anew what did not come along"
     warnings.warn(InputRemark(f"{remark}; set TRUNNION_CACHE to a folder of yours"), stacklevel=2)

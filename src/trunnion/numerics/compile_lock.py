@@ -22,9 +22,10 @@ POLL = 0.05
 
 
 class CompileLock:
-    """The lock on the file ``path``; it is taken again without waiting by the process that holds it."""
+    """The lock on the file ``path``, None where nothing is kept; it is taken again without waiting by the process that
+    holds it."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path | None) -> None:
         self.path = path
         self._held: IO[bytes] | None = None
 
@@ -35,7 +36,7 @@ class CompileLock:
 
     def take(self) -> None:
         """Wait for the lock, or go on without it."""
-        if fcntl is None or self._held is not None:
+        if fcntl is None or self.path is None or self._held is not None:
             return
         try:
             file = self.path.open("ab")

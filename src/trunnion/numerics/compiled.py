@@ -16,12 +16,11 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-import numba
-import numpy as np
 import scipy
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.jit import keep_module_if_possible
+from trunnion.numerics.sources import VERSIONS
 
 
 @cache
@@ -38,8 +37,7 @@ def kernel_file(source: str, *used: str) -> ModuleType:
         sys.modules.setdefault("trunnion_kernels", ModuleType("trunnion_kernels"))
         sys.modules[f"trunnion_kernels.{stem}"] = kernel_file(other)
         whole += Path(other).read_text(encoding="utf-8")
-    versions = f"{numba.__version__} {np.__version__} {scipy.__version__} {sys.version}"
-    digest = hashlib.sha256((whole + versions).encode()).hexdigest()[:16]
+    digest = hashlib.sha256(f"{whole}{VERSIONS} {scipy.__version__}".encode()).hexdigest()[:16]
     return _module(Path(source).stem, text, digest)
 
 
@@ -55,6 +53,7 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
     module = ModuleType(full)
     sys.modules[full] = module
     exec(compile(source.replace("cache=True", "cache=False"), f"<{name}>", "exec"), vars(module))
+    keep_module_if_possible(module)
     return module
 
 

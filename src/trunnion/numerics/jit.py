@@ -8,33 +8,18 @@ cannot be written and a disk that is full stop nothing here: they cost the time 
 
 from __future__ import annotations
 
-import hashlib
-import sys
 from collections.abc import Callable
-from functools import cache as once
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 
 import numba
-import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from trunnion.numerics import shipped
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.compile_lock import CompileLock
-
-SOURCES = Path(__file__).parent
-"""The folder below which all functions decorated here stand."""
-
-
-@once
-def digest_of(folder: Path) -> str:
-    """A word for the sources below ``folder`` and for the versions that compile them."""
-    hashed = hashlib.sha256(f"{numba.__version__} {np.__version__} {sys.version}".encode())
-    for path in sorted(folder.rglob("*.py")):
-        hashed.update(path.relative_to(folder).as_posix().encode())
-        hashed.update(path.read_bytes())
-    return hashed.hexdigest()[:16]
+from trunnion.numerics.sources import SOURCES, digest_of
 
 
 def njit(
@@ -56,6 +41,8 @@ def njit(
         made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model, **options)(function)
         if folder is not None:
             _keep_in(str(folder), made)
+        if cache:
+            keep_if_possible(made)
         return made
 
     return decorate
@@ -70,20 +57,22 @@ def _keep_in(folder: str, function: Any) -> None:
         return
     finally:
         config.CACHE_DIR = before
-    keep_if_possible(function)
 
 
 def keep_if_possible(function: Any) -> None:
-    """Let one process compile ``function`` while others wait for it, and a failure to keep its machine code end in a
-    remark, not in an error."""
+    """Let ``function`` use machine code that came along, one process compile it while others wait, and a failure to keep
+    what it compiled end in a remark, not in an error."""
     kept: Any = getattr(function, "_cache", None)
     save, load = getattr(kept, "save_overload", None), getattr(kept, "load_overload", None)
-    if save is None or load is None or kept.cache_path is None:
+    if save is None or load is None:
         return
-    lock = CompileLock(Path(kept.cache_path) / f"{function.py_func.__module__}.{function.py_func.__qualname__}.lock")
+    name = f"{function.py_func.__module__}.{function.py_func.__qualname__}.lock"
+    lock = CompileLock(None if kept.cache_path is None else Path(kept.cache_path) / name)
 
     def load_overload(signature: Any, context: Any) -> Any:
         found = load(signature, context)
+        if found is None:
+            found = shipped.load(function, signature, context)
         if found is None:
             lock.take()
             found = load(signature, context)  # whoever held it may have kept it meanwhile
@@ -92,6 +81,7 @@ def keep_if_possible(function: Any) -> None:
         return found
 
     def save_overload(signature: Any, data: Any) -> None:
+        shipped.keep(function, signature, data)
         try:
             save(signature, data)
         except OSError as error:

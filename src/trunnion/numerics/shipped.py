@@ -1,0 +1,94 @@
+"""Machine code that came with the installation, for where the user's cache has none yet.
+
+A wheel may carry what compiled functions become on a processor that nearly all have (``hatch_build.py`` makes such a
+wheel). It is used where sources, Python, numba, platform and processor fit; where anything does not, or nothing came
+along, functions are compiled as ever. Nothing is written to it but while a wheel is built.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import platform
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import numpy as np
+from numba.core.compiler import CompileResult
+from numba.core.dispatcher import Dispatcher
+from numba.core.serialize import dumps
+
+from trunnion.numerics.sources import SOURCES, digest_of
+
+CAME_ALONG = SOURCES.parent / "kernels"
+"""Where an installation has the machine code of its wheel."""
+BUILD = "TRUNNION_SHIP_KERNELS"
+"""Environment variable: the folder in which machine code is gathered while a wheel is built."""
+PLAIN = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}.get(platform.machine(), "generic")
+"""The processor, as LLVM names it, that a wheel's machine code is compiled for."""
+NEEDED = {"x86-64-v3": ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")}.get(PLAIN, ())
+CONSTANTS = (bool, int, float, complex, str, bytes, type(None), np.ndarray, np.generic)
+
+
+@cache
+def shipped_folder() -> Path | None:
+    """The folder of machine code that fits this process; None where there is none, or the processor can do less."""
+    building = os.environ.get(BUILD)
+    folder = (Path(building) if building else CAME_ALONG) / f"{PLAIN}-{digest_of(SOURCES)}"
+    if building:
+        folder.mkdir(parents=True, exist_ok=True)
+    host = llvmlite.binding.get_host_cpu_features() if folder.is_dir() else {}
+    return folder if folder.is_dir() and all(host.get(feature) for feature in NEEDED) else None
+
+
+def load(function: Dispatcher, signature: Any, context: Any) -> Any:
+    """The machine code that came along of a compiled function for a signature, or None."""
+    folder = shipped_folder()
+    if folder is None or os.environ.get(BUILD):
+        return None
+    name = _name(function, signature)
+    try:
+        payload = None if name is None else pickle.loads((folder / name).read_bytes())
+    except (OSError, EOFError, pickle.UnpicklingError):  # it is not there, or not whole
+        return None
+    context.refresh()  # what the code is bound to is known only then
+    return None if payload is None else CompileResult._rebuild(context, *payload)
+
+
+def keep(function: Dispatcher, signature: Any, compiled: Any) -> None:
+    """Add machine code to the wheel that is being built, if one is."""
+    folder = shipped_folder() if os.environ.get(BUILD) else None
+    name = _name(function, signature) if folder is not None else None
+    if folder is None or name is None or compiled.library.has_dynamic_globals or compiled.lifted:
+        return
+    handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
+    with os.fdopen(handle, "wb") as stream:
+        stream.write(dumps(compiled._reduce()))
+    os.replace(temporary, folder / name)
+
+
+def _name(function: Dispatcher, signature: Any) -> str | None:
+    """The file of a function's machine code for a signature; None where it closes over more than constants and
+    functions."""
+    known = _identity(function)
+    return None if known is None else hashlib.sha256(f"{known} {signature}".encode()).hexdigest()[:32] + ".kernel"
+
+
+def _identity(function: Dispatcher) -> str | None:
+    """A function and what it closes over, the same wherever it is installed."""
+    plain = function.py_func
+    words = [plain.__module__, plain.__qualname__, plain.__code__.co_firstlineno]
+    words.append(hashlib.sha256(plain.__code__.co_code).hexdigest())
+    for cell in plain.__closure__ or ():
+        value = cell.cell_contents
+        if isinstance(value, Dispatcher):
+            words.append(_identity(value))
+        elif isinstance(value, CONSTANTS):
+            words.append(hashlib.sha256(pickle.dumps(value, 4)).hexdigest())
+        else:
+            words.append(None)
+    return None if None in words else "(" + " ".join(map(str, words)) + ")"
