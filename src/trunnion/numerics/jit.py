@@ -60,8 +60,8 @@ def _keep_in(folder: str, function: Any) -> None:
 
 
 def keep_if_possible(function: Any) -> None:
-    """Let ``function`` use machine code that came along, one process compile it while others wait, and a failure to keep
-    what it compiled end in a remark, not in an error."""
+    """Let ``function`` use machine code that came along, one process compile it while others wait, and a failure to
+    keep what it compiled end in a remark, not in an error."""
     kept: Any = getattr(function, "_cache", None)
     save, load = getattr(kept, "save_overload", None), getattr(kept, "load_overload", None)
     if save is None or load is None:

@@ -16,13 +16,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import llvmlite.binding
+import llvmlite.binding as llvm
 import numpy as np
-from numba.core.compiler import CompileResult
+from numba.core import compiler, serialize
 from numba.core.dispatcher import Dispatcher
-from numba.core.serialize import dumps
 
 from trunnion.numerics.sources import SOURCES, digest_of
+
+# Neither numba nor llvmlite states the types of these.
+COMPILED: Any = compiler.CompileResult
+DUMPS: Any = serialize.dumps
 
 CAME_ALONG = SOURCES.parent / "kernels"
 """Where an installation has the machine code of its wheel."""
@@ -41,7 +44,7 @@ def shipped_folder() -> Path | None:
     folder = (Path(building) if building else CAME_ALONG) / f"{PLAIN}-{digest_of(SOURCES)}"
     if building:
         folder.mkdir(parents=True, exist_ok=True)
-    host = llvmlite.binding.get_host_cpu_features() if folder.is_dir() else {}
+    host = llvm.get_host_cpu_features() if folder.is_dir() else {}
     return folder if folder.is_dir() and all(host.get(feature) for feature in NEEDED) else None
 
 
@@ -56,7 +59,7 @@ def load(function: Dispatcher, signature: Any, context: Any) -> Any:
     except (OSError, EOFError, pickle.UnpicklingError):  # it is not there, or not whole
         return None
     context.refresh()  # what the code is bound to is known only then
-    return None if payload is None else CompileResult._rebuild(context, *payload)
+    return None if payload is None else COMPILED._rebuild(context, *payload)
 
 
 def keep(function: Dispatcher, signature: Any, compiled: Any) -> None:
@@ -67,7 +70,7 @@ def keep(function: Dispatcher, signature: Any, compiled: Any) -> None:
         return
     handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
     with os.fdopen(handle, "wb") as stream:
-        stream.write(dumps(compiled._reduce()))
+        stream.write(DUMPS(compiled._reduce()))
     os.replace(temporary, folder / name)
 
 
