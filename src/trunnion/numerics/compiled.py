@@ -19,7 +19,7 @@ from types import ModuleType
 import scipy
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
-from trunnion.numerics.jit import keep_module_if_possible
+from trunnion.numerics.jit import Kept, NotKept, caches_of
 from trunnion.numerics.sources import VERSIONS
 
 
@@ -52,8 +52,8 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
             without_a_cache(error)
     module = ModuleType(full)
     sys.modules[full] = module
-    exec(compile(source.replace("cache=True", "cache=False"), f"<{name}>", "exec"), vars(module))
-    keep_module_if_possible(module)
+    with caches_of(NotKept):
+        exec(compile(source, f"<{name}>", "exec"), vars(module))
     return module
 
 
@@ -64,8 +64,8 @@ def _kept(path: Path, source: str, full: str) -> ModuleType:
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[full] = module
-    spec.loader.exec_module(module)
-    keep_module_if_possible(module)
+    with caches_of(Kept):
+        spec.loader.exec_module(module)
     return module
 
 

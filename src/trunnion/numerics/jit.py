@@ -8,18 +8,24 @@ cannot be written and a disk that is full stop nothing here: they cost the time 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from types import ModuleType
 from typing import Any, Literal
 
 import numba
-from numba.core.dispatcher import Dispatcher
+from numba.core import caching, ccallback, dispatcher
 
 from trunnion.numerics import shipped
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.compile_lock import CompileLock
 from trunnion.numerics.sources import SOURCES, digest_of
+
+# numba states no types of these.
+DECORATORS: tuple[Any, ...] = (dispatcher, ccallback)
+"""Where numba's decorators find the cache that they give a function."""
+CACHE: Any = caching.FunctionCache
+NO_CACHE: Any = caching.NullCache
 
 
 def njit(
@@ -39,61 +45,77 @@ def njit(
         folder = cache_folder(f"package-{digest_of(SOURCES)}") if cache else None
         options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} if inner else {}
         made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model, **options)(function)
-        if folder is not None:
-            _keep_in(str(folder), made)
         if cache:
-            keep_if_possible(made)
+            made._cache = _kept_in(folder, function)
         return made
 
     return decorate
 
 
-def _keep_in(folder: str, function: Any) -> None:
+def _kept_in(folder: Path | None, function: Callable[..., Any]) -> Any:
+    """The cache of a function: below ``folder``, or for this process alone."""
+    if folder is None:
+        return NotKept(function)
     config: Any = numba.config
-    before, config.CACHE_DIR = config.CACHE_DIR, folder
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
-        function.enable_caching()
+        return Kept(function)
     except RuntimeError:  # the folder went away since it was tried, or the source is no file
-        return
+        return NotKept(function)
     finally:
         config.CACHE_DIR = before
 
 
-def keep_if_possible(function: Any) -> None:
-    """Let ``function`` use machine code that came along, one process compile it while others wait, and a failure to
-    keep what it compiled end in a remark, not in an error."""
-    kept: Any = getattr(function, "_cache", None)
-    save, load = getattr(kept, "save_overload", None), getattr(kept, "load_overload", None)
-    if save is None or load is None:
-        return
-    name = f"{function.py_func.__module__}.{function.py_func.__qualname__}.lock"
-    lock = CompileLock(None if kept.cache_path is None else Path(kept.cache_path) / name)
+class Kept(CACHE):
+    """numba's cache of one function, which looks also at what came with the installation, lets one process compile
+    while others wait, and makes of a failure to keep what it compiled a remark, not an error."""
 
-    def load_overload(signature: Any, context: Any) -> Any:
-        found = load(signature, context)
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._lock = CompileLock(Path(self.cache_path) / f"{function.__module__}.{function.__qualname__}.lock")
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """The machine code for a signature, or None: then the lock is held until it is saved."""
+        found = super().load_overload(signature, context)
         if found is None:
-            found = shipped.load(function, signature, context)
+            found = shipped.load(self._py_func, signature, context)
         if found is None:
-            lock.take()
-            found = load(signature, context)  # whoever held it may have kept it meanwhile
+            self._lock.take()
+            found = super().load_overload(signature, context)  # whoever held it may have kept it meanwhile
             if found is not None:
-                lock.release()
+                self._lock.release()
         return found
 
-    def save_overload(signature: Any, data: Any) -> None:
-        shipped.keep(function, signature, data)
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep what was compiled, if there is room."""
+        shipped.keep(self._py_func, signature, compiled)
         try:
-            save(signature, data)
+            super().save_overload(signature, compiled)
         except OSError as error:
             without_a_cache(error)
         finally:
-            lock.release()
-
-    kept.load_overload, kept.save_overload = load_overload, save_overload
+            self._lock.release()
 
 
-def keep_module_if_possible(module: ModuleType) -> None:
-    """The same for all compiled functions of a module."""
-    for value in vars(module).values():
-        if isinstance(value, Dispatcher):
-            keep_if_possible(value)
+class NotKept(NO_CACHE):
+    """No cache of one function but what came with the installation."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """The machine code for a signature, or None."""
+        return shipped.load(self._function, signature, context)
+
+
+@contextmanager
+def caches_of(kind: type[Kept] | type[NotKept]) -> Iterator[None]:
+    """Within it numba's own decorators with ``cache=True`` give their functions caches of this kind."""
+    before = [module.FunctionCache for module in DECORATORS]
+    for module in DECORATORS:
+        module.FunctionCache = kind
+    try:
+        yield
+    finally:
+        for module, one in zip(DECORATORS, before, strict=True):
+            module.FunctionCache = one

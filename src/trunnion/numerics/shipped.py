@@ -48,7 +48,7 @@ def shipped_folder() -> Path | None:
     return folder if folder.is_dir() and all(host.get(feature) for feature in NEEDED) else None
 
 
-def load(function: Dispatcher, signature: Any, context: Any) -> Any:
+def load(function: Any, signature: Any, context: Any) -> Any:
     """The machine code that came along of a compiled function for a signature, or None."""
     folder = shipped_folder()
     if folder is None or os.environ.get(BUILD):
@@ -62,7 +62,7 @@ def load(function: Dispatcher, signature: Any, context: Any) -> Any:
     return None if payload is None else COMPILED._rebuild(context, *payload)
 
 
-def keep(function: Dispatcher, signature: Any, compiled: Any) -> None:
+def keep(function: Any, signature: Any, compiled: Any) -> None:
     """Add machine code to the wheel that is being built, if one is."""
     folder = shipped_folder() if os.environ.get(BUILD) else None
     name = _name(function, signature) if folder is not None else None
@@ -74,22 +74,21 @@ def keep(function: Dispatcher, signature: Any, compiled: Any) -> None:
     os.replace(temporary, folder / name)
 
 
-def _name(function: Dispatcher, signature: Any) -> str | None:
+def _name(function: Any, signature: Any) -> str | None:
     """The file of a function's machine code for a signature; None where it closes over more than constants and
     functions."""
     known = _identity(function)
     return None if known is None else hashlib.sha256(f"{known} {signature}".encode()).hexdigest()[:32] + ".kernel"
 
 
-def _identity(function: Dispatcher) -> str | None:
+def _identity(plain: Any) -> str | None:
     """A function and what it closes over, the same wherever it is installed."""
-    plain = function.py_func
     words = [plain.__module__, plain.__qualname__, plain.__code__.co_firstlineno]
     words.append(hashlib.sha256(plain.__code__.co_code).hexdigest())
     for cell in plain.__closure__ or ():
         value = cell.cell_contents
         if isinstance(value, Dispatcher):
-            words.append(_identity(value))
+            words.append(_identity(value.py_func))
         elif isinstance(value, CONSTANTS):
             words.append(hashlib.sha256(pickle.dumps(value, 4)).hexdigest())
         else:
