@@ -11,7 +11,11 @@ import two_shafts
 import trunnion as tn
 from trunnion.analyses.tongues.boundaries import boundary_functions
 from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.analyses.tongues.meetings import meetings
+from trunnion.analyses.tongues.region import patched
+from trunnion.analyses.tongues.rows import unstable_intervals
 from trunnion.analyses.tongues.series_roots import row_roots
+from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
@@ -138,6 +142,62 @@ def test_damping_as_the_second_axis() -> None:
     assert two_shafts.radius(one.tip[0], 0.3, zeta=0.001 * one.tip[1]) == pytest.approx(1.0, abs=1e-9)
 
 
+def long_line(seed: int, shafts: int, damping: float) -> tn.Driveline:
+    """A line of random shafts and disks with joints behind the first and the third; damping [s] times stiffness."""
+    rng, parts = np.random.default_rng(seed), [tn.ConstantSpeed()]
+    for i in range(shafts):
+        k, j = 1e4 * 10 ** rng.uniform(-0.3, 0.3), 0.1 * 10 ** rng.uniform(-0.3, 0.3)
+        parts += [tn.Shaft(stiffness=k, damping=damping * k), tn.Disk(inertia=j)]
+        if i in (0, 2):
+            parts.append(tn.HookeJoint(angle=0.02))
+    return tn.Driveline(parts)
+
+
+def row_of(line: tn.Driveline, low: float, high: float, angle: float) -> tuple[np.ndarray, np.ndarray]:
+    """Unstable intervals of speed (intervals, 2) at one angle of all joints, and a point inside each."""
+    task = task_of(line, ("speed", low, high), ("HookeJoint *.angle", 0.9 * angle, 1.1 * angle), None, True, "tongues")
+    region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, 2, lambda share: None)
+    assert not region.by_coefficients
+    row = unstable_intervals(region, task.family.to_patch(np.array([angle]), False))[0]
+    return region.in_x(row.low, row.high), np.sort(region.x(row.inside))
+
+
+@pytest.mark.parametrize(("seed", "shafts"), [(3, 5), (0, 4), (8, 6)])
+def test_long_lines_miss_no_resonance_of_first_order(seed: int, shafts: int) -> None:
+    """Undamped, every pair of modes opens a region at (ωᵢ + ωⱼ)/2, of width β² at a small angle β."""
+    angle, line = 0.02, long_line(seed, shafts, 0.0)
+    w = tn.natural_frequencies(line).frequency
+    low, high = 0.9 * w[0], 0.8 * w[-1]
+    intervals, inside = row_of(line, low, high, angle)
+    pairs = [(w[i] + w[j]) / 2 for i in range(shafts) for j in range(i, shafts)]
+    expected = [x for x in pairs if low * 1.001 < x < high * 0.999]
+    assert len(expected) >= 6
+    for x in expected:
+        apart = np.abs(intervals - x).max(axis=1)  # both edges lie close by
+        assert apart.min() < angle**2 * x, (x, intervals)
+    changed = line.replace_all({f"HookeJoint {k}": {"angle": angle} for k in (1, 2)})
+    for x in inside:
+        assert tn.stability(changed, float(x), tolerance=1e-13).spectral_radius > 1
+
+
+def test_meetings_of_multipliers_are_closed_in_on() -> None:
+    """Two that pass each other on the circle, one that meets its conjugate, and none that decays."""
+    theta = np.linspace(0.0, 3.0, 200)
+
+    def multipliers(at: np.ndarray, row: np.ndarray, decay: float = 1e-3) -> np.ndarray:
+        phases = np.stack([0.5 + 0.4 * at, 2.5 - 0.7 * at + 0.05 * at**2, 2.9 + 0.2 * at], axis=1)
+        half = np.exp(1j * phases - decay)
+        return np.concatenate([half, half.conj()], axis=1)
+
+    row, met = meetings(multipliers, theta, multipliers(theta, theta)[None])
+    one = np.roots([0.05, -1.1, 2.0]).min()
+    other, third = np.roots([0.05, -0.5, -0.4 - 0.0]), (np.pi - 2.9) / 0.2
+    assert not row.any() and np.abs(met - one).min() < 1e-12 and np.abs(met - third).min() < 1e-12
+    conjugates = [x for x in other.real if 0 < x < 3]
+    assert len(met) == 2 + len(conjugates)
+    assert not len(meetings(multipliers, theta, multipliers(theta, theta, 0.2)[None])[0])
+
+
 @pytest.mark.slow
 def test_more_than_three_unknowns_are_sampled() -> None:
     parts = [tn.ConstantSpeed()]
@@ -216,6 +276,12 @@ def test_bracketing() -> None:
         lambda x, k: np.sign(x - 0.3) * np.abs(x - 0.3) ** powers[k], np.full(4, -1.0), np.full(4, 2.0), 1e-12
     )
     assert zeros == pytest.approx(0.3, abs=1e-3) and zeros[[0, 3]] == pytest.approx(0.3, abs=1e-10)
+    # Flat on one side, as ρ − 1 without damping: the zero is where the sign changes, not where it is nearest to none.
+    flat = bracketed(
+        lambda x, k: np.where(x > 0.3, np.sqrt(np.abs(x - 0.3)), np.where(x < -0.5, -1e-300, -1e-12)),
+        np.full(1, -1.0), np.full(1, 2.0), 1e-12,
+    )  # fmt: skip
+    assert flat == pytest.approx(0.3, abs=1e-11)
 
 
 BAD = [

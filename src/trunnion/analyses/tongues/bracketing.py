@@ -26,17 +26,14 @@ def bracketed(
     c, fc = a.copy(), fa.copy()
     bound = np.broadcast_to(np.asarray(tolerance, dtype=float), a.shape)
     share = np.full(len(a), 0.5)
-    best, least = np.where(np.abs(fa) < np.abs(fb), a, b), np.minimum(np.abs(fa), np.abs(fb))
-    open_ = fa * fb < 0
+    open_ = np.sign(fa) * np.sign(fb) < 0  # products of small values vanish
     for _ in range(ROUNDS):
         which = np.flatnonzero(open_)
         if not len(which):
             break
         x = a[which] + share[which] * (b[which] - a[which])
         fx = function(x, which)
-        better = np.abs(fx) < least[which]
-        best[which[better]], least[which[better]] = x[better], np.abs(fx[better])
-        same = fx * fa[which] > 0
+        same = np.sign(fx) == np.sign(fa[which])
         c[which], fc[which] = np.where(same, a[which], b[which]), np.where(same, fa[which], fb[which])
         b[which], fb[which] = np.where(same, b[which], a[which]), np.where(same, fb[which], fa[which])
         a[which], fa[which] = x, fx
@@ -44,7 +41,8 @@ def bracketed(
         least_share = np.minimum(bound[which] / np.maximum(width, 1e-300), 0.5)
         open_[which] = (least_share < 0.5) & (fx != 0) & np.isfinite(fx)
         share[which] = np.clip(_step(a, b, c, fa, fb, fc, which), least_share, 1 - least_share)
-    return best
+    # Not the least value seen on the way: what is flat on one side, as ρ − 1 without damping, has that anywhere.
+    return np.where(~(np.abs(fb) < np.abs(fa)) & np.isfinite(fa), a, b)
 
 
 def _step(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, which: NDArray[np.intp]) -> Array:

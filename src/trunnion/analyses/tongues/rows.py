@@ -4,8 +4,8 @@ Up to three unknowns every change of stability is a zero of a boundary function,
 (``series_roots``). Between two of them the verdict does not change, so one point integrated by itself decides. Edges
 are then solved for with points of their own, so that they owe nothing to the patches.
 
-More unknowns are sampled: eigenvalues of interpolated matrices, denser where a local maximum of the radius comes near
-1.
+More unknowns are sampled, in two passes: by eigenvalues of interpolated matrices, denser where a local maximum of the
+radius comes near 1; and where two multipliers meet (``meetings``), however narrow the region there.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.boundaries import boundary_functions, degree
 from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.analyses.tongues.meetings import meetings
 from trunnion.analyses.tongues.region import Piece, Places, Region
 from trunnion.analyses.tongues.series_roots import row_roots
 
@@ -119,35 +120,53 @@ def _functions(undamped: bool):  # type: ignore[no-untyped-def]
 
 SAMPLES = 512
 """Points of a piece of a row at which eigenvalues are looked at, of lines of more than three unknowns."""
+BESIDE = np.pi / SAMPLES / 4
+"""Half of the stretch about a meeting of two multipliers that is looked at closely, in θ."""
 NEAR = 0.5
 """A local maximum of the radius is looked at closely where 1 − ρ there is below this share of its mean."""
 
 
 def _sampled(region: Region, piece: Piece, v: Array) -> tuple[Places, Array, Places, Array]:
     """The same from samples of the spectral radius: changes of sign of ρ − 1, and local maxima below it."""
-    m = 2 * region.family.size
     theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
-    basis = np.cos(np.arange(piece.series.shape[2])[:, None] * theta)
     rows, places, touched_rows, touched = [], [], [], []
     u = piece.u(theta)
-    for r, series in zip(piece.rows.tolist(), piece.series, strict=True):
-        matrices = (series @ basis).T.reshape(-1, m, m)
-        values = np.linalg.eigvals(matrices)
-        if region.family.set_aside:
-            keep = np.argsort(np.abs(values - 1), axis=1)[:, region.family.set_aside :]
-            values = np.take_along_axis(values, keep, axis=1)
+
+    def multipliers(at: Array, own: Places) -> NDArray[np.complex128]:
+        basis = np.cos(np.arange(piece.series.shape[2]) * at[:, None])
+        return _multipliers(region, np.einsum("pqj,pj->pq", piece.series[own], basis))
+
+    for r in range(len(piece.rows)):
+        values = multipliers(theta, np.full(len(theta), r))
         over = np.abs(values).max(axis=1) - 1
         changes = np.flatnonzero(over[:-1] * over[1:] < 0)
         places += ((u[changes] + u[changes + 1]) / 2).tolist()
-        rows += [r] * len(changes)
+        rows += [int(piece.rows[r])] * len(changes)
         top = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:])) + 1
         top = top[(over[top] < 0) & (-over[top] < NEAR * np.abs(over).mean())]
-        touched += [(u[k - 1], u[k + 1]) for k in top]
-        touched_rows += [r] * len(top)
+        stretches = [(u[k - 1], u[k + 1]) for k in top]
+        _, met = meetings(lambda at, own, r=r: multipliers(at, own + r), theta, values[None])  # type: ignore[misc]
+        at, reach = (
+            piece.u(met),
+            np.abs(piece.u(np.maximum(met - BESIDE, 0)) - piece.u(np.minimum(met + BESIDE, np.pi))),
+        )
+        stretches += zip(at - reach / 2, at + reach / 2, strict=True)
+        touched += stretches
+        touched_rows += [int(piece.rows[r])] * len(stretches)
     return (
         np.array(rows, dtype=np.intp), np.array(places),
         np.array(touched_rows, dtype=np.intp), np.array(touched).reshape(-1, 2),
     )  # fmt: skip
+
+
+def _multipliers(region: Region, entries: Array) -> NDArray[np.complex128]:
+    """Eigenvalues (points, m) of monodromy matrices by their entries (points, m²), those set aside left out."""
+    m = 2 * region.family.size
+    values = np.asarray(np.linalg.eigvals(entries.reshape(-1, m, m)), dtype=complex)
+    if region.family.set_aside:
+        keep = np.argsort(np.abs(values - 1), axis=1)[:, region.family.set_aside :]
+        values = np.take_along_axis(values, keep, axis=1)
+    return values
 
 
 def _settled(region: Region, v: Array, marks: _Marks) -> list[Row]:

@@ -129,7 +129,10 @@ def _search_words(region: Region, rows: int, step: float, unit: str) -> str:
     apart = f"{rows} rows, at most {step:.3g} {'' if unit == '1' else unit}".rstrip() + " apart,"
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
-        return f"{apart} were sampled: {few}, so narrow regions may be missing"
+        return (
+            f"{apart} were sampled ({few}), and looked at closely wherever two multipliers meet: both searches are "
+            "heuristics, so narrow regions may be missing"
+        )
     if region.uncovered:
         return f"{apart} were searched; {region.uncovered} parts of the box resisted and were sampled"
     return f"{apart} were searched completely; a region that lies wholly between two rows is not listed"
