@@ -106,3 +106,55 @@ def test_a_bent_free_line_is_judged():
     check = tn.assess(line, (100.0, 100.0)).check("max torque of tube")
     assert check.value == pytest.approx(tn.order_response(line, [100.0]).peak_torque[0, 1], rel=1e-9)
     assert np.isfinite(check.margin)
+
+
+def geared(error: float, teeth: tuple[int, int], angle: float) -> tn.Driveline:
+    """Free: motor, gear stage with a transmission error, joint, load."""
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=1.0, drive_share=1, name="motor", excitation=[{"order": 2, "amplitude": 5.0}]),
+            tn.Shaft(stiffness=2e4, damping=5.0, name="a"),
+            tn.Disk(inertia=0.1, name="pinion"),
+            tn.GearPair(
+                name="mesh", teeth_in=teeth[0], teeth_out=teeth[1], module=0.004, mesh_stiffness=5e8,
+                mesh_damping=2000.0, transmission_error=[{"order": 1, "amplitude": error}],
+            ),
+            tn.Disk(inertia=0.3, name="wheel"),
+            tn.HookeJoint(angle=angle, name="joint"),
+            tn.Shaft(stiffness=1e4, damping=5.0, name="b"),
+            tn.Disk(inertia=0.8, load_torque=100.0, name="load"),
+        ]
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.5])
+def test_a_transmission_error_counts_once(angle: float) -> None:
+    """Its order and its neighbours, of a line whose own motion may have so many harmonics itself."""
+    line = geared(1e-5, (12, 24), angle)
+    linear = tn.order_response(line, [60.0])
+    order, amplitude = tn.periodic_response(line, 60.0, compare=False).order_spectrum(14)
+    for k in (2, 10, 11, 12, 13, 14):
+        (true,) = amplitude[np.isclose(order, k), 1]
+        found = np.abs(linear.torque[0, np.isclose(linear.order, k), 1])
+        assert found.sum() == pytest.approx(true, rel=2e-3, abs=1e-4)
+
+
+def test_orders_of_teeth_without_a_common_divisor_are_those_of_the_mesh_and_the_joints() -> None:
+    """26/29 of the input behind the gear: orders m·26/29, and about 2 and the 13th of the mesh."""
+    line = geared(1e-5, (13, 29), 0.05)
+    found = tn.order_response(line, [60.0])
+    real = np.abs(found.torque[0, :, 1]) > 1e-6
+    for k in found.order[real]:
+        away = (k - np.array([0.0, 2.0, 13.0])) / (26 / 29)
+        assert np.abs(away - np.round(away)).min() < 1e-9 and abs(k) < 20
+    assert found.order[np.abs(found.torque[0, :, 1]).argmax()] == 13
+
+
+def test_a_transmission_error_makes_no_line_unstable() -> None:
+    """It is no part of the equations of disturbances; that it is not in the amplitudes is said."""
+    for teeth in ((12, 24), (13, 29)):
+        for angle in (0.05, 0.5):
+            quiet, loud = (tn.stability(geared(e, teeth, angle), 60.0) for e in (0.0, 1e-5))
+            assert loud.verdict is quiet.verdict
+            assert loud.spectral_radius == pytest.approx(quiet.spectral_radius, abs=1e-7)
+            assert "without what motor, mesh excite" in str(loud)

@@ -95,10 +95,12 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
 
 
 def quiet(line: Driveline) -> Driveline:
-    """``line`` without the excitations of its disks."""
+    """``line`` without its ``exciters``: excitations of disks and transmission errors."""
     for name, element in zip(line.names, line.elements, strict=True):
         if isinstance(element, Disk) and element.excitation:
             line = line.replace(name, excitation=None, firing_angles=None, misfiring=None)
+        if isinstance(element, GearPair) and element.transmission_error:
+            line = line.replace(name, transmission_error=())
     return line
 
 

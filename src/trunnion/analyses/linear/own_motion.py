@@ -1,8 +1,8 @@
 """A bent line that starts free, about its own periodic motion: the base of its stability.
 
 About the motion of rigid shafts at constant input speed, which is no motion of a free line, its rigid-body pair
-grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks are left out,
-which ``stability`` says.
+grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks and transmission errors, whose
+periods are others, are left out, which ``stability`` says.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class OwnMotion:
 
 
 def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -> OwnMotion:
-    """The periodic motion of a free line at mean input ``speed`` [rad/s], its disks not excited.
+    """The periodic motion of a free line at mean input ``speed`` [rad/s], without its exciters.
 
     ``tolerance`` : of its integration.
 

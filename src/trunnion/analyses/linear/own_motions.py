@@ -4,7 +4,8 @@
 
 Newton's method on the harmonics and the torque that drives beyond the balance of the loads, its slopes those of the
 compiled equations at samples of the motion. The mean deviation has no part of a turn of the whole line, which fixes the
-phase. Excitations of disks are left out, as in ``own_motion``, which finds one motion by shooting.
+phase. Excitations of disks and transmission errors are left out, as in ``own_motion``, which finds one motion by
+shooting.
 """
 
 from __future__ import annotations

@@ -245,7 +245,7 @@ def stability(
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
-        said = without_excitation(assembly, errors_counted=True)
+        said = without_excitation(assembly)
         return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = propagated(system, tolerance)

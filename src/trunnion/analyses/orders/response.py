@@ -107,11 +107,10 @@ def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderRe
     return _result(assembly, spectrum, lambda: failed, None)
 
 
-def without_excitation(assembly: Assembly, *, errors_counted: bool = False) -> tuple[Finding, ...]:
-    """What to say where joints and meshes are counted, transmission ``errors_counted`` too: what else excites it."""
+def without_excitation(assembly: Assembly) -> tuple[Finding, ...]:
+    """What to say where joints and varying meshes alone are counted: what else excites the line."""
     row = assembly.table(1)[0]
-    active = [e for e in exciters(assembly) if row[e.amplitude] and not (errors_counted and e.compliance >= 0)]
-    names = dict.fromkeys(e.element for e in active if not e.held)
+    names = dict.fromkeys(e.element for e in exciters(assembly) if row[e.amplitude] and not e.held)
     if not names:
         return ()
     return (
