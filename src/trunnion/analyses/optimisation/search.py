@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, differential_evolution, minimize
+from scipy.optimize import differential_evolution, minimize
 
 from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
 from trunnion.analyses.optimisation.aims import Answer, Question
@@ -119,14 +119,20 @@ class Search:
         generations = max(1, self.most // generation - 1)
         first = np.random.default_rng(self.seed).random((generation, size))
         first[0] = self.space.start
+        seen: list[float] = [np.inf]
         best: list[float] = []
 
-        def stale(intermediate_result: OptimizeResult) -> bool:
-            best.append(float(intermediate_result.fun))
+        def watched(shares: Array) -> float:
+            seen.append(function(shares))
+            return seen[-1]
+
+        # Older SciPy tells a callback the place alone, not how good it is.
+        def stale(place: Array, convergence: float) -> bool:
+            best.append(min(seen))
             return len(best) > STALE and best[-1 - STALE] - best[-1] < FALLS * abs(best[-1])
 
         differential_evolution(
-            function, [(0.0, 1.0)] * size, init=first, maxiter=generations, seed=self.seed, polish=False,
+            watched, [(0.0, 1.0)] * size, init=first, maxiter=generations, seed=self.seed, polish=False,
             tol=SETTLED, atol=1e-14, callback=stale,
         )  # fmt: skip
 
