@@ -162,6 +162,7 @@ def test_a_question_mark_within_the_address_is_read(look: Look) -> None:
     """It is allowed in a query, and some programs leave it as it is."""
     look.at("?view=motion&motion.what=what?&stability.x=?")
     look.page.locator("pre", has_text="periodic motion at 1500 rpm").wait_for()
+    assert look.page.locator("[role=alert]", has_text=re.compile("unexpected|error")).count() == 0
 
 
 @pytest.mark.parametrize(

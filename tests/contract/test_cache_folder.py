@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from compile_counter import COUNTER
 
 import trunnion
 
@@ -88,18 +89,10 @@ def test_machine_code_belongs_to_all_sources_it_comes_from(tmp_path):
     assert f"package-{sources.digest_of(sources.SOURCES)}" in kept.parts
 
 
-TWINS = """
-import sys, time
-from pathlib import Path
-from numba.core import event
-from trunnion.numerics.jit import njit
-
-class Heard(event.Listener):
-    compiled = 0
-    def on_start(self, event):
-        Heard.compiled += 1
-    def on_end(self, event):
-        pass
+TWINS = (
+    COUNTER
+    + """
+import time
 
 @njit()
 def area(x):
@@ -108,7 +101,6 @@ def area(x):
         total += x[i] * x[i]
     return total
 
-import numpy as np
 here = Path(sys.argv[1])
 (here / sys.argv[2]).touch()
 while not ((here / "one").exists() and (here / "two").exists()):
@@ -117,6 +109,7 @@ with event.install_listener("numba:compile", Heard()):
     assert area(np.ones(10)) == 10.0
 print(Heard.compiled)
 """
+)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks of this kind there: each compiles for itself")

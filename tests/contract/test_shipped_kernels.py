@@ -8,21 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from compile_counter import COUNTER
 
-STEP = """
-import sys
-from pathlib import Path
-import numpy as np
-from numba.core import event
+STEP = (
+    COUNTER
+    + """
 from trunnion.numerics import shipped
-from trunnion.numerics.jit import njit
-
-class Heard(event.Listener):
-    compiled = 0
-    def on_start(self, event):
-        Heard.compiled += 1
-    def on_end(self, event):
-        pass
 
 def times(factor):
     @njit()
@@ -42,6 +33,7 @@ shipped.NEEDED = tuple(needed.split())
 with event.install_listener("numba:compile", Heard()):
     print(times(int(factor))(np.ones(4)), Heard.compiled)
 """
+)
 
 
 def run(tmp_path: Path, *arguments: str, cache: str, **env: str) -> str:

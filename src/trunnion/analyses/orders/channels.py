@@ -76,3 +76,18 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
         if i >= 0:
             seen[..., places.joint_input.start + k] = relative[..., before] * x[..., i]
     return seen
+
+
+def channels_of_harmonics(
+    topo: Topology, x: Complex, h: NDArray[np.int64], times: int, ratio: Array, relative: Array
+) -> Complex:
+    """Channels (case, h, channel) without torque, of the harmonics x (case, h, n) of the unknowns at ``h`` (h,).
+
+    ratio and relative as of ``motion_channels``, at ``times`` samples of the period.
+    """
+    middle = int(h[len(h) // 2])
+    spectrum = np.zeros((len(x), times, x.shape[2]), dtype=complex)
+    spectrum[:, (h - middle) % times] = x
+    grid = np.fft.ifft(spectrum, axis=1) * times
+    seen = motion_channels(topo, grid, ratio, relative)
+    return np.asarray(np.fft.fft(seen, axis=1)[:, (h - middle) % times] / times)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.linear.own_motions import FEWEST, MOST, NEGLIGIBLE, Balance, FreeMotion
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
-from trunnion.analyses.orders.channels import channels_of, motion_channels
+from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.exciters import BaseOfExcitation, quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
@@ -180,12 +180,8 @@ def about(own: OwnBase, carrier: float, h: Integers, right: Complex) -> Complex:
 def seen_about(own: OwnBase, topo: Topology, h: Integers, x: Complex) -> Complex:
     """Channels (1, h, channel) without torque of X (h, n)."""
     times = 1 << int(np.ceil(np.log2(len(h) + len(own.tau))))
-    middle = int(h[len(h) // 2])
-    spectrum = np.zeros((1, times, x.shape[1]), dtype=complex)
-    spectrum[0, (h - middle) % times] = x
-    grid = np.fft.ifft(spectrum, axis=1) * times
-    channels = motion_channels(topo, grid, _finer(own.ratio, times)[None], _finer(own.relative, times)[None])
-    return np.asarray(np.fft.fft(channels, axis=1)[:, (h - middle) % times] / times)
+    ratio, relative = _finer(own.ratio, times)[None], _finer(own.relative, times)[None]
+    return channels_of_harmonics(topo, x[None], h, times, ratio, relative)
 
 
 def _finer(values: Array, times: int) -> Array:

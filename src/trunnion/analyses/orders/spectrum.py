@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
-from trunnion.analyses.orders.channels import channels_of, motion_channels
+from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
 from trunnion.analyses.orders.straight import straight_about_first, straight_response
@@ -31,7 +31,7 @@ from trunnion.equations.exciters import (
 )
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent
-from trunnion.equations.topology import Topology, require_period
+from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
@@ -282,7 +282,7 @@ class _Case:
             right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
             least = np.maximum(least, 1e-6 * np.abs(nodes.everywhere(right)).max(axis=(1, 2)))
             x = blocks.solve(nodes, carrier, h, rim, right)
-            seen = _seen(topo, x, h, times, ratio, relative)
+            seen = channels_of_harmonics(topo, x, h, times, ratio, relative)
             seen[..., places.twist] += nodes.everywhere(error)
             self._add_torque(seen, every, nodes.everywhere(nu))
             self._add_waves(seen, every, h, matrices.wave[alike], own=group.own)
@@ -416,16 +416,6 @@ class _Case:
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
                 total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
-
-
-def _seen(topo: Topology, x: Complex, h: Integers, times: int, ratio: Array, relative: Array) -> Complex:
-    """Channels (case, h, channel) without torque, of the unknowns' harmonics x (case, h, n)."""
-    middle = int(h[len(h) // 2])
-    spectrum = np.zeros((len(x), times, x.shape[2]), dtype=complex)
-    spectrum[:, (h - middle) % times] = x
-    grid = np.fft.ifft(spectrum, axis=1) * times
-    seen = motion_channels(topo, grid, ratio, relative)
-    return np.asarray(np.fft.fft(seen, axis=1)[:, (h - middle) % times] / times)
 
 
 def _loss_matrix(assembly: Assembly, co: LineCoefficients) -> Array:

@@ -20,8 +20,6 @@ MOST_SWEEPS = 30
 """Steps for one eigenvalue after which a matrix is given up."""
 STUCK = 10
 """Steps after which shifts of another kind are tried once."""
-EPS = 30
-"""Steps for one pair of eigenvalues after which a matrix is given up."""
 EPS = 2.2e-16
 EXACT = {"contract", "nsz"}
 """Liberties of the compiler that leave NaN what it is."""
@@ -225,25 +223,6 @@ def _sweep(h, size, first, last, low, high, work):
             i = k + 1 + m
             if i <= last:
                 store(work, m * LANES, load(h, (i * size + k) * LANES, zero))
-
-
-@njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
-def _last_pair(h, size, last, pair):
-    """Eigenvalues of the last two rows: real and imaginary part of one, then of the other."""
-    for l in range(LANES):
-        p, q = h[((last - 1) * size + last - 1) * LANES + l], h[((last - 1) * size + last) * LANES + l]
-        r, s = h[(last * size + last - 1) * LANES + l], h[(last * size + last) * LANES + l]
-        mean, half = (p + s) / 2, (p - s) / 2
-        inside = half * half + q * r
-        root = np.sqrt(abs(inside))
-        real = inside >= 0.0
-        # The larger one without cancellation, the other from the product.
-        large = mean + (root if mean >= 0.0 else -root)
-        small = (p * s - q * r) / large if large != 0.0 else 0.0
-        pair[l] = large if real else mean
-        pair[LANES + l] = 0.0 if real else root
-        pair[2 * LANES + l] = small if real else mean
-        pair[3 * LANES + l] = 0.0 if real else -root
 
 
 @njit(nogil=True, error_model="numpy")
