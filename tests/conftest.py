@@ -25,7 +25,6 @@ STUDIES = {
     "test_killed_and_full.py": "14 commands killed at 30 moments and on disks of 10 sizes",
     "test_long_lines.py": "250 disks",
     "test_mutated_files.py": "20 000 mutated files",
-    "test_order_response.py": "100 lines against their nonlinear motion",
     "test_phase_axes.py": "500 points on each of 20 charts",
     "test_resonance_names.py": "2000 unstable points",
 }

@@ -1,10 +1,10 @@
-"""Linear beside nonlinear response: the law of their difference, and what is said where they part."""
+"""Linear beside nonlinear response: closed forms, and what is said where they part (the law of their difference:
+``test_linear_limit.py``)."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_order_response import jointed
 
 import trunnion as tn
 
@@ -20,19 +20,6 @@ def shaken(spring, amplitude=20.0, order=2.0, phase=0.7, drive=None):
             tn.Disk(name="load", inertia=0.5, excitation=[{"order": order, "amplitude": amplitude, "phase": phase}]),
         ]
     )
-
-
-@pytest.mark.parametrize("seed", [0, 1, 3, 5])
-def test_the_difference_falls_with_the_square(seed):
-    """Excitations fall with the scale and joint angles with its root, so what they force falls with the scale, and
-    the difference relative to it as well: its square falls with the square."""
-    speed = float(np.random.default_rng(1000 + seed).uniform(25, 60))
-    scales = (1 / 256, 1 / 4096)
-    checks = [tn.linearity_check(jointed(seed, scale), speed, tolerance=1e-13) for scale in scales]
-    absolute = [check.difference.max() for check in checks]
-    assert 1.9 < np.log(absolute[0] / absolute[1]) / np.log(16) < 2.1
-    assert all(check.holds for check in checks)
-    assert checks[1].departure < checks[0].departure / 10
 
 
 def test_a_straight_line_is_the_closed_form_in_both_with_phases():

@@ -38,7 +38,7 @@ class Exciter:
     the packed column ``frequency`` (−1 otherwise); ``own_order`` counts per turn of the disk. ``station`` is where a
     torque acts, ``compliance`` the mesh of a transmission error; the other is −1. ``held`` torques act on a rotation
     that a ConstantSpeed prescribes, and do nothing. ``amplitude`` and ``phase`` are packed columns, ``number`` counts
-    the harmonics of a disk from 1.
+    the harmonics of the disk from 1 that is element ``place`` of the line.
     """
 
     element: str
@@ -52,6 +52,7 @@ class Exciter:
     over: float = 1.0
     held: bool = False
     number: int = 0
+    place: int = -1
 
     @property
     def in_time(self) -> bool:
@@ -79,6 +80,7 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
                     column(place, f"excitation {h} frequency"),
                     station=s,
                     number=h,
+                    place=place,
                     held=held,
                 )
             )
@@ -111,7 +113,9 @@ def _size_of(harmonic: Excitation) -> str:
 def size(assembly: Assembly, exciter: Exciter, table: Array) -> Complex:
     """A e^{i phase} of an exciter, (case,): torque [N m], or transmission error as a twist [rad]."""
     if exciter.station >= 0:
-        return harmonic_torque(assembly.packed, assembly.topology, exciter.station, exciter.number, table)
+        return harmonic_torque(
+            assembly.packed, assembly.topology, exciter.station, exciter.place, exciter.number, table
+        )
     phase = table[:, exciter.phase]
     return np.asarray(exciter.over * table[:, exciter.amplitude] * np.exp(1j * phase))
 

@@ -21,15 +21,16 @@ BEYOND = 1e-9
 """Share by which a speed may lie beyond the end of a table, as rounding."""
 
 
-def harmonic_torque(packed: PackedLine, topo: Topology, station: int, number: int, table: Array) -> Complex:
-    """A e^{i phase} (case,) [N m] of the harmonic ``number`` (from 1) of the disk at ``station``, all its cylinders
-    together, at every row of packed numbers ``table`` (case, column), whose first one is the input speed.
+def harmonic_torque(packed: PackedLine, topo: Topology, station: int, place: int, number: int, table: Array) -> Complex:
+    """A e^{i phase} (case,) [N m] of the harmonic ``number`` (from 1) of a disk, all its cylinders together, at every
+    row of packed numbers ``table`` (case, column), whose first one is the input speed.
+
+    The disk is element ``place`` and stands at ``station``, where others may be rigidly joined to it.
 
     Raises
     ------
     InputError : a speed or a torque beyond the ends of a table.
     """
-    place = next(element for s, element in topo.disks if s == station)
     disk = packed.line.elements[place]
     assert isinstance(disk, Disk)
     harmonic = disk.excitation[number - 1]

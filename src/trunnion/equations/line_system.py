@@ -228,7 +228,7 @@ class LineSystem:
             element = assembly.line.elements[i]
             for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
                 torque = harmonic_torque(
-                    assembly.packed, topo, s, h, _at(course, row, harmonic, assembly.line.names[i])
+                    assembly.packed, topo, s, i, h, _at(course, row, harmonic, assembly.line.names[i])
                 )
                 amplitude, angle = float(np.abs(torque[0])), float(np.angle(torque[0]))
                 place = column(i, f"excitation {h} frequency")

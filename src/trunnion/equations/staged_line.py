@@ -346,7 +346,7 @@ class _Builder:
         for station, i in self.topo.disks:
             element, mean = self.assembly.line.elements[i], float(self.topo.speed_ratio[station])
             for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
-                torque = harmonic_torque(self.assembly.packed, self.topo, station, h, self.row[None])[0]
+                torque = harmonic_torque(self.assembly.packed, self.topo, station, i, h, self.row[None])[0]
                 push = self._push(station) * float(np.sign(mean)) * torque
                 # By order at the mean rotation: the torque does not follow the deviation of its own disk.
                 cycles = abs(mean) * (harmonic.order or 0.0)
