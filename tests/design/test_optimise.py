@@ -107,6 +107,24 @@ def test_den_hartogs_damper():
     assert best.aim[0] == pytest.approx(exact.fun, rel=1e-5)
 
 
+def test_a_load_case_that_binds_only_where_the_search_ends_is_taken_in(monkeypatch):
+    cases = [tn.LoadCase(name="light", loads={"main": 1.0}), tn.LoadCase(name="heavy", loads={"main": 30.0})]
+    line = tn.Driveline(damped().elements, operation=tn.Operation(load_cases=cases))
+    free, span = {"absorber.damping": (0.5, 10.0)}, (0.6 * W, 1.4 * W)
+    tried = []
+
+    def light_alone(*_):
+        tried.append(True)
+        return frozenset({"light"})
+
+    monkeypatch.setattr("trunnion.analyses.optimisation.optimise._near_cases", light_alone)
+    best = tn.optimise(line, free, "peak torque of spring", span, checks=False, designs=20)
+    peaks = {name: tn.order_response(best.line.with_load(name), np.linspace(*span, 2001)).peak_torque[:, 0].max()
+             for name in ("light", "heavy")}  # fmt: skip
+    assert tried and peaks["heavy"] > 28.0 + peaks["light"]
+    assert best.aim[0] == pytest.approx(peaks["heavy"], rel=1e-4)
+
+
 @pytest.mark.slow
 def test_two_aims_that_conflict_give_a_front():
     aims = ["peak torque of spring", "peak torque of absorber"]

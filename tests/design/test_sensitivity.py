@@ -189,11 +189,15 @@ def test_torques_follow_every_parameter_as_differences_do(name):
     assert tried >= 8
 
 
-@pytest.mark.parametrize("damping", [2.0, 1e-2, 1e-3])
-def test_slopes_at_a_sharp_resonance_by_hand(damping):
-    """|T| = F |p| J₂/|J₁J₂ω² − p(J₁ + J₂)|, p = k + iωc, at 3e-6 beside its peak: steps that follow it are tiny."""
+@pytest.mark.parametrize(
+    "damping, beside", [(2.0, 3e-6), (1e-2, 3e-6), (1e-3, 3e-6), (5e-3, -5e-4), (2e-4, 2e-4), (1e-3, -2.5e-4)]
+)
+def test_slopes_at_a_sharp_resonance_by_hand(damping, beside):
+    """|T| = F |p| J₂/|J₁J₂ω² − p(J₁ + J₂)|, p = k + iωc, beside its peak: at 3e-6 steps that follow it are tiny;
+    further out damping turns the response rather than changing its size, and rounding is a larger part of its slope.
+    """
     k, j1, j2, force = 1e4, 0.2, 0.8, 100.0
-    speed = np.sqrt(k * (1 / j1 + 1 / j2)) / 2 * (1 + 3e-6)
+    speed = np.sqrt(k * (1 / j1 + 1 / j2)) / 2 * (1 + beside)
     engine = tn.Disk(inertia=j1, excitation=[{"order": 2, "amplitude": force}], name="engine")
     shaft = tn.Shaft(stiffness=k, damping=damping, name="shaft")
     line = tn.Driveline(
@@ -217,7 +221,9 @@ def test_slopes_at_a_sharp_resonance_by_hand(damping):
         assert of_torque[path] == pytest.approx(exact, rel=2e-8), path
         assert of_check[path] == pytest.approx(exact, rel=2e-8), path
         place = found.parameters.index(path)
-        assert abs(found.derivative[0, place] - exact) <= found.error[0, place] + 1e-12 * abs(exact)
+        for q in [i for i, one in enumerate(found.quantities) if one.kind == "torque" or one.name == check]:
+            off, error = abs(found.derivative[q, place] - exact), found.error[q, place]
+            assert off <= error + 1e-12 * abs(exact) and error <= 1e-6 * abs(exact), (path, q)
 
 
 def test_a_peak_on_both_sides_of_zero_has_a_kink():

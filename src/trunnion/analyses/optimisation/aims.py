@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, nan
 
 import numpy as np
@@ -45,6 +45,21 @@ class Aim:
         return self.name == SPARE or self.name.startswith(MARGIN)
 
     @property
+    def of_torque(self) -> bool:
+        """Whether it is a spring's torque."""
+        return self.own is None and self.name.startswith(TORQUES)
+
+    @property
+    def word(self) -> str:
+        """ "peak" or "vibratory", of a torque."""
+        return self.name.partition(" torque of ")[0]
+
+    @property
+    def spring(self) -> str:
+        """Whose torque."""
+        return self.name.partition(" torque of ")[2]
+
+    @property
     def over_range(self) -> bool:
         """Whether it needs a range of speeds."""
         return self.own is None and self.name != IRREGULARITY
@@ -52,14 +67,15 @@ class Aim:
 
 @dataclass(frozen=True)
 class Question:
-    """What every design is asked: aims, the range of speeds [rad/s] or None, and the checks that must hold (None:
-    every limit and rating; empty: none)."""
+    """What every design is asked: aims, the range of speeds [rad/s] or None, the checks that must hold (None: every
+    limit and rating; empty: none), and the names of the load cases that aims look at (None: all)."""
 
     aims: tuple[Aim, ...]
     speeds: tuple[float, float] | None
     load_case: str | None
     unit: str
     held: frozenset[str] | None
+    cases: frozenset[str] | None = None
 
     @property
     def checking(self) -> bool:
@@ -86,12 +102,29 @@ class Question:
         subject = None
         if self.checking or any(aim.over_range for aim in self.aims):
             subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
+            if self.cases is not None:
+                subject = replace(subject, cases=tuple(c for c in subject.cases if c.name in self.cases))
         checks = checks_of(subject) if subject is not None and self.checking else ()
         values = tuple(_value(aim, line, subject, checks) for aim in self.aims)
         judged = [c for c in checks if self._must_hold(c) and c.status in (Status.SATISFIED, Status.EXCEEDED)]
         broken = [c for c in judged if c.status is Status.EXCEEDED]
         violation = sum(min(-c.spare, WORST) for c in broken)
         return Answer(values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf))
+
+    @property
+    def of_torques(self) -> bool:
+        """Whether nothing but torques is asked for, of which the load cases' largest counts."""
+        return not self.checking and all(aim.of_torque or not aim.over_range for aim in self.aims)
+
+    def near_cases(self, line: Driveline, points: int = POINTS) -> frozenset[str]:
+        """Names of the load cases whose torques come near the largest, by speeds of the grid; none where nothing can
+        be computed."""
+        try:
+            subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
+            torques = [_coarse(aim, subject) for aim in self.aims if aim.of_torque]
+        except (InputError, ComputationError):
+            return frozenset()
+        return frozenset(case.name for found in torques for case, _, value in found if value >= NEAR * _largest(found))
 
     def _must_hold(self, check: Check) -> bool:
         return not check.guideline if self.held is None else check.name in self.held
@@ -159,16 +192,24 @@ def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[
         return max(found)[0] if found else nan
     if aim.judged:
         return min(_margins(aim, checks), default=nan)
-    word, _, spring = aim.name.partition(" torque of ")
+    torques = _coarse(aim, subject)
+    # Another case's peaks between two speeds of the grid are no larger than those that already show.
+    near = [one for one in torques if one[2] >= NEAR * _largest(torques)]
+    return max((exact_torque(case, aim.word, place)[0] for case, place, _ in near), default=nan)
+
+
+def _coarse(aim: Aim, subject: Subject) -> list[tuple[Case, int, float]]:
+    """Load cases that have a response, the place of the aim's spring, and its largest torque on the grid [N m]."""
     on_threads(Case.respond, subject.cases, os.cpu_count() or 1)
     cases = [case for case in subject.cases if case.response is not None]
     if not cases:
         order_response(subject.cases[0].assembly, subject.cases[0].speeds)  # raises what refuses it
-    places = [(case, shaft_names(case.assembly).index(spring)) for case in cases]
-    coarse = [largest_torque(case, word, place)[0] for case, place in places]
-    # Another case's peaks between two speeds of the grid are no larger than those that already show.
-    near = [one for one, value in zip(places, coarse, strict=True) if value >= NEAR * max(coarse)]
-    return max((exact_torque(case, word, place)[0] for case, place in near), default=nan)
+    places = [(case, shaft_names(case.assembly).index(aim.spring)) for case in cases]
+    return [(case, place, largest_torque(case, aim.word, place)[0]) for case, place in places]
+
+
+def _largest(torques: Iterable[tuple[Case, int, float]]) -> float:
+    return max((value for _, _, value in torques), default=nan)
 
 
 def _margins(aim: Aim, checks: Iterable[Check]) -> Iterator[float]:

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import assess, subject_of
+from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
 from trunnion.analyses.assessment.result import Assessment
-from trunnion.analyses.optimisation.aims import Aim, OwnAim, Question, aims_of
+from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, aims_of
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
 from trunnion.analyses.optimisation.space import Space
@@ -25,6 +26,10 @@ POINTS = 21
 """Points of a front at most."""
 AT_BOUND = 1e-4
 """Share of the bounds nearer to one of which a number stands at it."""
+ALIKE = 1e-9
+"""Share by which torques under all load cases may differ from those under the cases that were searched."""
+LOOKS = 4
+"""Designs that tell which load cases come near the largest torque."""
 DESIGNS = 600
 """Designs of the search from everywhere; polishing adds to them."""
 
@@ -128,15 +133,43 @@ def _searched(
     """
     aims = replace(question, held=frozenset())
     before = 0
-    if question.checking and not aims.checking:
-        search = Search(space, aims, most, seed, progress)
-        found, best = _found(search)
-        before = len(search.tried)
-        if not any(question.answer(_there(space, one)).violation for one in found):
+    if not aims.checking:
+        found, best, before = _by_aims(space, aims, most, seed, progress)
+        if not question.checking or not any(question.answer(_there(space, one)).violation for one in found):
             return found, best, before
     search = Search(space, question, most, seed, progress)
     found, best = _found(search)
     return found, best, before + len(search.tried)
+
+
+def _by_aims(
+    space: Space, question: Question, most: int, seed: int, progress: Callable[[float], None] | None
+) -> tuple[list[Tried], Tried, int]:
+    """The same without checks. Of torques the load cases that come near the largest are searched alone; where another
+    one turns out to bind, it is taken in and the search begins anew."""
+    cases = _near_cases(space, question, seed) if question.of_torques else None
+    before = 0
+    while True:
+        search = Search(space, replace(question, cases=cases or None), most, seed, progress)
+        found, best = _found(search)
+        before += len(search.tried)
+        if not cases:
+            return found, best, before
+        other = [line for one in found if _differs(question.answer(line := _there(space, one)), one.answer)]
+        if not other:
+            return found, best, before
+        cases |= frozenset().union(*(question.near_cases(line) for line in other))
+
+
+def _differs(all_cases: Answer, some: Answer) -> bool:
+    return not np.allclose(all_cases.values, some.values, rtol=ALIKE, atol=0.0)
+
+
+def _near_cases(space: Space, question: Question, seed: int) -> frozenset[str]:
+    shares = np.random.default_rng(seed).random((LOOKS, len(space.free)))
+    shares[0] = space.start
+    lines = [line for one in shares if (line := space.line(one)) is not None]
+    return frozenset[str]().union(*(question.near_cases(line, QUICK_POINTS) for line in lines))
 
 
 def _there(space: Space, one: Tried) -> Driveline:

@@ -25,10 +25,10 @@ NEAR = 0.03
 """Margin of a check within which the coarse grid of the search may err: there the full one decides."""
 POPULATION = 8
 """Designs of one generation, per free number."""
-SIMPLEX = (0.05, 0.002)
+SIMPLEX = (0.05, 0.005)
 """Sizes of simplices, as shares of the bounds, from which the best design is improved in turn."""
-CLOSE, ROUGH = (1e-9, 1e-11), 1e-2
-"""Where the last simplex ends, as shares of the bounds and of the merit; the one before, as shares of itself."""
+CLOSE, ROUGH = (1e-5, 1e-9), (0.1, 0.01)
+"""Where the last simplex ends, as shares of the bounds and of the merit; the one before, of its size and the merit."""
 POLISH = 60
 """Designs of one polishing, per free number; between the ends of a front a third of that."""
 SETTLED = 1e-3
@@ -43,6 +43,10 @@ BESIDE = 1e-3
 """Weight of the sum of the aims beside the larger of them, so that no end of a front is weakly dominated."""
 
 Merit = Callable[[Array], float]
+
+
+class _Known(Exception):
+    """A simplex came to where an earlier one ended."""
 
 
 @dataclass(frozen=True)
@@ -100,18 +104,29 @@ class Search:
         function = self._of(merit)
         for place, size in enumerate(sizes):
             ordered = sorted(self.tried.values(), key=lambda one: function(one.shares))
+            ends: list[Array] = []
             for start in _apart(ordered, VALLEYS if not place and len(sizes) > 1 else 1):
-                self._simplex(function, start.shares, size, most, last=size == sizes[-1])
+                self._simplex(function, start.shares, size, most, ends, last=size == sizes[-1])
         return min(self.tried.values(), key=lambda one: function(one.shares))
 
-    def _simplex(self, function: Merit, start: Array, size: float, most: int, *, last: bool) -> None:
+    def _simplex(self, function: Merit, start: Array, size: float, most: int, ends: list[Array], *, last: bool) -> None:
+        """Improve one design; where it comes to what an earlier simplex ended at, that one has done the work."""
         corners = np.array([start, *(_moved(start, i, size) for i in range(len(start)))])
-        near, close = CLOSE if last else (ROUGH * size, ROUGH)
-        minimize(
-            function, start, method="Nelder-Mead", bounds=[(0.0, 1.0)] * len(start),
-            options={"initial_simplex": corners, "maxfev": most * len(start), "xatol": near,
-                     "fatol": close * abs(function(start))},
-        )  # fmt: skip
+        near, close = CLOSE if last else (ROUGH[0] * size, ROUGH[1])
+
+        def stop_at_known(place: Array) -> None:
+            if any(np.abs(place - end).max() < size for end in ends):
+                raise _Known
+
+        try:
+            found = minimize(
+                function, start, method="Nelder-Mead", bounds=[(0.0, 1.0)] * len(start), callback=stop_at_known,
+                options={"initial_simplex": corners, "maxfev": most * len(start), "xatol": near,
+                         "fatol": close * abs(function(start))},
+            )  # fmt: skip
+            ends.append(np.array(found.x))
+        except _Known:
+            pass
 
     def _evolved(self, function: Merit) -> None:
         size = len(self.space.free)

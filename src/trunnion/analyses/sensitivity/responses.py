@@ -37,14 +37,24 @@ UNSURE = 1e-8
 ROUNDING = 1e-15
 """Relative error of numbers and of what is computed from them."""
 FINER = (1 / 50, 1 / 2500)
+LINEAR_KEYS = ("damping", "mesh_damping", "relative_damping", "loss_factor", "damping_ratio")
+"""Numbers in which the equations are linear, so that any step gives their slope; a wide one keeps what little damping
+does to a stiff spring's equations above rounding."""
+WIDE_STEP = 0.25
+FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+"""Fourth difference: nothing of smooth parts is left in it, so it shows what rounding does to a slope."""
 
 
 @dataclass(frozen=True)
 class SpectrumSlope:
-    """The response at one speed, and how every part of it changes along one direction, per share of its size."""
+    """The response at one speed, and how every part of it changes along one direction, per share of its size.
+
+    noise: what rounding may change of ``change``, as a share of the response.
+    """
 
     here: OrderSpectrum
     change: dict[str, NDArray[Any]]
+    noise: float
 
     def moved(self, share: float) -> OrderSpectrum:
         """The response after a step of so many shares, to first order."""
@@ -58,15 +68,7 @@ class SpectrumSlope:
     @cached_property
     def pace(self) -> float:
         """How fast the response changes, as shares of itself per share of the direction's size."""
-        places, fastest = self.here.channels, 0.0
-        for kind in (places.twist, places.torque, places.deviation):
-            size = np.abs(self.here.amplitude[..., kind]).sum(axis=1) + np.abs(self.here.mean[:, kind])
-            change = np.abs(self.change["amplitude"][..., kind]).sum(axis=1) + np.abs(self.change["mean"][:, kind])
-            floor = FAINT * size.max(initial=0.0)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                paces = change / np.maximum(size, floor)
-            fastest = max(fastest, float(np.nan_to_num(paces, posinf=0.0).max(initial=0.0)))
-        return fastest
+        return _share(self.here, self.change["amplitude"], self.change["mean"])
 
     @property
     def step(self) -> float:
@@ -77,7 +79,8 @@ class SpectrumSlope:
         """Derivatives and errors of ``values(share)``, read from what is ``moved`` by the share.
 
         Where another peak becomes the largest within the steps, finer ones settle on which side of that kink the line
-        is. Rounding of the numbers themselves moves a derivative as it moves the response, by the largest ``pace``.
+        is. Rounding of the numbers themselves moves the response, and its change with it, by the largest ``pace``:
+        where a derivative is small because the change is at right angles to the response, that is more than its share.
         """
         here, found = values(0.0), slope(values, self.step)
         if here is None or found is None:
@@ -91,7 +94,8 @@ class SpectrumSlope:
             if closer is not None:
                 better = closer[1] < 0.1 * found[1]
                 found = np.where(better, closer[0], found[0]), np.where(better, closer[1], found[1])
-        return found[0], found[1] + ROUNDING * pace * np.abs(np.nan_to_num(found[0]))
+        rounding = ROUNDING * pace * np.maximum(np.abs(np.nan_to_num(found[0])), self.pace * np.abs(here))
+        return found[0], found[1] + rounding + self.noise * np.abs(here)
 
 
 def solved_exactly(assembly: Assembly) -> bool:
@@ -105,7 +109,9 @@ def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> Spectru
     """
     assert solved_exactly(near.assembly)
     row = near.row(speed)
-    table = np.concatenate([row, near.rows(row, one, SMOOTH_STEP * CENTRAL)])
+    keys = {near.assembly.packed.labels[i].rpartition(".")[2] for i in one.columns.index}
+    step = WIDE_STEP if keys <= set(LINEAR_KEYS) else SMOOTH_STEP
+    table = np.concatenate([row, near.rows(row, one, step * CENTRAL)])
     table[:, 0] = speed
     try:
         require_steady_base(near.assembly, table)
@@ -116,5 +122,21 @@ def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> Spectru
     whole = {key: np.broadcast_to(part, (len(table), *part.shape[1:])) for key, part in parts.items()}
     first: dict[str, Any] = {key: part[:1] for key, part in whole.items()}
     here = replace(found, speed=found.speed[:1], cut_off=found.cut_off[:1], **first)
-    change = {key: central(part[1:], SMOOTH_STEP)[None] for key, part in whole.items()}
-    return SpectrumSlope(here, change)
+    change = {key: central(part[1:], step)[None] for key, part in whole.items()}
+    rough = {key: np.tensordot(FOURTH, whole[key][[1, 2, 0, 3, 4]], 1)[None] / step for key in ("amplitude", "mean")}
+    found = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
+    # Where the equations are not linear in a number, the fourth difference holds more than rounding.
+    return replace(found, noise=min(found.noise, ROUNDING * found.pace / step)) if step == SMOOTH_STEP else found
+
+
+def _share(here: OrderSpectrum, amplitude: NDArray[Any], mean: Array) -> float:
+    """The largest share of their own kind's size by which changes of amplitudes and means change a channel."""
+    places, largest = here.channels, 0.0
+    for kind in (places.twist, places.torque, places.deviation):
+        size = np.abs(here.amplitude[..., kind]).sum(axis=1) + np.abs(here.mean[:, kind])
+        change = np.abs(amplitude[..., kind]).sum(axis=1) + np.abs(mean[:, kind])
+        floor = FAINT * size.max(initial=0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = change / np.maximum(size, floor)
+        largest = max(largest, float(np.nan_to_num(shares, posinf=0.0).max(initial=0.0)))
+    return largest
