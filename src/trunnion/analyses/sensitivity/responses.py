@@ -124,9 +124,9 @@ def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> Spectru
     here = replace(found, speed=found.speed[:1], cut_off=found.cut_off[:1], **first)
     change = {key: central(part[1:], step)[None] for key, part in whole.items()}
     rough = {key: np.tensordot(FOURTH, whole[key][[1, 2, 0, 3, 4]], 1)[None] / step for key in ("amplitude", "mean")}
-    found = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
+    around = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
     # Where the equations are not linear in a number, the fourth difference holds more than rounding.
-    return replace(found, noise=min(found.noise, ROUNDING * found.pace / step)) if step == SMOOTH_STEP else found
+    return around if step == WIDE_STEP else replace(around, noise=min(around.noise, ROUNDING * around.pace / step))
 
 
 def _share(here: OrderSpectrum, amplitude: NDArray[Any], mean: Array) -> float:
