@@ -305,6 +305,7 @@ def test_the_result_shows_itself():
 PAGE = Path(__file__).parents[2] / "docs" / "assess.md"
 
 
+@pytest.mark.slow
 def test_the_page_shows_what_happens():
     page = PAGE.read_text(encoding="utf-8")
     pattern, flags = r"^```{}\n(.*?)^```", re.DOTALL | re.MULTILINE

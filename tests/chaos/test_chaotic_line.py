@@ -46,6 +46,7 @@ def equation() -> System:
     )
 
 
+@pytest.mark.slow
 def test_a_loaded_hooke_driven_line_is_chaotic() -> None:
     found = tn.certify_chaos(line(), 3000, speed=SPEED, sweep=False)
     assert found.verdict == "chaotic", str(found)

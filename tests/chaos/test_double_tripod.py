@@ -100,7 +100,9 @@ EXPONENTS = {
 SLOW = pytest.mark.slow
 
 
-@pytest.mark.parametrize("case", [pytest.param(c, marks=SLOW if c[1] == "bent" else ()) for c in EXPONENTS])
+@pytest.mark.parametrize(
+    "case", [pytest.param(c, marks=SLOW if c != ("output", "straight") else ()) for c in EXPONENTS]
+)
 def test_exponents_at_resonance(case: tuple[str, str]) -> None:
     which, inertia = case
     system = DoubleTripod(mean_inertia=inertia).system(which)
@@ -142,6 +144,7 @@ def test_verdicts(which: str, phase: str, kind: str) -> None:
     assert not any(c.discriminates for c in found.criteria[1:]) or kind == "at rest"
 
 
+@pytest.mark.slow
 def test_no_exponent_of_the_range_is_positive() -> None:
     sweep = sweep_of(DoubleTripod(), "output", 12)
     assert sweep.exponents[:, 0] == pytest.approx(0.0, abs=1e-3)
@@ -215,6 +218,7 @@ def test_bound_lies_above_the_exponents() -> None:
         assert 4 < smallest_damping(which) / 1.2e-4 < 5
 
 
+@pytest.mark.slow
 def test_motions_from_far_away_and_other_motor_speeds() -> None:
     """From 1 rad, 10⁴ times the settled rotation; and Ω_AEM = 9600π rad/s."""
     output = DoubleTripod().system("output", phase="own")

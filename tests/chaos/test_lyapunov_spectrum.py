@@ -59,6 +59,7 @@ def test_linear_system(damping: float) -> None:
     assert np.all(np.abs(found.exponents - roots) <= found.half_width + 1e-9)
 
 
+@pytest.mark.slow
 def test_three_different_rates_of_a_linear_system() -> None:
     matrix = np.array([[-0.3, 1.0, 0.2], [0.0, -0.7, 0.5], [0.1, 0.0, -2.0]])
     rows = tuple(map(tuple, matrix))
@@ -131,6 +132,7 @@ def test_fewer_exponents_are_the_first() -> None:
     assert np.isnan(found.divergence)
 
 
+@pytest.mark.slow
 def test_intervals_cover_as_often_as_they_say() -> None:
     """Of 95 % intervals from 30 short runs of Ueda's oscillator, at least 80 % hold the long-run value."""
     short = tn.lyapunov_spectrum(ueda(), periods=400, starts=30, tolerance=1e-8)

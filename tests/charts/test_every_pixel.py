@@ -216,6 +216,7 @@ def mathieu(tau: Array, a: Array, q: Array) -> tuple[Array, Array, Array]:
     return np.eye(1), np.zeros((1, 1)), (a - 2 * q * np.cos(2 * tau))[..., None, None]
 
 
+@pytest.mark.slow
 def test_mathieus_chart() -> None:
     """Verdicts between the characteristic values a_r, b_r of the tables; marginal elsewhere."""
     family = tn.PeriodicLinearFamily(np.pi, mathieu, 1, {"a": 1.0, "q": 0.5})

@@ -70,6 +70,7 @@ def test_five_hundred_points(seed: int) -> None:
 
 
 @pytest.mark.parametrize("path", quick_every(3, ["Shaft 2.fork_offset", "HookeJoint 2.plane", "Shaft 1.fork_offset"]))
+@pytest.mark.slow
 def test_stiff_line_whose_axis_is_symmetric_at_its_corners_only(path: str) -> None:
     """At (169.53, 1.1414) the first is unstable; by half a period at the corners' phase it looked stable."""
     angle = np.deg2rad(25)

@@ -64,6 +64,7 @@ def test_the_first_driveline_is_the_starter(run):
     assert tn.loads(shown) == tn.load("my-line.toml")
 
 
+@pytest.mark.slow
 def test_the_findings_shown_are_those_of_the_starter(run, monkeypatch):
     monkeypatch.setenv("COLUMNS", "110")
     run("new", "two-shaft", "my-line.toml")

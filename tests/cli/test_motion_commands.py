@@ -71,6 +71,7 @@ def test_linearity_check(run, here):
     assert refused.exit_code == 2 and refused.stderr.count("\n") == 1 and "between 0 and 1" in refused.stderr
 
 
+@pytest.mark.slow
 def test_run_up(run, here):
     call = ("run-up", "line.toml", "--from", "500 rpm", "--to", "600 rpm", "--acceleration", "400 rpm")
     result = run(*call, "--limit", "700 N*m")

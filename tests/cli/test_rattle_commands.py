@@ -131,6 +131,7 @@ def test_a_branch_that_cannot_go_on_is_written_as_far_as_it_came(run, here):
     assert not any(mark["kind"] == "Neimark–Sacker" for mark in exact["marks"])
 
 
+@pytest.mark.slow
 def test_every_method_of_a_system(run, here):
     result = run("frequency-response", "duffing", "--method", "all", "--curve", "v", "-o", "r.png")
     assert result.exit_code == 0, result.stderr

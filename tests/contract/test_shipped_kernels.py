@@ -71,6 +71,7 @@ def test_another_function_or_a_lesser_processor_compiles(
     assert value == result and int(compiled) > 0
 
 
+@pytest.mark.slow
 def test_other_sources_or_nothing_along_compile(came: Path, tmp_path: Path) -> None:
     (folder,) = came.iterdir()
     other = tmp_path / "kernels"

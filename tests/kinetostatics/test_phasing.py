@@ -94,6 +94,7 @@ def test_pitch_is_a_whole_part_of_a_turn(pitch, splines):
     assert places == pytest.approx(np.round(places), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_phasing_with_a_tripod_is_sampled():
     """No matrix for a tripod: the search walks the turn instead, and still cancels the Hooke's joints."""
     line = tn.Driveline(

@@ -97,6 +97,7 @@ def test_momentum_of_a_straight_line_follows_the_profile() -> None:
     assert np.abs(rates @ [0.4, 0.9]).max() < 1e-7 and np.ptp(rates[:, 0]) > 0.1
 
 
+@pytest.mark.slow
 def test_a_branch_over_speed_passes_through_the_motions_at_single_speeds() -> None:
     line = pair(0.3, load_torque=50.0).replace("Disk 1", excitation=[{"order": 1, "amplitude": 20.0}])
     branch = tn.periodic_branch(line, "speed", 70.0, 100.0, longest_step=0.1)

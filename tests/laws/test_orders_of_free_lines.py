@@ -150,6 +150,7 @@ def test_orders_of_teeth_without_a_common_divisor_are_those_of_the_mesh_and_the_
     assert found.order[np.abs(found.torque[0, :, 1]).argmax()] == 13
 
 
+@pytest.mark.slow
 def test_a_transmission_error_makes_no_line_unstable() -> None:
     """It is no part of the equations of disturbances; that it is not in the amplitudes is said."""
     for teeth in ((12, 24), (13, 29)):

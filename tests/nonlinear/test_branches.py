@@ -42,6 +42,7 @@ def test_dead_zone_grazings_and_folds() -> None:
     np.testing.assert_allclose(sorted(p.parameter for p in branch.folds), DEAD_ZONE_FOLDS, atol=6e-6)
 
 
+@pytest.mark.slow
 def test_a_branch_is_the_same_both_ways() -> None:
     system = tn.reference_system("dead-zone-oscillator")
     shares: list[float] = []
@@ -68,6 +69,7 @@ def van_der_pol() -> tn.System:
     )
 
 
+@pytest.mark.slow
 def test_tori_of_the_forced_van_der_pol_oscillator() -> None:
     """Entrainment is lost where the averaged equations have trace zero: amplitude √2, half the free one's square."""
     branch = tn.periodic_branch(van_der_pol(), "frequency", 0.8, 1.2, begin=1.0, start=[0.0, 2.0])
@@ -114,6 +116,7 @@ def test_broken_symmetry_is_named() -> None:
             assert np.abs(point.multipliers - 1).min() < 1e-3  # two curves cross there, Newton comes no closer
 
 
+@pytest.mark.slow
 def test_over_any_parameter_of_a_line() -> None:
     """Over a joint's angle, the torque grows as its square at first; the ends are exactly those asked for."""
     branch = tn.periodic_branch(two_shafts(), "HookeJoint 1.angle", 0.01, 0.3, speed=60.0)

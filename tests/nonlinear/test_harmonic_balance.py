@@ -96,6 +96,7 @@ def test_a_kink_is_approached_at_the_rate_of_theory() -> None:
     [pytest.param(0.0, 0.52172, 0.07652, marks=pytest.mark.slow), (0.05, 0.51880, 0.17464)],
     ids=["no mean", "mean"],
 )
+@pytest.mark.slow
 def test_rattle(mean_force: float, half: float, resting: float) -> None:
     """Half peak-to-peak at ω = 0.8 as two time integrations found it; the upper peak between 0.87 and 0.88."""
     found = tn.harmonic_balance(rattle(mean_force), "frequency", 0.6, 1.3, begin=1.3, harmonics=30)

@@ -190,6 +190,7 @@ def test_tripod_line_stands_beside_linear_theory() -> None:
     assert amplitude[np.isclose(orders, 3)].min() > 0 and np.isclose(orders, 2).sum() == 0
 
 
+@pytest.mark.slow
 def test_no_periodic_motion_is_an_outcome() -> None:
     """An unstable linear oscillator has one, but a force without stiffness has none."""
     system = tn.System.from_function(

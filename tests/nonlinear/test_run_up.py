@@ -10,6 +10,7 @@ import trunnion as tn
 from trunnion.analyses.motion.order_map import times_at_angles
 
 
+@pytest.mark.slow
 def test_a_slow_passage_reaches_the_steady_amplitude_and_a_fast_one_does_not() -> None:
     line = two_shafts(damping=8.0)
     slow = tn.run_up(line, 28.0, 46.0, acceleration=0.3)
@@ -31,6 +32,7 @@ def test_running_down_meets_the_resonance_from_above() -> None:
     assert up.peak_speed[0] > down.peak_speed[0]
 
 
+@pytest.mark.slow
 def test_safe_accelerations_keep_the_limit() -> None:
     line = two_shafts(damping=8.0)
     limit = 700.0

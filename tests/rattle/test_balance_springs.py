@@ -55,6 +55,7 @@ def test_duffing() -> None:
     assert verdicts == [Verdict.STABLE, Verdict.UNSTABLE, Verdict.STABLE]
 
 
+@pytest.mark.slow
 def test_dead_zone() -> None:
     found = balance_springs(SecondOrder.of_piecewise(dead_zone()), 0.4, 1.3, begin=1.3, harmonics=60)
     assert sorted(f.parameter for f in found.branch.folds) == pytest.approx(DEAD_ZONE_FOLDS, abs=6e-6)
@@ -148,6 +149,7 @@ def test_subharmonic_branch() -> None:
     assert found.branch.period[0] == pytest.approx(3 * 2 * np.pi / found.branch.parameter[0])
 
 
+@pytest.mark.slow
 def test_harmonics_by_the_tail() -> None:
     one = balance_springs(duffing(), 0.8, 1.0, tail=1e-2)
     ten = balance_springs(SecondOrder.of_piecewise(gear_pair()), 0.7, 0.9, tail=1e-4, longest_step=0.05)

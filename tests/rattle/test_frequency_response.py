@@ -17,7 +17,7 @@ from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
-@pytest.mark.parametrize("mean_force", [0.0, 0.05])
+@pytest.mark.parametrize("mean_force", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
 def test_exact_balance_and_sweeps_agree(mean_force: float) -> None:
     """On folds, on both motions at 0.8, on where a sweep of 0.01 rad/s jumps."""
     o = gear_pair(mean_force)
@@ -58,6 +58,7 @@ def test_harmonic_balance_tends_to_the_exact_orbit() -> None:
     assert np.log(errors[0] / errors[-1]) / np.log(10) == pytest.approx(3.0, abs=0.4)
 
 
+@pytest.mark.slow
 def test_dead_zone_folds_by_both() -> None:
     exact = frequency_response(dead_zone(), 0.3, 1.3)
     assert sorted(exact.folds()) == pytest.approx(DEAD_ZONE_FOLDS, abs=6e-6)

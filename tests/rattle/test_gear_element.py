@@ -347,6 +347,7 @@ def test_mesh_stiffness_that_varies_is_a_mathieu_oscillator() -> None:
     assert np.sort_complex(found.multipliers) == pytest.approx(np.sort_complex(wanted), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_shooting_and_harmonic_balance_agree_on_a_geared_line() -> None:
     """A Hooke-driven line whose mesh loses contact twice a turn: multipliers, torque, contact."""
     line = tn.Driveline(
@@ -518,6 +519,7 @@ def test_commands_take_a_file(tmp_path: Path) -> None:
         assert result.exit_code != 0 and words in f"{result.output} {result.exception}"
 
 
+@pytest.mark.slow
 def test_report_of_a_line_with_backlash() -> None:
     """Its own table: the clutch that lands, the mesh that stays where the load has it."""
     line = tn.Driveline(

@@ -20,6 +20,7 @@ from trunnion.numerics.piecewise_linear.piecewise import move
 PAIR = {"radii": (0.04, 0.06), "inertias": (2e-3, 5e-3), "stiffness": 2e6}
 
 
+@pytest.mark.slow
 def test_one_equation_is_the_two() -> None:
     """u = r₁φ₁ − r₂φ₂ − e of the two gears, integrated as they are, over a few mesh periods with loss of contact."""
     (r1, r2), (i1, i2), k = PAIR["radii"], PAIR["inertias"], PAIR["stiffness"]
@@ -84,6 +85,7 @@ def invoke(*arguments: str) -> Any:
     return CliRunner().invoke(app, list(arguments))
 
 
+@pytest.mark.slow
 def test_frequency_response_command(tmp_path: Path) -> None:
     files = [tmp_path / "r.png", tmp_path / "r.nc"]
     result = invoke(

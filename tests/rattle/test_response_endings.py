@@ -120,6 +120,7 @@ def test_a_kinked_motion_gets_the_harmonics_its_tail_asks_for(monkeypatch: pytes
     assert "raise tail above 1e-09, or give harmonics" in short.outcome.sentence
 
 
+@pytest.mark.slow
 def test_superharmonic_peak_and_doublings_by_series_too() -> None:
     """The small peak below 0.4 and the pair of period doublings, against the exact branch."""
     exact = piecewise_branch(gear_pair(), 0.3, 0.5)
@@ -165,6 +166,7 @@ def test_the_exact_branch_has_the_curves_it_knows() -> None:
         branch.plot(curve="v")
 
 
+@pytest.mark.slow
 def test_the_usual_method_of_a_line_is_one_that_bears_its_contacts() -> None:
     shaft, disk = tn.Shaft(stiffness=1e3, damping=1.0), tn.Disk(inertia=0.1, load_torque=5.0)
     clutch = tn.PiecewiseShaft(breakpoints=[0.01], stiffnesses=[1e3, 2e3], damping=1.0)

@@ -219,6 +219,7 @@ def test_line_too_slow_for_a_chart(mild: tn.Driveline) -> None:
     assert "no chart" in Page(made.html).text
 
 
+@pytest.mark.slow
 def test_motion_under_load_is_that_of_the_function(mild: tn.Driveline, loaded: Report, unloaded: Report) -> None:
     """The section shows the true motion's growth rate and torque; a line without load has no such section."""
     (motion,) = loaded.contents.loaded

@@ -245,6 +245,7 @@ def test_nothing_unstable_is_proved() -> None:
     assert unstable.any() and not (found.proved & unstable).any()
 
 
+@pytest.mark.slow
 def test_single_lines_are_proved_wherever_they_are_stable() -> None:
     """At resonances too, where modes share a block in a skewed basis; modes up to 15 times the speed."""
     rng, open_at, seen = np.random.default_rng(3), [], 0

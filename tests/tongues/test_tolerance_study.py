@@ -152,6 +152,7 @@ def torque(stiffness: np.ndarray, inertia: np.ndarray, speed: float) -> np.ndarr
     return 10.0 * np.abs(held / (held - inertia * (2 * speed) ** 2))
 
 
+@pytest.mark.slow
 def test_probability_of_checks_is_an_area() -> None:
     """One shaft below its resonance: its vibratory torque in closed form over the two tolerances."""
     speed = 48.0

@@ -20,12 +20,6 @@ from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
 BOX = (("speed", 0.05, 2.0), ("HookeJoint 1.angle", 0.05, 1.45))
-ROWS = np.linspace(0.05, 1.45, 15)
-
-
-@pytest.fixture(scope="module")
-def wide() -> tn.analyses.tongues.result.Tongues:
-    return tn.tongues(LINE, *BOX, rows=15)
 
 
 @pytest.fixture(scope="module")
@@ -33,9 +27,11 @@ def gentle() -> tn.analyses.tongues.result.Tongues:
     return tn.tongues(LINE, ("speed", 0.25, 2.0), ("HookeJoint 1.angle", 0.0, 0.5), rows=17)
 
 
-def test_every_interval_of_fifteen_rows(wide) -> None:
+@pytest.mark.slow
+def test_every_interval_of_fifteen_rows() -> None:
     """145 intervals, and every one that 8193 pixels show among them."""
-    found = [wide.intervals_at(float(y)) for y in ROWS]
+    wide = tn.tongues(LINE, *BOX, rows=15)
+    found = [wide.intervals_at(float(y)) for y in np.linspace(*BOX[1], 15)]
     assert sum(map(len, found)) == 145
     chart = tn.stability_chart(LINE, (*BOX[0], 8193), (*BOX[1], 15))
     for row, (intervals, verdict) in enumerate(zip(found, chart.verdict, strict=True)):
@@ -80,9 +76,9 @@ def test_names_and_tips(gentle) -> None:
         assert abs(here / slope) < 1e-6
 
 
-def test_edges_are_where_the_radius_is_one(wide) -> None:
+def test_edges_are_where_the_radius_is_one(gentle) -> None:
     rng = np.random.default_rng(3)
-    for tongue in list(wide)[:6]:
+    for tongue in list(gentle)[:6]:
         k = int(rng.integers(1, len(tongue.y) - 1))
         for x in (tongue.low[k], tongue.high[k]):
             if BOX[0][1] + 1e-9 < x < BOX[0][2] - 1e-9:
@@ -163,6 +159,7 @@ def row_of(line: tn.Driveline, low: float, high: float, angle: float) -> tuple[n
 
 
 @pytest.mark.parametrize(("seed", "shafts"), [(3, 5), (0, 4), (8, 6)])
+@pytest.mark.slow
 def test_long_lines_miss_no_resonance_of_first_order(seed: int, shafts: int) -> None:
     """Undamped, every pair of modes opens a region at (ωᵢ + ωⱼ)/2, of width β² at a small angle β."""
     angle, line = 0.02, long_line(seed, shafts, 0.0)

@@ -70,6 +70,7 @@ BAD = [
 ]
 
 
+@pytest.mark.slow
 def test_all_damping_is_that_however_it_is_stated() -> None:
     """A common ratio, a loss factor and a coefficient: the edge found is where ``stability`` changes."""
 
@@ -106,6 +107,7 @@ def test_refusals(run, message: str) -> None:
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_region_that_enters_through_the_side_of_the_speeds() -> None:
     """A resonance just outside the speeds: the angle that it allows is the one at the nearest speed."""
     for speeds, side in (((1.64, 1.7), 0), ((1.5, 1.6), -1)):
