@@ -64,6 +64,11 @@ def relative_ratio(topo: Topology, station: int) -> float:
     return float(topo.speed_ratio[station] / topo.speed_ratio[topo.reference[topo.group_of(station)]])
 
 
+def rigid_rotation(topo: Topology) -> Array:
+    """The unknowns (n,) of an aligned line that turns as a whole, by one at its input."""
+    return np.array([float(topo.speed_ratio[s]) for s in topo.firsts])
+
+
 def frequencies(matrices: AlignedMatrices, *, free: bool) -> Array:
     """Undamped natural frequencies [rad/s], ascending, shape (case, n); a free line's rigid mode is exactly 0."""
     root = np.sqrt(matrices.mass)

@@ -308,9 +308,8 @@ class LineSystem:
         co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
         base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
         plain = base_motion(topo, co.straight, np.array([theta]), ratio_values(topo))
-        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        d = (base.angle - plain.angle)[0, 0, places]
-        v = (base.speed - plain.speed)[0, 0, places] * self.speed
+        d = (base.angle - plain.angle)[0, 0, topo.firsts]
+        v = (base.speed - plain.speed)[0, 0, topo.firsts] * self.speed
         return np.concatenate([d, v, np.zeros(len(self.sliders))])
 
     def twisted(self) -> Array:
@@ -319,9 +318,8 @@ class LineSystem:
         plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
         held = self.assembly.coefficients(table, free_play=True)
         motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, plain.straight)]
-        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
         d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
-        return np.concatenate([d[places], v[places] * self.speed, np.zeros(len(self.sliders))])
+        return np.concatenate([d[topo.firsts], v[topo.firsts] * self.speed, np.zeros(len(self.sliders))])
 
 
 def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.aligned import aligned_matrices, frequencies
+from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
@@ -153,7 +153,7 @@ def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
     n = topo.size
     if not topo.free:
         return np.zeros((2 * n, 0))
-    turn = np.array([float(topo.speed_ratio[topo.reference[g]]) for g, c in enumerate(topo.coordinate) if c >= 0])
+    turn = rigid_rotation(topo)
     kept = np.zeros((2 * n, 2))
     kept[:n, 0], kept[n:, 1] = turn, turn
     constant = not (coefficients.viscous.any() or coefficients.quadratic.any())

@@ -120,6 +120,11 @@ class Topology:
         """Stations behind a joint that does not pass rotation unchanged, in order."""
         return tuple(i for i, s in enumerate(self.stations) if s.link is Link.JOINT)
 
+    @property
+    def firsts(self) -> list[int]:
+        """The first station of each unknown's group (n,)."""
+        return [self.reference[g] for g, c in enumerate(self.coordinate) if c >= 0]
+
     def group_of(self, station: int) -> int:
         """The group a station belongs to."""
         return self.stations[station].group

@@ -1,40 +1,43 @@
 """The periodic motions of a bent line that starts free, at many mean speeds, by harmonic balance.
 
-    a(t, x, ẋ; torque) = ẍ,   x = Σ_h x_h e^{ihωt}
-
-Newton's method on the harmonics and the torque that drives beyond the balance of the loads, its slopes those of the
-compiled equations at samples of the motion. The mean deviation has no part of a turn of the whole line, which fixes the
-phase. Excitations of disks and transmission errors are left out, as in ``own_motion``, which finds one motion by
-shooting.
+The balance of ``orbits.harmonic_equations``, its parameter the torque that drives beyond the balance of the loads. The
+mean deviation has no part of a turn of the whole line, which fixes the phase. Excitations of disks and transmission
+errors are left out, as in ``own_motion``, which finds one motion by shooting.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.orbits.free_orbit import loaded_by_speed
+from trunnion.analyses.orbits.balancing import with_enough
+from trunnion.analyses.orbits.free_orbit import loaded_by_speed, torque_scale
+from trunnion.analyses.orbits.harmonic_equations import HarmonicEquations
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.coefficients import assemble
+from trunnion.equations.aligned import aligned_matrices, rigid_rotation
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
-from trunnion.numerics.integration.integration import kernel
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.continuation.arclength import correct
+from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.spectrum import along, without
+from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""
-CLOSED = 1e-8
-"""Correction [rad] at which a motion is found."""
+CLOSED = 1e-7
+"""Correction, in units of the states' scales, at which a motion is found."""
 NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
-ITERATIONS = 12
 
 
 @dataclass(frozen=True)
@@ -93,179 +96,149 @@ def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
     prepared = line_system(assembly, float(speeds[0]))
     if prepared.system.regimes is not None:
         return None
-    period = 2 * np.pi * float(require_period(assembly.line, assembly.topology))
-    rate = max(float(r) for r in assembly.topology.rates) * period / (2 * np.pi)
-    n = assembly.topology.size
-    harmonics, before = max(FEWEST, int(np.ceil(3 * rate))), None
-    while True:
-        motions, guess = [], before
+    balance = FreeBalance(assembly, 2 * np.pi * float(require_period(assembly.line, assembly.topology)))
+
+    def attempt(h: int, last: bool) -> list[FreeMotion] | None:
+        motions: list[FreeMotion] = []
         for speed in speeds:
-            problem = Balance(LineSystem(assembly, float(speed)), period, harmonics)
-            motion = problem.solve(guess)
-            guess = motion.deviation if motion.found else None
-            motions.append(motion)
-            if motion.found and motion.outermost > NEGLIGIBLE and harmonics < MOST:
-                break
-        else:
-            break
-        harmonics = min(2 * harmonics, MOST)
-    slopes = np.stack([m.slopes for m in motions])
-    damping = np.array([float(np.trace(m.slopes[0][n:, n:]).real) for m in motions])
+            guess = motions[-1].rows if motions and motions[-1].found else None
+            motions.append(balance.solve(float(speed), h, guess))
+            if motions[-1].found and not motions[-1].resolved and not last:
+                return None
+        return motions
+
+    motions = with_enough(attempt, balance.fewest, MOST)
+    slopes, shift, drift = (np.stack(parts) for parts in zip(*map(balance.about, motions), strict=True))
+    n = assembly.topology.size
+    damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
     return OwnMotions(
-        np.array([m.found and m.outermost <= NEGLIGIBLE for m in motions]),
-        period,
+        np.array([m.found and m.resolved for m in motions]),
+        balance.period,
         slopes,
-        np.stack([m.shift for m in motions]),
-        None if loaded_by_speed(assembly) else np.stack([m.drift for m in motions]),
-        np.abs(damping) * period < 1e-12 * n,
+        shift,
+        None if loaded_by_speed(assembly) else drift,
+        np.abs(damping) * balance.period < 1e-12 * n,
     )
 
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """One motion: deviation (harmonic, n) [rad], harmonics −H … H; torque [N m at the input] that drives beyond the
-    balance; outermost [rad]: size of the last harmonics; slopes (harmonic, 2n, 2n), and the rest as ``OwnMotions``."""
+    """One motion: its states as series (2n, 2H + 1) [rad, rad/s]; torque [N m at the input] that drives beyond the
+    balance; ``rate``: torque → system."""
 
     found: bool
-    deviation: Complex
+    speed: float
+    rows: Array
     torque: float
-    outermost: float
-    slopes: Complex
-    shift: Array
-    drift: Array
+    rate: Callable[[float], System]
+
+    @property
+    def h(self) -> int:
+        return fourier.order(self.rows)
+
+    @property
+    def times(self) -> int:
+        """Samples of the period that hold the motion and its slopes."""
+        return 4 * self.h + 4
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the outermost harmonics of all rotations are negligible."""
+        rotations = self.rows[: len(self.rows) // 2]
+        return bool(np.hypot(rotations[:, self.h], rotations[:, -1]).max() <= 2 * NEGLIGIBLE)
+
+    @property
+    def states(self) -> Array:
+        """States (time, 2n)."""
+        return np.ascontiguousarray(fourier.samples(self.rows, self.times).T)
+
+    def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
+        """Rates (time, 2n) and their slopes (time, 2n, 2n) by the states, under ``more`` torque; NaN if none."""
+        system, count = self.rate(self.torque + more), len(self.rows)
+        assert system.forcing_period is not None
+        times = system.forcing_period * np.arange(self.times) / self.times
+        found = sampled_rates(system.equations, times, self.states, 0)
+        missing = np.full((self.times, count), np.nan), np.full((self.times, count, count), np.nan)
+        return missing if found is None else found[:2]
 
 
-class Balance:
-    """The equations of the harmonics at one speed; the mean deviation has no part along ``phase`` (n,), by default a
-    turn of the whole line."""
+@dataclass(frozen=True)
+class Torques:
+    """The systems of a free line by the torque [N m] of its drives; scale (2n + 1,) of states and torque."""
 
-    def __init__(self, line: LineSystem, period: float, harmonics: int, phase: Array | None = None) -> None:
-        self.line, self.count = line, harmonics
-        topo = line.assembly.topology
-        self.n, self.speed = topo.size, line.speed
-        self.times = 4 * harmonics + 4
-        self.rate = 2 * np.pi * line.speed / period
-        self.period = period
-        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        self.turn = np.array([float(topo.speed_ratio[s]) for s in places])
+    at: Callable[[float], System]
+    scale: Array
+
+
+class FreeBalance:
+    """Motions of a free line of ``period`` [rad of input angle] by the balance of their harmonics; the mean deviation
+    has no part along ``phase`` (n,), by default a turn of the whole line."""
+
+    def __init__(self, assembly: Assembly, period: float, phase: Array | None = None) -> None:
+        topo = assembly.topology
+        self.assembly, self.period, self.turn = assembly, period, rigid_rotation(topo)
         self.phase = self.turn if phase is None else phase
-        row = line.assembly.packed.values.copy()
-        row[0] = line.speed
-        self.row = row
-        self.numbers = line.numbers(row)
-        self.drive = line.numbers(row, drive=1.0) - self.numbers
+        fastest = max(float(rate) for rate in topo.rates) * period / (2 * np.pi)
+        self.fewest = max(FEWEST, int(np.ceil(3 * fastest)))
 
-    def start(self) -> Complex:
-        """Rigid shafts, each twisted by the torque that it carries on average; (harmonic, n)."""
-        topo, assembly = self.line.assembly.topology, self.line.assembly
-        theta = self.period * np.arange(self.times) / self.times
-        co = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
+    def solve(self, speed: float, h: int, guess: Array | None) -> FreeMotion:
+        """The motion of ``h`` harmonics at ``speed`` [rad/s] from a guess, or from rigid shafts."""
+        line = LineSystem(self.assembly, speed)
+        torques = self._torques(line)
+        n, wide = len(self.turn), 2 * h + 1
+        across = np.zeros(2 * n * wide + 1)
+        across[: n * wide : wide] = self.phase / np.linalg.norm(self.phase)
+        equations = HarmonicEquations(over=torques, periods=1, h=h)
+        starts = [self._rigid(line, h)] if guess is None else [fourier.resized(guess, h), self._rigid(line, h)]
+        for start in starts:
+            point = correct(
+                equations.equations, np.append(start.ravel(), 0.0), across, scale=equations.scale, tolerance=CLOSED,
+                to_rounding=True,
+            )  # fmt: skip
+            if point is not None:
+                return FreeMotion(True, speed, equations.rows(point), point.parameter, torques.at)
+        return FreeMotion(False, speed, starts[-1], 0.0, torques.at)
+
+    def _torques(self, line: LineSystem) -> Torques:
+        row = self.row(line.speed)
+        numbers = line.numbers(row)
+        drive = line.numbers(row, drive=1.0) - numbers
+        system = replace(line.system, period=self.period / line.speed)
+
+        def at(torque: float) -> System:
+            return replace(system, numbers_of=lambda _: numbers + torque * drive)
+
+        return Torques(at, np.append(np.asarray(system.scale), torque_scale(line)))
+
+    def row(self, speed: float) -> Array:
+        """The line's numbers at ``speed``."""
+        return self.assembly.table(1, speed)[0]
+
+    def _rigid(self, line: LineSystem, h: int) -> Array:
+        """Rigid shafts, each twisted by the torque that it carries on average, as series (2n, 2h + 1)."""
+        topo, count = self.assembly.topology, 4 * h + 4
+        theta = self.period * np.arange(count) / count
+        co = self.assembly.coefficients(self.row(line.speed)[None], statically_twisted=False, free_play=True)
         base, plain = (base_motion(topo, case, theta, ratio_values(topo)).angle[0] for case in (co, co.straight))
-        places = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        states = (base - plain)[:, places]
-        held = self.line.twisted()[: self.n] - self.line.rigid(0.0)[: self.n]
-        return self._kept(np.fft.fft(states + held, axis=0) / self.times)
+        held = (line.twisted() - line.rigid(0.0))[: topo.size]
+        rows = fourier.rows_of((base - plain)[:, topo.firsts].T + held[:, None], h)
+        rows[:, 0] -= self.phase * (self.phase @ rows[:, 0]) / (self.phase @ self.phase)
+        return np.concatenate([rows, fourier.rate(rows, 2 * np.pi * line.speed / self.period)])
 
-    def solve(self, guess: Complex | None) -> FreeMotion:
-        """Newton's method from ``guess`` (harmonic, n), or from rigid shafts."""
-        x = self.start() if guess is None or len(guess) != 2 * self.count + 1 else guess.copy()
-        torque, found, slopes = 0.0, False, np.zeros((self.times, self.n, 2 * self.n))
-        for _ in range(ITERATIONS):
-            acceleration, slopes, drive = self.sampled(x, torque)
-            step, more = self._step(x, acceleration, slopes, drive)
-            if not np.all(np.isfinite(step)):
-                break
-            # Rounding would part the two halves of the spectrum from iteration to iteration.
-            x, torque = x + (step + step[::-1].conj()) / 2, torque + more
-            if np.abs(step).sum(axis=0).max() <= CLOSED:
-                found = True
-                break
-        if not found and guess is not None:
-            return self.solve(None)
-        size = np.abs(x).max(axis=1)
-        return FreeMotion(found, x, torque, float(max(size[0], size[-1])), *self._neutral(x, slopes))
-
-    def _kept(self, spectrum: Complex) -> Complex:
-        """Harmonics −H … H of a spectrum in NumPy's order."""
-        return np.asarray(spectrum[np.arange(-self.count, self.count + 1) % self.times])
-
-    def states(self, x: Complex) -> Array:
-        """States (time, 2n) of harmonics."""
-        h = np.arange(-self.count, self.count + 1)
-        full = np.zeros((2, self.times, self.n), dtype=complex)
-        full[0, h % self.times], full[1, h % self.times] = x, 1j * self.rate * h[:, None] * x
-        # Each row goes to compiled code, so it must lie in one piece; how NumPy lays out strided parts joined varies.
-        return np.ascontiguousarray(np.concatenate(list((np.fft.ifft(full, axis=1) * self.times).real), axis=1))
-
-    def sampled(self, x: Complex, torque: float) -> tuple[Array, Array, Array]:
-        """Accelerations (time, n), their slopes by the states (time, n, 2n) and by the torque (time, n)."""
-        n, m = self.n, 2 * self.n
-        states, numbers = self.states(x), self.numbers + torque * self.drive
-        with_more = numbers + self.drive
-        out = np.empty((self.times, m + 1, m))
-        drive = np.empty((self.times, m))
-        call, address = kernel().call_rate, self.line.system.rate.address
-        block = np.concatenate([np.zeros((1, m)), np.eye(m)])
-        length = self.period / self.speed
-        for i, state in enumerate(states):
-            time = length * i / self.times
-            block[0] = state
-            refused = call(address, time, block.ravel(), numbers, m, 0, out[i].reshape(-1))
-            refused = refused or call(address, time, state, with_more, 0, 0, drive[i])
-            if refused:
-                out[i], drive[i] = np.nan, np.nan
-        return out[:, 0, n:], out[:, 1:, n:].transpose(0, 2, 1), drive[:, n:] - out[:, 0, n:]
-
-    def _step(self, x: Complex, acceleration: Array, slopes: Array, drive: Array) -> tuple[Complex, float]:
-        """Newton's correction of the harmonics and of the torque."""
-        n, h = self.n, np.arange(-self.count, self.count + 1)
-        s = 1j * self.rate * h
-        by_state = np.fft.fft(slopes, axis=0) / self.times
-        place = (h[:, None] - h[None, :]) % self.times
-        blocks = -by_state[place][..., :n] - by_state[place][..., n:] * s[None, :, None, None]
-        blocks[np.arange(len(h)), np.arange(len(h))] += (s**2)[:, None, None] * np.eye(n)
-        size = len(h) * n
-        matrix = np.zeros((size + 1, size + 1), dtype=complex)
-        matrix[:size, :size] = blocks.transpose(0, 2, 1, 3).reshape(size, size)
-        matrix[:size, size] = -self._kept(np.fft.fft(drive, axis=0) / self.times).reshape(-1)
-        unit = float(np.abs(matrix[:size, :size]).max())
-        scale = unit / max(float(np.abs(matrix[:size, size]).max()), 1e-300)
-        matrix[:size, size] *= scale
-        matrix[size, self.count * n : self.count * n + n] = unit * self.phase / np.linalg.norm(self.phase)
-        left = self._kept(np.fft.fft(acceleration, axis=0) / self.times) - (s**2)[:, None] * x
-        right = np.append(left.reshape(-1), -unit * (self.phase @ x[self.count]) / np.linalg.norm(self.phase))
-        try:
-            found = np.linalg.solve(matrix, right)
-        except np.linalg.LinAlgError:
-            return np.full_like(x, np.nan), np.nan
-        return found[:size].reshape(len(h), n), float(found[size].real * scale)
-
-    def _neutral(self, x: Complex, slopes: Array) -> tuple[Complex, Array, Array]:
+    def about(self, motion: FreeMotion) -> tuple[Complex, Array, Array]:
         """A's Fourier coefficients, the shift of the phase and the change of the speed, in energy-like units."""
-        n, h = self.n, np.arange(-self.count, self.count + 1)
-        spectrum = np.fft.fft(slopes, axis=0) / self.times
-        co = self.line.assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
-        root = np.sqrt(_inertia(self.line, co.inertia[0]))
+        n, speed = len(self.turn), motion.speed
+        rates, slopes = motion.sampled()
+        spectrum = np.fft.fft(slopes[:, n:], axis=0) / motion.times
+        co = self.assembly.coefficients(self.row(speed)[None], statically_twisted=False, free_play=True)
+        root = np.sqrt(aligned_matrices(self.assembly.topology, co).mass[0])
         ratio = root[:, None] / root[None, :]
-        stiffness = -spectrum[0, :, :n].real * ratio / self.speed**2
+        stiffness = -spectrum[0, :, :n].real * ratio / speed**2
         unit = float(np.sqrt(max(np.abs(np.diag(stiffness)).mean(), 1e-300)))
-        a = np.zeros((self.times, 2 * n, 2 * n), dtype=complex)
+        a = np.zeros((motion.times, 2 * n, 2 * n), dtype=complex)
         a[0, :n, n:] = np.eye(n) * unit
-        a[:, n:, :n] = spectrum[:, :, :n] * (ratio / (self.speed**2 * unit))
-        a[:, n:, n:] = spectrum[:, :, n:] * (ratio / self.speed)
+        a[:, n:, :n] = spectrum[:, :, :n] * (ratio / (speed**2 * unit))
+        a[:, n:, n:] = spectrum[:, :, n:] * (ratio / speed)
         scale = np.concatenate([root, root / unit])
-        rate = (1j * h[:, None] * x).sum(axis=0).real * (self.rate / self.speed)
-        acceleration = -((h[:, None] ** 2) * x).sum(axis=0).real * (self.rate / self.speed) ** 2
-        shift = np.concatenate([rate + self.turn, acceleration]) * scale
+        shift = np.concatenate([rates[0, :n] / speed + self.turn, rates[0, n:] / speed**2]) * scale
         return a, shift, np.concatenate([np.zeros(n), self.turn]) * scale
-
-
-def _inertia(line: LineSystem, by_station: Array) -> Array:
-    """Inertia (n,) of the unknowns, each group's as its first station feels it on average."""
-    topo = line.assembly.topology
-    inertia = np.zeros(topo.size)
-    for s, ratio in enumerate(topo.speed_ratio):
-        i = topo.coordinate[topo.group_of(s)]
-        if i >= 0:
-            inertia[i] += by_station[s] * float(ratio / topo.speed_ratio[topo.reference[topo.group_of(s)]]) ** 2
-    return inertia

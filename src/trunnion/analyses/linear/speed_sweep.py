@@ -27,7 +27,7 @@ from trunnion.analyses.orders.response import order_response, without_excitation
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import relative_ratio
+from trunnion.equations.aligned import relative_ratio, rigid_rotation
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble, joint_laws
 from trunnion.equations.exciters import exciters
 from trunnion.equations.linear import LineMatrices, line_matrices
@@ -275,12 +275,11 @@ def _border(assembly: Assembly) -> Border | None:
         return None
     share = drive_places(topo, assembly.packed.column, assembly.table(1))
     torque = -drive_torques(topo, share, np.ones(1))[0]
-    drive, turn = np.zeros(topo.size), np.zeros(topo.size)
+    drive = np.zeros(topo.size)
     for s, ratio in enumerate(topo.speed_ratio):
         i = topo.coordinate[topo.group_of(s)]
         drive[i] += torque[s] * relative_ratio(topo, s) * np.sign(float(ratio))
-        turn[i] = float(topo.speed_ratio[topo.reference[topo.group_of(s)]])
-    return Border(drive, turn)
+    return Border(drive, rigid_rotation(topo))
 
 
 def _periodic(

@@ -1,14 +1,15 @@
 """Harmonic balance as one driver: a branch with so many harmonics, or with as many as its tail asks for.
 
-What differs is the residual: of any first-order system (``harmonic_balance``), and of masses on springs
-(``harmonic_balance_springs``).
+What differs is the residual: of any first-order system (``harmonic_equations``), and of masses on springs
+(``harmonic_balance_springs``). Own motions of free lines are balanced by the same equations, their parameter the torque
+of the drives, at given speeds instead of along a branch.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,17 +119,24 @@ def balanced(
     most_points: int,
 ) -> Found:
     """The branch with ``harmonics``, or doubled from ``fewest`` until the tail is below ``limit`` everywhere."""
-    h = harmonics or fewest
+
+    def attempt(h: int, last: bool) -> Found | None:
+        final = last or harmonics is not None
+        found = _followed(make(h), begin, low, high, most_points, np.inf if final else limit)
+        return found if final or found is not None and not np.any(found.tail >= limit) else None
+
+    found = with_enough(attempt, harmonics or fewest, most)
+    return found if harmonics is not None else _judged(found, limit)
+
+
+def with_enough(attempt: Callable[[int, bool], T | None], fewest: int, most: int) -> T:
+    """What ``attempt(h, last)`` finds first, h doubled from ``fewest`` to ``most``, where ``last`` is True: it must."""
+    h = fewest
     # Matrices of a few hundred rows: a library's threads would spend their time waiting for each other.
     with threadpool_limits(1, user_api="blas"):
-        while True:
-            problem, last = make(h), harmonics is not None or 2 * h > most
-            found = _followed(problem, begin, low, high, most_points, np.inf if last else limit)
-            if last or found is not None and not np.any(found.tail >= limit):
-                break
-            h *= 2
-    assert found is not None
-    return found if harmonics is not None else _judged(found, limit)
+        while (found := attempt(h, h >= most)) is None:
+            h = min(2 * h, most)
+    return found
 
 
 def _followed(problem: Balance, begin: float, low: float, high: float, most_points: int, limit: float) -> Found | None:

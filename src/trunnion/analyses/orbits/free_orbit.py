@@ -22,6 +22,7 @@ from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, closing_of, judged
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
@@ -121,7 +122,7 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     does as well.
     """
     topo, n = line.assembly.topology, line.assembly.topology.size
-    turn = np.array([float(topo.speed_ratio[topo.reference[g]]) for g, c in enumerate(topo.coordinate) if c >= 0])
+    turn = rigid_rotation(topo)
     others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
     faster = np.concatenate([np.zeros(n), turn, others])
     column, elements = line.assembly.packed.column, line.assembly.line.elements

@@ -18,8 +18,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
+from trunnion.analyses.orbits.balancing import SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP
+from trunnion.analyses.orbits.harmonic_equations import FEWEST, HarmonicEquations
 from trunnion.analyses.orbits.judging import CLEAR, IntegratedClosing
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
@@ -30,18 +31,15 @@ from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.curves import extremes
-from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.results.declared import Held, over
 from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-FEWEST, MOST = 8, 256
-"""Harmonics to begin with, and the most that a tail is answered with."""
+MOST = 256
+"""Harmonics that a tail is answered with, at most."""
 TAIL, KINKED_TAIL = 1e-6, 1e-4
 """Of a smooth motion, whose coefficients fall exponentially; of one with kinks, whose rates fall like k⁻³."""
-SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
-"""Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
 FAR = 100.0
 """Distance of a spectral radius from 1, over that of the series from the motion, at which its error does not matter."""
 
@@ -132,12 +130,10 @@ def _first_rows(family: SystemOver, start: ArrayLike | None, periods: int, h: in
 
 
 @dataclass
-class _Balance(Series):
+class _Balance(HarmonicEquations):
     """The balance of h harmonics as equations of a curve, and what its points tell."""
 
     over: SystemOver
-    periods: int
-    h: int
     begun: Array
 
     @cached_property
@@ -148,66 +144,9 @@ class _Balance(Series):
     def first(self) -> Array:
         return fourier.resized(self.begun, self.h)
 
-    @property
-    def size(self) -> int:
-        return len(self.over.scale) - 1
-
-    @property
-    def scale(self) -> Array:
-        wide = 2 * self.h + 1
-        return np.append(np.repeat(self.over.scale[:-1], wide), self.over.scale[-1])
-
     def start(self, point: CurvePoint) -> Array:
         rows = self.rows(point)
         return np.asarray(rows[:, : self.h + 1].sum(axis=1))
-
-    def equations(self, z: Array) -> tuple[Array, Array]:
-        """What the balance leaves over one radian, in units of the states' scales, and its derivative."""
-        n, wide, value = self.size, 2 * self.h + 1, float(z[-1])
-        nothing = np.full(n * wide, np.nan), np.full((n * wide, n * wide + 1), np.nan)
-        here = self._left(z[:-1].reshape(n, wide), value, with_slope=True)
-        if here is None:
-            return nothing
-        left, slope = here
-        # The parameter enters in any way, the period included: central differences, good to some 1e-9.
-        step = 1e-4 * float(self.over.scale[-1])
-        beside = [self._left(z[:-1].reshape(n, wide), value + side * step, with_slope=False) for side in (-1, 1)]
-        if beside[0] is None or beside[1] is None:
-            return nothing
-        by_parameter = (beside[1][0] - beside[0][0]) / (2 * step)
-        over = 1 / np.repeat(self.over.scale[:-1], wide)
-        return left * over, np.hstack([slope, by_parameter[:, None]]) * over[:, None]
-
-    def _left(self, rows: Array, value: float, *, with_slope: bool) -> tuple[Array, Array] | None:
-        """(D X − F)/ω (n (2h + 1),) and its derivative by the rows."""
-        try:
-            system = self.over.at(value)
-        except InputError:  # a trial value may be no value of this parameter
-            return None
-        if system.forcing_period is None or not np.isfinite(rows).all():
-            return None
-        n, wide, h = self.size, 2 * self.h + 1, self.h
-        period = self.periods * system.forcing_period
-        omega = 2 * np.pi / period
-        per_harmonic = SMOOTH_SAMPLES if system.regimes is None else KINKED_SAMPLES
-        count = 1 << int(np.ceil(np.log2(per_harmonic * max(h, FEWEST))))
-        states = np.ascontiguousarray(fourier.samples(rows, count).T)
-        evaluated = sampled_rates(
-            system.equations, period * np.arange(count) / count, states, system.regime_at(0.0, states[0])
-        )
-        if evaluated is None:
-            return None
-        rates, jacobians, _ = evaluated
-        left = (fourier.rate(rows, omega) - fourier.rows_of(rates.T, h)) / omega
-        if not with_slope:
-            return left.ravel(), np.zeros((0, 0))
-        slope = np.zeros((n, wide, n, wide))
-        for i in range(n):
-            slope[i, :, i, :] = fourier.rate_matrix(h, omega)
-            for j in range(n):
-                if np.any(jacobians[:, i, j]):
-                    slope[i, :, j, :] -= fourier.product_matrix(jacobians[:, i, j], h)
-        return left.ravel(), slope.reshape(n * wide, n * wide) / omega
 
     def on_motion(self, point: CurvePoint) -> CurvePoint:
         """The point of the true motion through the series' start."""

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.orders.straight import SINGULAR
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
@@ -156,15 +157,6 @@ class HillBlocks:
             if far >= 0 and near >= 0:
                 matrix[:, :, far, :, near] -= loss[:, :, None] * ratio
                 matrix[:, :, near, :, far] -= ratio * loss[:, None, :]
-
-
-def rigid_rotation(topo: Topology) -> Array:
-    """The unknowns (n,) of a free line without joints' irregularity that turns as a whole, by one at its input."""
-    turn = np.zeros(topo.size)
-    for group, i in enumerate(topo.coordinate):
-        if i >= 0:
-            turn[i] = float(topo.speed_ratio[topo.reference[group]])
-    return turn
 
 
 def _with_rim(

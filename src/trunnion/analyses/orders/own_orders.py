@@ -17,7 +17,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.own_motions import FEWEST, MOST, NEGLIGIBLE, Balance, FreeMotion
+from trunnion.analyses.linear.own_motions import MOST, FreeBalance, FreeMotion
+from trunnion.analyses.orbits.balancing import with_enough
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
 from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
@@ -73,11 +74,10 @@ class OwnOrders:
         prepared = line_system(self.quiet, 1.0)
         if prepared.system.regimes is not None:
             refuse_own_motion(assembly, "it has stages or play besides: use tn.periodic_response")
-        fastest = max(float(rate) for rate in self.topo.rates) * float(turns)
-        self.harmonics = max(FEWEST, int(np.ceil(3 * fastest)))
-        self.guess: Complex | None = None
         # Phases count from zero rotation of the input.
         self.phase = np.eye(self.topo.size)[self.topo.coordinate[self.topo.group_of(0)]]
+        self.balance = FreeBalance(self.quiet, self.period, self.phase)
+        self.last: FreeMotion | None = None
 
     def at(self, speed: float) -> OwnBase:
         """The motion at mean input ``speed`` [rad/s].
@@ -86,13 +86,14 @@ class OwnOrders:
         ------
         ComputationError : no motion found.
         """
-        balance, motion = self._motion(speed)
-        topo, co = self.topo, self.quiet.coefficients(balance.row[None], statically_twisted=False, free_play=True)
+        motion, line = self._motion(speed), LineSystem(self.quiet, speed)
+        topo, table = self.topo, self.quiet.table(1, speed)
+        co = self.quiet.coefficients(table, statically_twisted=False, free_play=True)
         ratios = ratio_values(topo)
-        tau = self.period * np.arange(balance.times) / balance.times
-        _, slopes, drive = balance.sampled(motion.deviation, motion.torque)
-        system = balance.line.with_drive(motion.torque)
-        observed = balance.line.observe(system, tau / speed, balance.states(motion.deviation))
+        tau = self.period * np.arange(motion.times) / motion.times
+        rates, slopes = motion.sampled()
+        drive = motion.sampled(more=1.0)[0] - rates
+        observed = line.observe(line.with_drive(motion.torque), tau / speed, motion.states)
         uniform = base_motion(topo, co.straight, tau, ratios).angle[0]
         rigid = base_motion(topo, co, tau, ratios).angle[0] - uniform
         relative = _relative(topo, co, uniform + observed.rotation, ratios)
@@ -103,8 +104,7 @@ class OwnOrders:
         places = channels_of(topo)
         seen = np.zeros((len(tau), places.count))
         seen[:, places.twist], seen[:, places.torque] = observed.twist, observed.torque
-        first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        seen[:, places.deviation] = observed.rotation[:, first]
+        seen[:, places.deviation] = observed.rotation[:, topo.firsts]
         before = [topo.stations[joint].before for joint in topo.joints]
         # Equations are linear about the own motion: where the load twists a joint's input to on average is no swing.
         swing = observed.rotation - rigid
@@ -117,24 +117,27 @@ class OwnOrders:
             base=BaseOfExcitation(relative[None], observed.rotation[None]),
             wave=stiffness_waves(topo, co, tau),
             seen=seen,
-            by_state=np.fft.fft(slopes, axis=0) / len(tau),
-            by_drive=np.fft.fft(drive, axis=0) / len(tau),
+            by_state=np.fft.fft(slopes[:, topo.size :], axis=0) / len(tau),
+            by_drive=np.fft.fft(drive[:, topo.size :], axis=0) / len(tau),
             coefficients=co,
             phase=self.phase,
             rate=2 * np.pi * speed / self.period,
-            count=balance.count,
+            count=motion.h,
         )
 
-    def _motion(self, speed: float) -> tuple[Balance, FreeMotion]:
-        while True:
-            balance = Balance(LineSystem(self.quiet, speed), self.period, self.harmonics, self.phase)
-            motion = balance.solve(self.guess)
-            self.guess = motion.deviation if motion.found else None
+    def _motion(self, speed: float) -> FreeMotion:
+        """The motion, from that of the speed before and with as many harmonics at least."""
+        before = self.last
+
+        def attempt(h: int, last: bool) -> FreeMotion | None:
+            motion = self.balance.solve(speed, h, None if before is None else before.rows)
             if not motion.found:
                 raise ComputationError(f"no own motion of the free line was found at {speed * 30 / np.pi:.5g} rpm")
-            if motion.outermost <= NEGLIGIBLE or self.harmonics >= MOST:
-                return balance, motion
-            self.harmonics = min(2 * self.harmonics, MOST)
+            return motion if motion.resolved or last else None
+
+        self.last = None  # what follows a failure begins anew
+        self.last = with_enough(attempt, self.balance.fewest if before is None else before.h, MOST)
+        return self.last
 
 
 def _relative(topo: Topology, co: LineCoefficients, angle: Array, ratios: Array) -> Array:

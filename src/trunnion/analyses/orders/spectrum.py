@@ -410,8 +410,7 @@ class _Case:
     def _add_base(self, total: OrderSum, rotation: Array, cycles: Fraction, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
         topo = self.topo
-        first = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
-        spectrum = np.fft.rfft(rotation[..., first], axis=1) / rotation.shape[1]
+        spectrum = np.fft.rfft(rotation[..., topo.firsts], axis=1) / rotation.shape[1]
         least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
