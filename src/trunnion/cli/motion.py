@@ -128,10 +128,9 @@ def periodic_response(
             result = compute(line, read_speed(speed, unit), start=_state(start), periods=periods)
     result.outcome.require()
     shown = unit or "rad/s"
-    of_line = isinstance(result, PeriodicResponse)
     written = write_results(
         to, file_stem(file), "periodic-response", result.data,
-        lambda: result.plot(unit=shown) if of_line else result.plot(),
+        lambda: result.plot(unit=shown) if isinstance(result, PeriodicResponse) else result.plot(),
     )  # fmt: skip
     if as_json:
         output.write_json("periodic-response", _response_json(result, written))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,8 @@ from trunnion.writing import written_whole
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+
+    from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -210,9 +212,17 @@ class StabilityChart(Result):
                 for x, code, (radius, error) in zip(self.x.tolist(), self.verdict[i].tolist(), rows, strict=True):
                     writer.writerow([x, y, radius, error, words[code]])
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        unit: str | None = None,
+        resonances: Iterable[Any] | None = None,
+        operating: Operation | None = None,
+        tongues: Any = None,
+    ) -> Axes:
         """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, resonances=resonances, operating=operating, tongues=tongues)
 
     @property
     def unit(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import nan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,9 +68,9 @@ class Envelope(Result):
     unit: str
     findings: tuple[Finding, ...] = ()
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, schedule: str = "") -> Axes:
         """Margins of the worst checks along a schedule; see ``plots.envelope.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, schedule=schedule)
 
     @property
     def sentence(self) -> str:

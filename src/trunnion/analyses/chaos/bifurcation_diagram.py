@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,9 +64,9 @@ class BifurcationDiagram(Result):
         yield from ending(self.outcome)
         yield from parameters_of(self.system)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
         """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, state=state)
 
     def __str__(self) -> str:
         unit = self.system.parameter_units.get(self.parameter, "1")

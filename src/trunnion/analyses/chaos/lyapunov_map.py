@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,9 +66,9 @@ class LyapunovSweep(Result):
         yield over("value order", "half_width", self.half_width, "1/s")
         yield from _remarks(self)
 
-    def plot(self, axes: Axes | None = None) -> Axes:
+    def plot(self, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
         """Exponents over the parameter."""
-        return drawing(self, "plot")(self, axes)
+        return drawing(self, "plot")(self, axes, mark=mark)
 
     def __str__(self) -> str:
         known = np.isfinite(self.exponents[:, 0])
@@ -116,9 +116,9 @@ class LyapunovMap(Result):
         yield over("y x", "half_width", self.half_width, "1/s")
         yield from _remarks(self)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None) -> Axes:
         """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         known = int(np.isfinite(self.exponent).sum())

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,9 +79,9 @@ class PoincareMap(Result):
         yield from ending(self.outcome)
         yield from parameters_of(self.system)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
         """One state over another; see ``trunnion.plots.chaos.draw_map``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, x=x, y=y, points=points)
 
     def __str__(self) -> str:
         count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -141,9 +141,9 @@ class Comparison(Result):
             for one in self.differences
         ]
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, most: int = 12) -> Axes:
         """Margins of checks before and after, or else frequencies; see ``plots.comparison.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, most=most)
 
     def __str__(self) -> str:
         rows = [f"{self.names[0]} → {self.names[1]}: {self.sentence}"]

@@ -241,9 +241,9 @@ class Kinetostatics(Result):
             )
         return rows
 
-    def plot(self, **options: Any) -> Figure:
+    def plot(self, *, unit: str | None = None) -> Figure:
         """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
-        return drawing(self, "plot")(self, **options)
+        return drawing(self, "plot")(self, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:
         """The summary that printing gives, the input speed in ``unit``, by default that of the line's description."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,8 @@ from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
 STABILITY = "stability"
@@ -216,9 +218,16 @@ class StableLimit(Result):
         if self.whole is not None:
             yield remark("whole_range", self.whole.sentence)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        unit: str = "",
+        operating: Operation | None = None,
+        values: dict[str, float] | None = None,
+    ) -> Axes:
         """Limits over speed; see ``plots.stable_limit.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, operating=operating, values=values)
 
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""

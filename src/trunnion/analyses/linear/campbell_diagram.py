@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +37,8 @@ from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -199,9 +201,16 @@ class CampbellDiagram(Result):
         rows += [f"  {finding}" for finding in self.findings_in(unit)]
         return "\n".join(rows)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        unit: str | None = None,
+        frequency_unit: str = "Hz",
+        operating: Operation | None = None,
+    ) -> Axes:
         """Modes with their margin over speed, excitation lines, crossings; see ``plots.campbell_diagram.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, frequency_unit=frequency_unit, operating=operating)
 
     def __str__(self) -> str:
         return self.describe()

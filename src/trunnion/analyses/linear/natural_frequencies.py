@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,9 +100,9 @@ class NaturalFrequencies(Result):
             for i, (w, z, v) in enumerate(zip(self.frequency, self.damping_ratio, self.shape.T, strict=True))
         ]
 
-    def plot(self, **options: Any) -> Figure:
+    def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
         """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
-        return drawing(self, "plot")(self, **options)
+        return drawing(self, "plot")(self, unit=unit, drive=drive)
 
     def __str__(self) -> str:
         unit = speed_unit(self.assembly.line)

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,6 +45,8 @@ from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -115,9 +117,9 @@ class SpeedSweep(Result):
         yield over("speed", "cut_off", self.cut_off, "1")
         yield remark("linear_range", LINEAR_RANGE)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, unit: str = "", operating: Operation | None = None) -> Axes:
         """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, operating=operating)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``: where the motion is unstable, what is left out."""

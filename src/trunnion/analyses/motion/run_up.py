@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,9 +177,9 @@ class RunUp(Result):
         yield remark("ramp", self.ramp)
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
         """Envelope against the steady response; see ``trunnion.plots.run_up``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, shaft=shaft, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""

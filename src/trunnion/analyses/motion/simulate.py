@@ -169,13 +169,15 @@ class LineSimulation(Result):
         yield remark("tolerance", self.pieces[0].tolerance)
         yield remark("steps", self.steps)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
         """Torques over time; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, shafts=shafts, unit=unit)
 
-    def plot_order_map(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot_order_map(
+        self, axes: Axes | None = None, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = ""
+    ) -> Axes:
         """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
-        return drawing(self, "plot_order_map")(self, axes, **options)
+        return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
 
     def __str__(self) -> str:
         rows = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,13 +108,13 @@ class Simulation(Result):
         yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
         yield from parameters_of(self.system)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
         """Time histories; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, states=states)
 
-    def plot_portrait(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot_portrait(self, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0) -> Axes:
         """One state over another; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot_portrait")(self, axes, **options)
+        return drawing(self, "plot_portrait")(self, axes, x=x, y=y, from_time=from_time)
 
     def __str__(self) -> str:
         low, high = self.time_range

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,9 +95,9 @@ class Optimum(Result):
         rows = np.concatenate([self.front, self.rounded(self.front_value)], axis=1).tolist()
         return [{n: in_words(v, u) for n, u, v in zip(names, units, row, strict=True)} for row in rows]
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None) -> Axes:
         """The front, or of one aim where the numbers lie between their bounds; see ``plots.optimum.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         rows = [self.sentence]

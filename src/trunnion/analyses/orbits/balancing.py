@@ -60,9 +60,9 @@ class SeriesBranch(Result):
         yield remark("harmonics", self.harmonics)
         yield remark("periods", self.periods)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
-        return self.branch.plot(axes, **options)
+        return self.branch.plot(axes, curve=curve, unit=unit, jumps=jumps)
 
     @property
     def _worst(self) -> str:

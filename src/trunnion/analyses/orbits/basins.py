@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -52,9 +52,9 @@ class Basins(Result):
             yield over("attractor_number", name, np.array([getattr(orbit, name) for orbit in self.attractors]))
         yield over("attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str))
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
         """Map of the starts; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, length=length)
 
     def __str__(self) -> str:
         rows = [

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,9 +191,9 @@ class PeriodicBranch(Result):
         yield over("special", "special_parameter", np.array([p.parameter for p in self.special]), self.unit)
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, curve=curve, unit=unit, jumps=jumps)
 
     @property
     def axis(self) -> QuantityAxis:

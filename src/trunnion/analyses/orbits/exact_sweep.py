@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -118,9 +118,9 @@ class LineSweep(Result):
         yield remark("direction", "up" if self.up else "down")
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
         """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
 
     @property
     def unit(self) -> str:

@@ -132,9 +132,18 @@ class FrequencyResponse(Result):
         yield remark("curve", self.curve)
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        length: str = "",
+        unit: str | None = None,
+        marks: bool = True,
+        jumps: bool = True,
+        top: float | None = None,
+    ) -> Axes:
         """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def describe(self, unit: str | None = None) -> str:
         """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``, by default in its own ``unit``."""
@@ -195,9 +204,18 @@ class ResponseComparison(Result):
         yield over("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
         yield over("point", "stable", np.concatenate([r.stable for r in found]))
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        length: str = "",
+        unit: str | None = None,
+        marks: bool = True,
+        jumps: bool = True,
+        top: float | None = None,
+    ) -> Axes:
         """All on one picture."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def describe(self, unit: str | None = None) -> str:
         """The table as text."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,9 +109,9 @@ class PeriodicOrbit(Result):
         yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
         yield from parameters_of(self.system)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
         """Portrait of the orbit; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, x=x, y=y)
 
     def __str__(self) -> str:
         if not self.outcome.ok:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -231,13 +231,13 @@ class PeriodicResponse(Result):
         yield from ending(self.outcome)
         yield remark("comparison", str(self.comparison or self.no_comparison))
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
         """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit)
 
-    def plot_orders(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot_orders(self, axes: Axes | None = None, *, highest: float = 12.0) -> Axes:
         """Torque amplitude of every order; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot_orders")(self, axes, **options)
+        return drawing(self, "plot_orders")(self, axes, highest=highest)
 
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,9 +87,9 @@ class Sweep(Result):
         yield remark("direction", "up" if self.up else "down")
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, length=length, unit=unit)
 
     @property
     def unit(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -264,9 +266,20 @@ class OrderResponse(Result):
         yield remark("linear_range", LINEAR_RANGE)
         yield remark("sum_is_bound", int(self.sum_is_bound))
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        spring: str | None = None,
+        unit: str | None = None,
+        operating: Operation | None = None,
+        limit: float | None = None,
+        limits: Mapping[str, float] | None = None,
+    ) -> Axes:
         """Torque by order over speed of the most loaded spring; see ``plots.order_response.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(
+            self, axes, spring=spring, unit=unit, operating=operating, limit=limit, limits=limits
+        )
 
     @property
     def headline(self) -> str:

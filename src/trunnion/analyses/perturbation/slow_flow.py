@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,9 +84,18 @@ class ApproximateResponse(Result):
         yield remark("note", self.note)
         yield from ending(self.outcome)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        length: str = "",
+        unit: str | None = None,
+        marks: bool = True,
+        jumps: bool = True,
+        top: float | None = None,
+    ) -> Axes:
         """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def __str__(self) -> str:
         at, size = self.peak

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, log10, nan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,10 +192,10 @@ class Sensitivities(Result):
         yield over("quantity parameter", "change", self.change, about="by the usual step, in the unit of the quantity")
         yield remark("findings", [str(f) for f in self.findings])
 
-    def plot(self, quantity: str | None = None, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, quantity: str | None = None, axes: Axes | None = None, *, most: int = 10) -> Axes:
         """Bars of what one quantity follows most, by default the first check, torque or growth rate there is; see
         ``plots.sensitivity.draw``."""
-        return drawing(self, "plot")(self, quantity, axes, **options)
+        return drawing(self, "plot")(self, quantity, axes, most=most)
 
     def __str__(self) -> str:
         many = "quantity" if len(self.quantities) == 1 else "quantities"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -107,9 +107,9 @@ class ToleranceStudy(Result):
         if self.checks is not None:
             yield from self.checks.declared()
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None) -> Axes:
         """The growth rate's distribution, and the parameters by rank; see ``plots.tolerance.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         low, high = self.interval

@@ -6,7 +6,7 @@ import csv
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,9 +184,11 @@ class Tongues(Result):
             for tongue in self.tongues:
                 writer.writerows([tongue.number, tongue.name, x, y] for x, y in tongue.boundary.tolist())
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(
+        self, axes: Axes | None = None, *, unit: str | None = None, pixel: float | None = None, labelled: int = 12
+    ) -> Axes:
         """The boundaries as curves, over a chart if ``axes`` shows one; see ``plots.tongues.draw``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, pixel=pixel, labelled=labelled)
 
     def table(self) -> list[dict[str, object]]:
         """One row a tongue, SI units."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,9 +114,9 @@ class StableWindows(Result):
         yield remark("search", self.search)
         yield remark("sentence", self.sentence)
 
-    def plot(self, axes: Axes | None = None, **options: Any) -> Axes:
+    def plot(self, axes: Axes | None = None, *, unit: str | None = None, labelled: int = 12) -> Axes:
         """The unstable regions over speed and parameter; see ``plots.tongues.draw_windows``."""
-        return drawing(self, "plot")(self, axes, **options)
+        return drawing(self, "plot")(self, axes, unit=unit, labelled=labelled)
 
     def __str__(self) -> str:
         return "\n".join([self.sentence, f"  {self.search}", *(f"  note: {r}" for r in self.tongues.remarks)])
