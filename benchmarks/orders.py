@@ -2,7 +2,8 @@
 
     PYTHONPATH=src python benchmarks/orders.py [--repeats 5]
 
-Warm, the median of a few runs; extremes over the cycle (``peak_torque``) are found when asked for and timed apart.
+Warm, the median of a few runs; extremes over the cycle (``peak_torque``) are found when asked for and timed apart. If
+openTorsion is installed (pip install opentorsion), its own steady response of the same chain stands beside it.
 """
 
 from __future__ import annotations
@@ -43,6 +44,34 @@ def truck() -> tn.Driveline:
     return line.replace("gearbox flange", excitation=orders)
 
 
+def open_torsion(line: tn.Driveline, speeds: np.ndarray) -> Callable[[], list[np.ndarray]] | None:
+    """openTorsion's rotations of the chain, all orders at one speed after the other; None where it is not installed."""
+    try:
+        import opentorsion as ot
+    except ImportError:
+        return None
+    disks = [e for e in line.elements if isinstance(e, tn.Disk)]
+    shafts = [e for e in line.elements if isinstance(e, tn.Shaft)]
+    assembly = ot.Assembly(
+        [ot.Shaft(i, i + 1, k=s.stiffness, c=s.damping) for i, s in enumerate(shafts)],
+        disk_elements=[ot.Disk(i, I=d.inertia) for i, d in enumerate(disks)],
+    )
+    shaken = {i: d.excitation for i, d in enumerate(disks) if d.excitation}
+    orders = np.array([h.order for h in next(iter(shaken.values()))])
+
+    def work() -> list[np.ndarray]:
+        found = []
+        for speed in speeds:
+            forces = ot.PeriodicExcitation(len(disks), orders * speed)
+            for i, harmonics in shaken.items():
+                sizes, phases = (np.array([getattr(h, key) for h in harmonics]) for key in ("amplitude", "phase"))
+                forces.add_sines(i, orders * speed, sizes, phases)
+            found.append(assembly.ss_response(forces.U, orders * speed)[0])
+        return found
+
+    return work
+
+
 def median(work: Callable[[], object], repeats: int) -> float:
     """Seconds of ``work``, once for warmth and then the median."""
     work()
@@ -70,6 +99,16 @@ def main() -> None:
         print(
             f"{name}, {SPEEDS} speeds: {response:.3f} s (target {target} s); with extremes over the cycle {both:.3f} s"
         )
+        rival = open_torsion(line, speeds) if not line.name else None
+        if rival is not None:
+            other, found = median(rival, repeats), tn.order_response(line, speeds)
+            shaft = [e for e in line.elements if isinstance(e, tn.Shaft)]
+            k, c = (np.array([getattr(s, key) for s in shaft])[:, None] for key in ("stiffness", "damping"))
+            torque = [
+                ((k + 1j * c * v * found.order) * np.diff(q, axis=0)).T for v, q in zip(speeds, rival(), strict=True)
+            ]
+            apart = np.abs(found.torque - torque).max() / np.abs(found.torque).max()
+            print(f"  openTorsion {other:.3f} s, {other / response:.1f} times as long; torques apart by {apart:.1g}")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.analyses.orders.response import rough_response
+from trunnion.equations.coefficients import assemble
 
 ENGINE = ((3.0, 20.0, 0.3), (2.0, 30.0, 0.0), (0.5, 5.0, 1.0))
 
@@ -159,3 +161,62 @@ def test_a_transmission_error_makes_no_line_unstable() -> None:
             assert loud.verdict is quiet.verdict
             assert loud.spectral_radius == pytest.approx(quiet.spectral_radius, abs=1e-7)
             assert "without what motor, mesh excite" in str(loud)
+
+
+def lossy(angle: float, scale: float = 1.0, eta: float = 0.1) -> tn.Driveline:
+    """Two masses, a joint on the first, a shaft whose loss factor holds at all frequencies."""
+    shaken = [{"order": 1.5, "amplitude": 25.0 * scale, "phase": 0.6}]
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.3, name="motor", drive_share=1, excitation=shaken),
+            tn.HookeJoint(angle=angle),
+            tn.Shaft(stiffness=5e3, loss_factor=eta, name="shaft"),
+            tn.Disk(inertia=0.4, name="load"),
+        ]
+    )
+
+
+@pytest.mark.parametrize("speed", [18.0, 55.0, 90.0])
+def test_a_loss_factor_of_a_bent_free_line_by_hills_matrix_entry_by_entry(speed: float) -> None:
+    """k(1 + iη sgn ν) at every harmonic of the twist q = x₂ − ηx₁ about rigid shafts, without load."""
+    beta, order, eta, reach, cycle = 0.35, 1.5, 0.1, 10, np.arange(256) * np.pi / 256
+    ratio = np.cos(beta) / (1 - np.sin(beta) ** 2 * np.cos(cycle) ** 2)
+    e = np.fft.fft(ratio) / 256
+    m = np.arange(-reach, reach + 1)
+    nu, size = (order + 2 * m) * speed, len(m)
+    transfer = np.array([[e[i - j] for j in range(size)] for i in range(size)])
+    stiff = np.diag(5e3 * (1 + 1j * eta * np.sign(nu)))
+    a = np.zeros((2 * size, 2 * size), dtype=complex)
+    a[:size, :size] = transfer.T.conj() @ stiff @ transfer - np.diag(nu**2 * 0.3)
+    a[:size, size:], a[size:, :size] = -transfer.T.conj() @ stiff, -stiff @ transfer
+    a[size:, size:] = stiff - np.diag(nu**2 * 0.4)
+    right = np.zeros(2 * size, dtype=complex)
+    right[reach] = 25.0 * np.exp(0.6j)
+    x = np.linalg.solve(a, right)
+    torque = stiff @ (x[size:] - transfer @ x[:size])
+    folded: dict[float, complex] = {}
+    for k, value in zip(order + 2 * m, torque, strict=True):
+        folded[abs(k)] = folded.get(abs(k), 0) + (value if k > 0 else np.conj(value))
+    wanted = [0.5, 1.5, 2.5, 3.5]
+    found = tn.order_response(lossy(beta), [speed], orders=wanted)
+    expected = np.array([folded[k] for k in wanted])
+    assert found.torque[0, :, 0] == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+    assert any("motion of its rigid shafts" in str(f) for f in found.findings)
+
+
+def test_the_motion_of_rigid_shafts_serves_as_well_to_first_order() -> None:
+    """Against the same line about its own motion: what is left out falls with the square as all causes shrink."""
+
+    def apart(scale: float) -> float:
+        line = chain(scale, np.sqrt(scale))
+        own = tn.order_response(line, [100.0])
+        rigid = rough_response(assemble(line), np.array([100.0]))
+        return float(np.abs(own.vibratory_torque - rigid.vibratory_torque).max())
+
+    large, small = apart(0.1), apart(0.001)
+    assert 1.9 < np.log(large / small) / np.log(100)
+
+
+def test_a_lossy_bent_free_line_is_straight_where_its_joint_is() -> None:
+    bent, straight = (tn.order_response(lossy(angle), [20.0, 80.0], orders=[1.5]) for angle in (1e-5, 0.0))
+    assert bent.torque == pytest.approx(straight.torque, rel=1e-8)

@@ -235,8 +235,7 @@ def _refuse_any_frequency(line: Driveline) -> None:
                 element=name,
                 key="loss_factor" if element.loss_factor is not None else "relative_damping",
                 value=element.loss_factor if element.loss_factor is not None else element.loss * 2 * np.pi,
-                remedy='write loss_factor_frequency = "50 Hz", where it is to hold (only tn.order_response of lines '
-                "that are straight or driven needs none)",
+                remedy='write loss_factor_frequency = "50 Hz", where it is to hold (only tn.order_response needs none)',
             )
 
 

@@ -87,6 +87,19 @@ def order_response(
     return _result(assembly, spectrum, judged, wanted)
 
 
+def rough_response(assembly: Assembly, speeds: Array) -> OrderResponse:
+    """To look around: right to first order in what joints and varying meshes force, a fraction of the time.
+
+    Raises
+    ------
+    InputError : as of ``order_response``.
+    """
+    table = assembly.table(len(speeds))
+    table[:, 0] = speeds
+    require_steady_base(assembly, table)
+    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, rough=True))
+
+
 def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
     """The response of one case a row of packed numbers ``table`` (case, column), each at its own speed.
 
@@ -229,6 +242,12 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
         yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
+    if assembly.topology.free and bent(assembly) and spectrum.loss.any():
+        yield Finding(
+            Gravity.NOTE,
+            "A loss factor without a frequency has no motion in time: this bent line that starts free is taken about "
+            "the motion of its rigid shafts, right to first order in what joints and excitations force.",
+        )
     yield from _nominal_angle(assembly, spectrum, at_work)
     yield from _swing_of_clutches(assembly, spectrum)
     yield from left_out("order_response", assembly.line)

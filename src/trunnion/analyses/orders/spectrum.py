@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
-FEWEST, MOST = 3, 48
+FEWEST, MOST, ROUGH_REACH = 3, 48, 1
 """Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""
 SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
@@ -58,20 +58,23 @@ def order_spectrum(
     table: Array | None = None,
     statically_twisted: bool = True,
     linearised: bool = False,
+    rough: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> OrderSpectrum:
     """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
 
     ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case. With
     ``linearised`` each is solved as X₀ + A₀⁻¹(G − AX₀) about the first, X₀: right to first order, and as smooth a
-    function of the numbers as A and G are, however near a resonance.
+    function of the numbers as A and G are, however near a resonance. With ``rough`` each cause
+    makes the nearest side orders alone, and a bent line that starts free is taken about the motion of rigid shafts:
+    right to first order in what joints force, a tenth of the time.
 
     Raises
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     shaken = exciters(assembly)
-    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised)
+    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough)
     parts: list[tuple[OrderSum, Array]] = []
     done = 0
     while done < len(speed):
@@ -159,8 +162,9 @@ class _Case:
         statically_twisted: bool,
         numbers: Array,
         linearised: bool,
+        rough: bool,
     ) -> None:
-        self.linearised = linearised
+        self.linearised, self.rough = linearised, rough
         self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
         self.twisted = statically_twisted
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
@@ -171,8 +175,10 @@ class _Case:
         self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
-        self.own = _own_orders(assembly, self.turns) if self.topo.free and bent(assembly) else None
-        self.reach = _reach(one.joints)
+        # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
+        about_rigid = rough or bool(one.loss.any())
+        self.own = _own_orders(assembly, self.turns) if self.topo.free and bent(assembly) and not about_rigid else None
+        self.reach = ROUGH_REACH if rough else _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.few: Array | None = None
         self.written: dict[int, _Written] = {}
@@ -213,7 +219,7 @@ class _Case:
             return self._straight(table), np.zeros(len(table))
         while True:
             found, last = self._bent(table, self.reach)
-            if self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
+            if self.rough or self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
                 return found, last
             self.reach = min(MOST, self.reach + max(1, self.reach // 2))
 
