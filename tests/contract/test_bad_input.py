@@ -179,17 +179,22 @@ PYTHON = [
     (lambda: line(limits=[Limit(of="Coupling *", max_torque=1)]), "limit.of = 'Coupling *': has no el", "Shaft *"),
     (
         lambda: line(limits=[Limit(of="Disk 1", max_torque=1)]),
-        "limit of Disk 1.max_torque = 1: does not belong to a Disk",
+        "limit of Disk 1.max_torque = '1 N*m': does not belong to a Disk",
         "max_acceleration",
     ),
     (
-        lambda: line(limits=[Limit(of="Shaft *", max_stress=1)]),
-        "limit of Shaft *.max_stress = 1: needs the outer_diameter",
+        lambda: line(limits=[Limit(of="Disk 1", max_twist="2 deg")]),
+        "limit of Disk 1.max_twist = '2 deg': does not belong to a Disk",
+        "max_acceleration",
+    ),
+    (
+        lambda: line(limits=[Limit(of="Shaft *", max_stress="40 MPa")]),
+        "limit of Shaft *.max_stress = '40 MPa': needs the outer_diameter",
         "outer_diameter, length",
     ),
     (
         lambda: line(limits=[Limit(of="Shaft 1", max_torque=1), Limit(of="Shaft 1", max_torque=2)]),
-        "limit of Shaft 1.max_torque = 2: is stated twice",
+        "limit of Shaft 1.max_torque = '2 N*m': is stated twice",
         "leave one",
     ),
     (lambda: line(limits={"of": "Shaft 1"}), "driveline.limits = ", "tn.Limit("),

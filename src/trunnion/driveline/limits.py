@@ -37,6 +37,7 @@ from trunnion.driveline.quantities import (
     Pressure,
     Speed,
     Torque,
+    shown,
 )
 from trunnion.driveline.refusals import nearest, numbered, refuse
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -239,13 +240,18 @@ def wrong_limits(limits: Sequence[Limit], names: Sequence[str], elements: Sequen
         for key, value in limit.stated.items():
             if key in ("of", "margin"):
                 continue
-            where: dict[str, Any] = {"element": label, "key": key, "value": value}
+            where: dict[str, Any] = {"element": label, "key": key, "value": _with_unit(key, value)}
             lacking = [_lacks(element, key) for element in concerned]
             if all(lacking):
                 yield InputError(lacking[0] or "", **where, remedy=_remedy(concerned[0], key))
             if (limit.of, key) in seen:
                 yield InputError("is stated twice", **where, remedy="leave one of the two out")
             seen.add((limit.of, key))
+
+
+def _with_unit(key: str, value: object) -> object:
+    """A limit as an engineer writes it: it is kept in SI, in which nobody would know it again."""
+    return shown(value, LIMIT_KINDS[key]) if isinstance(value, float) and LIMIT_KINDS[key] is not RATIO else value
 
 
 def _lacks(element: Element, key: str) -> str | None:
