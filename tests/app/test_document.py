@@ -138,6 +138,23 @@ def test_a_number_that_a_slider_moves_is_written_short_and_the_others_stay() -> 
     assert document.line.elements[1].stiffness == third
 
 
+def test_a_stated_default_stays_stated() -> None:
+    """When another number moves, when it is itself moved to its default and back, in the file, and undone."""
+    document = Document(starter("two-shaft"))
+    document.set_text(("element", 4, "fork_offset"), "0 deg")
+    before = fields(document)
+    assert before["element", 5, "load_torque"][0] == "0 N*m"
+    document.set_numbers(document.line.replace("HookeJoint 1", angle="0 deg"), "HookeJoint 1.angle")
+    assert fields(document) == before | {("element", 3, "angle"): ("0 deg", "")}
+    assert fields(Document(document.toml)) == fields(document)
+    document.set_numbers(document.line.replace("load", load_torque="50 N*m"))
+    document.set_numbers(document.line.replace("load", load_torque=0.0))
+    assert fields(document)["element", 5, "load_torque"][0] == "0 N*m"
+    document.set_numbers(document.line.replace("load", load_torque="50 N*m"))
+    document.undo()
+    assert fields(document)["element", 5, "load_torque"][0] == "0 N*m"
+
+
 def test_elements_are_added_moved_and_removed() -> None:
     document = Document(starter("two-shaft"))
     document.add_element(2, "Disk")

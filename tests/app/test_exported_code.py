@@ -43,6 +43,7 @@ SETTINGS = [
     pytest.param("motion", {"what": "run-up", "rate": "400"}, marks=pytest.mark.slow),
     ("motion", {"what": "section", "returns": "20"}),
     ("motion", {"what": "section", "returns": "20", "of": "double-tripod"}),
+    ("motion", {"what": "section", "returns": "20", "of": "double-tripod-output"}),
     pytest.param("motion", {"what": "exponents"}, marks=pytest.mark.slow),
     pytest.param("motion", {"what": "chaos"}, marks=pytest.mark.slow),
     pytest.param("motion", {"what": "chaos", "of": "gear-rattle"}, marks=pytest.mark.slow),

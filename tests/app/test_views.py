@@ -96,6 +96,37 @@ def saved(look: Look, name: str, folder: Path) -> Path:
     return path
 
 
+def test_a_click_computes_the_point_alone(look: Look) -> None:
+    """The chart stays as it is, and no coarse one comes before it."""
+    look.at(STABILITY)
+    look.page.locator("[data-chart='chart']").wait_for()
+    said = "e => e.dataset.chart + e.dataset.count"
+    before = look.page.locator("[data-count]").evaluate(said)
+    look.type("Look at input speed [rpm]", "707")
+    look.page.locator("td[data-value='speed']", has_text="707 rpm").wait_for()
+    look.settled()
+    assert look.page.locator("[data-count]").evaluate(said) == before
+
+
+MODE = """() => Bokeh.documents.flatMap(d => [...d._all_models.values()])
+  .filter(m => m.type === 'ColumnDataSource' && m.data.shape).map(m => Array.from(m.data.y))[0]"""
+"""Rotations that the picture of a mode shows now."""
+
+
+def test_a_mode_moves_and_stops_as_it_was(look: Look) -> None:
+    look.at("?view=orders")
+    still = look.page.evaluate(MODE)
+    assert max(map(abs, still)) == pytest.approx(1)
+    button = look.page.get_by_role("button", name="Move the mode")
+    button.click()
+    look.page.wait_for_function(f"still => ({MODE})()[0] < 0.5 * still", arg=still[0])
+    moved = look.page.evaluate(MODE)
+    assert moved[0] / still[0] == pytest.approx(moved[1] / still[1])
+    button.click()
+    look.page.wait_for_function(f"still => ({MODE})()[0] === still", arg=still[0])
+    assert look.page.evaluate(MODE) == still
+
+
 @pytest.mark.slow
 def test_exported_python_gives_the_numbers_on_screen(look: Look, tmp_path: Path) -> None:
     look.at(STABILITY + "&stability.at_x=707.0&stability.at_y=19.5&stability.look=True")

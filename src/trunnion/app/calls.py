@@ -64,9 +64,16 @@ def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft:
     What is ``soft`` may be refused: the program says so and goes on.
     """
     body, now = [], toml
+    asked_for: list[tuple[str, Call, str]] = []
     for name, (call, of) in results.items():
         if call == THE_LINE:
             continue
+        again = next((n for n, *what in asked_for if what == [call, of]), "")
+        if again:
+            body.append(f"{name} = {again}")
+            continue
+        if name not in soft:
+            asked_for.append((name, call, of))
         change = f"line = tn.loads({_block(of)})\n" if of != now else ""
         asked = f"{name} = {call.text()}\nprint({name})"
         if name in soft:

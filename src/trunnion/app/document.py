@@ -66,7 +66,7 @@ class Document:
         line = loads(text)
         self.data: dict[str, Any] = tomllib.loads(text)
         self.line: Driveline = line
-        self.toml = dumps(line)
+        self.toml = text
         self.problems: tuple[InputError, ...] = ()
         self.remarks: tuple[str, ...] = ()
         self._undo: list[dict[str, Any]] = []
@@ -98,7 +98,7 @@ class Document:
 
     def set_numbers(self, line: Driveline, by: str = "") -> None:
         """Take over a line whose numbers were changed elsewhere; moves of one slider ``by`` are undone as one."""
-        data = _texts_kept(tomllib.loads(dumps(line)), self.data)
+        data = _texts_kept(tomllib.loads(dumps(line)), self.data, line)
         if by and by == self._mover:
             self.data = data
             self._judge()
@@ -203,13 +203,14 @@ class Document:
 
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", InputRemark)
+            text = tomli_w.dumps(self.data)
             try:
-                self.line = loads(tomli_w.dumps(self.data))
+                self.line = loads(text)
             except InputError as error:
                 self.problems = error.problems
             else:
                 self.problems = ()
-                self.toml = dumps(self.line)
+                self.toml = text  # as typed: what is stated stays so, be it a default
         self.remarks = tuple(dict.fromkeys(str(w.message) for w in said))
 
     # -- what the editor shows ----------------------------------------------------------------------------------
@@ -336,12 +337,20 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
 """What a new element starts with."""
 
 
-def _texts_kept(data: dict[str, Any], before: dict[str, Any]) -> dict[str, Any]:
-    """``data`` with the numbers of elements as ``before`` wrote them where they stay, and short where they change."""
-    for new, old in zip(data.get("element", []), before.get("element", []), strict=False):
+def _texts_kept(data: dict[str, Any], before: dict[str, Any], line: Driveline) -> dict[str, Any]:
+    """``data`` of ``line`` with the numbers of elements as ``before`` wrote them where they stay, and short where they
+    change. A field that was stated stays so with its default value too, which ``data`` leaves out."""
+    for key, value in before.items():
+        if key not in data and key in Driveline.model_fields and getattr(line, key) == value:
+            data[key] = value
+    tables = zip(data.get("element", []), before.get("element", []), line.elements, strict=False)
+    for place, (new, old, element) in enumerate(tables):
         model = KINDS.get(str(new.get("type", "")))
         if model is None or old.get("type") != new.get("type"):
             continue
+        added = {k: getattr(element, k) for k in old if k not in new and k in model.model_fields}
+        stated = new | {k: v for k, v in added.items() if isinstance(v, str | int | float)}
+        new = data["element"][place] = {k: stated[k] for k in dict.fromkeys([*old, *new]) if k in stated}
         for key, text in new.items():
             kind = model.quantity_of(key) if key in model.model_fields else None
             if kind is not None and isinstance(text, str | int | float):

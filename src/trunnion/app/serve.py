@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import signal
 import socket
 import sys
@@ -46,6 +47,7 @@ def serve(
     if find_spec("panel") is None:
         raise ComputationError('the application needs Panel: install it with  pip install "trunnion[app]"')
     interrupts = Interrupts()
+    gc.disable()  # modules that load leave nothing to collect; see _serve_on
     listening = _listening(port)
     port = listening.getsockname()[1]
     address = f"http://{ADDRESS}:{port}/"
@@ -104,6 +106,8 @@ def _serve_on(listening: socket.socket, toml: str, pool: Pool, loop: Any, interr
     server = _server(toml, listening, pool, IOLoop.current())
     try:
         server.start()
+        gc.freeze()
+        gc.enable()
         interrupts.loaded()
         loop.call_soon(pool.start)
         loop.call_later(LATEST, pool.warm, WARMING)

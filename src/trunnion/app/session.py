@@ -16,7 +16,7 @@ from panel.io.state import set_curdoc
 from trunnion.app import address
 from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
-from trunnion.app.jobs import Job
+from trunnion.app.jobs import Answer, Job
 from trunnion.app.page import Page
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.variants import Sliders, buttons, difference
@@ -29,6 +29,8 @@ from trunnion.errors import InputError, TrunnionError
 
 QUIET = 0.05
 """Seconds without a further change before a computation takes the place of one under way."""
+QUICK = 0.15
+"""Seconds that a computation takes at most for which nothing is shown in advance."""
 UNSAID = 0.25
 """Seconds that a computation takes without a word: a bar that comes and goes at once only makes the page jump."""
 KEPT, NOW = "kept", "now"
@@ -46,6 +48,8 @@ class Session:
         self.said_from = 0.0
         self.task: asyncio.Task[None] | None = None
         self.side_tasks: set[asyncio.Task[None]] = set()
+        self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
+        self.took: dict[tuple[str, str], float] = {}
         query = _query()
         failure = self._read_lines(query)
         self.page = Page(self.show_view, self.cancel)
@@ -216,26 +220,49 @@ class Session:
     async def _steps(self, sides: list[str]) -> None:
         view = self.view
         lines = {side: self._toml(side) for side in sides}
-        steps = {side: view.steps(self.line(side)) for side in sides}
-        done, total = 0, sum(map(len, steps.values()))
         remarks: list[str] = []
+        steps = {side: self._unknown(view, side, lines[side], remarks) for side in sides}
+        done, total = 0, sum(map(len, steps.values()))
         for place in range(max(map(len, steps.values()), default=0)):
             for side in reversed(sides):
                 if place >= len(steps[side]):
                     continue
-                step = steps[side][place]
+                step, begin = steps[side][place], asyncio.get_running_loop().time()
+                job = step.job(lines[side])
                 try:
-                    answer = await self.pool.run(step.job(lines[side]), self, partial(self._progress, done, total))
+                    answer = await self.pool.run(job, self, partial(self._progress, done, total))
                 except TrunnionError as error:
                     if not step.soft:
                         raise
                     self.locked(partial(view.of(side).refused, step.name, str(error)))
                 else:
                     remarks += answer.remarks
+                    if step.lasting:
+                        self.known[view.name, side, step.name] = job, answer
                     self.locked(partial(view.of(side).show, step.name, answer.value))
+                self.took[view.name, step.name] = asyncio.get_running_loop().time() - begin
                 done += 1
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
         self.pool.warm(WARMING, self)
+
+    def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[Step]:
+        """The steps of a side that are to be computed; what is known is shown at once, its remarks are added."""
+        left, known = [], []
+        for step in view.steps(self.line(side)):
+            job, answer = self.known.get((view.name, side, step.name), (None, None))
+            if answer is None or job != step.job(toml):
+                left.append(step)
+            else:
+                known.append((step.name, answer.value))
+                remarks += answer.remarks
+        if known:
+            self.locked(lambda: [view.of(side).show(*one) for one in known])
+        names = {step.name for step in left}
+        return [s for s in left if not s.preview_of or (s.preview_of in names and self._is_slow(view, s.preview_of))]
+
+    def _is_slow(self, view: View, name: str) -> bool:
+        """Whether a step took long when it was last computed, or never was."""
+        return self.took.get((view.name, name), QUICK) >= QUICK
 
     async def ask(self, call: Call, show: str, side: str, **options: Any) -> Any:
         """What one further computation for a side gives."""

@@ -119,8 +119,12 @@ def orders(result: Any, spring: str) -> Plain:
         "vibratory": result.vibratory_torque[:, at],
         "peak": result.peak_torque[:, at],
         "bound": result.sum_is_bound,
-        "findings": [str(f) for f in result.findings],
     }
+
+
+def findings(result: Any) -> list[str]:
+    """What is to be read before the numbers."""
+    return [str(f) for f in result.findings]
 
 
 def wave(result: Any, spring: str) -> Plain:

@@ -36,7 +36,8 @@ class Step:
 
     files: endings of its data; picture: method that draws it ("" for none); drawing: its arguments; columns: variables
     that a CSV holds, for results of many axes; line: a changed line that the step is about; soft: a refusal
-    leaves the other steps standing and is shown in its place.
+    leaves the other steps standing and is shown in its place; lasting: its answer is kept, and shown again at once
+    while the job is the same; preview_of: a step that shows the same better, and is waited for where it was quick.
     """
 
     name: str
@@ -50,6 +51,8 @@ class Step:
     title: str = ""
     line: Driveline | None = None
     soft: bool = False
+    lasting: bool = False
+    preview_of: str = ""
 
     def job(self, toml: str) -> Job:
         """The computation for a line, or for the changed one that the step has of its own."""

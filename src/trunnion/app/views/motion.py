@@ -44,14 +44,18 @@ ASKS = {
 OF_LINE = "line"
 SYSTEMS: dict[str, Call] = {
     "double-tripod": Call("system", ("input",), of=Call("tn.catalogue", ("double-tripod",))),
+    "double-tripod-output": Call("system", ("output",), of=Call("tn.catalogue", ("double-tripod",))),
     "gear-rattle": Call("as_system", of=Call("tn.catalogue", ("gear-rattle",))),
 }
 """Published equations that are no driveline, for the motions that take any system."""
 SUBJECTS = {
     "this driveline": OF_LINE,
     "double tripod, input element (catalogue)": "double-tripod",
+    "double tripod, output element (catalogue)": "double-tripod-output",
     "gear pair with backlash (catalogue)": "gear-rattle",
 }
+SECTIONS = {"double-tripod-output": Call("tn.Event", ("rate", 0.0), {"direction": -1})}
+"""Where the map of equations without a period of forcing is taken: where the rotation turns back."""
 PICTURES = ("map", "exponents", "certificate")
 """Steps that show the picture that their result draws of itself."""
 METHODS = {"exact": figures.INK, "shooting": figures.GREEN, "harmonic balance": figures.SKY}
@@ -122,7 +126,10 @@ class MotionView(View):
                 return self._rattle(line)
             case "section":
                 returns = bounded(self.settings["returns"], 10, 20_000)
-                return [Step("map", Call("tn.poincare_map", (subject, returns), at), "plotted", title=POINCARE)]
+                of = str(self.settings["of"])
+                section = {"section": SECTIONS[of]} if of in SECTIONS else {}
+                call = Call("tn.poincare_map", (subject, returns), {**at, **section})
+                return [Step("map", call, "plotted", title=POINCARE)]
             case "exponents":
                 call = Call("tn.lyapunov_spectrum", (subject,), at)
                 return [Step("exponents", call, "plotted", title=EXPONENTS)]

@@ -51,7 +51,7 @@ class OrdersView(View):
         label_speed(self.speed, line)
 
     def steps(self, line: Driveline) -> list[Step]:
-        """Orders, wave form, Campbell diagram, modes."""
+        """Orders, wave form, Campbell diagram, modes, what is to be known of the orders."""
         case = {} if self.settings["load"] == AS_STATED else {"load_case": self.settings["load"]}
         low, high = speed_range(line)
         unit, _ = unit_of(line)
@@ -59,17 +59,19 @@ class OrdersView(View):
         spring = str(self.settings["spring"])
         speeds = Call("tn.sweep_speeds", (LINE, low, high))
         shown = {"spring": spring, "unit": unit}
+        orders = Call("tn.order_response", (LINE, speeds), case)
         wave = Call("tn.order_response", (LINE, (speed,)), case)
         campbell = Call("tn.campbell_diagram", (LINE, Call("np.linspace", (low, high, CAMPBELL_POINTS))), case)
         return [
             Step(
                 "orders",
-                Call("tn.order_response", (LINE, speeds), case),
+                orders,
                 "orders",
                 {"spring": spring},
                 drawing=shown,
                 columns=("torque", "mean_torque", "peak_torque", "vibratory_torque"),
                 title="torque by order",
+                lasting=True,
             ),
             Step("wave", wave, "wave", {"spring": spring}, picture="", files=("nc",), title="orders at the speed"),
             Step(
@@ -79,8 +81,11 @@ class OrdersView(View):
                 drawing={"unit": unit},
                 columns=("frequency", "damping_ratio"),
                 title="Campbell diagram",
+                lasting=True,
             ),
-            Step("modes", Call("tn.natural_frequencies", (LINE,)), "modes", title="mode shapes"),
+            Step("modes", Call("tn.natural_frequencies", (LINE,)), "modes", title="mode shapes", lasting=True),
+            # Last, since it judges the stability at every speed.
+            Step("said", orders, "findings", picture="", files=(), lasting=True),
         ]
 
     def side(self) -> Any:
@@ -126,8 +131,10 @@ class _Side(Side):
             self.wave.set([(data["spring"], 1e3 * data["time"], data["torque"])], title=title)
         elif name == "campbell":
             self._campbell(data, unit, factor, cursor)
-        else:
+        elif name == "modes":
             self.mode.set(data, int(self.view.value("mode")))
+        else:
+            self.said.object = "<ul>" + "".join(f"<li>{figures.text(f)}</li>" for f in data) + "</ul>"
 
     def _orders(self, data: Any, unit: str, factor: float, cursor: float) -> None:
         x = data["speed"] * factor
@@ -144,7 +151,6 @@ class _Side(Side):
                 dashes.append("dotted")
         title = f"torque of {data['spring']} by order" + ("; sums are bounds" if data["bound"] else "")
         self.orders.set(curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", title=title, cursor=cursor)
-        self.said.object = "<ul>" + "".join(f"<li>{figures.text(f)}</li>" for f in data["findings"]) + "</ul>"
 
     def _campbell(self, data: Any, unit: str, factor: float, cursor: float) -> None:
         x = data["speed"] * factor
@@ -191,7 +197,7 @@ class Mode:
               set(Math.cos(performance.now() / 300)); requestAnimationFrame(move)
             }
             const set = (c) => {
-              figures.put(source, {...source.data, y: Array.from(source.data.shape, v => v * c)})
+              source.data = {...source.data, y: Array.from(source.data.shape, v => v * c)}
             }
             move()
             """,

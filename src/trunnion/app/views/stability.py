@@ -168,22 +168,24 @@ class StabilityView(View):
         return tuple(_now(line, axis) for axis in (x, y))  # type: ignore[return-value]
 
     def steps(self, line: Driveline) -> list[Step]:
-        """A coarse chart, the point, the full chart, the names of what opens, the motion."""
+        """A coarse chart, the point, the full chart, the motion, the names of what opens."""
         x, y = self.axes(line)
         fixed = {} if SPEED in (x.path, y.path) else {"speed": _speed(line)}
         across, up = (bounded(self.settings[key], 2) for key in ("across", "up"))
         steps = []
         if across > COARSE[0] and up > COARSE[1]:
             coarse = Call("tn.stability_chart", (LINE, x.request(COARSE[0]), y.request(COARSE[1])), fixed)
-            steps.append(Step("coarse", coarse, "chart", picture="", files=()))
+            steps.append(Step("coarse", coarse, "chart", picture="", files=(), soft=True, preview_of="chart"))
         chart = Call("tn.stability_chart", (LINE, x.request(across), y.request(up)), fixed)
         unit = {"unit": unit_of(line)[0]}
-        full = Step("chart", chart, "chart", drawing=unit, title="stability chart")
+        full = Step("chart", chart, "chart", drawing=unit, title="stability chart", soft=True, lasting=True)
         names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",),
-                     title="resonance speeds")  # fmt: skip
-        return [*steps, *self._at(line, x, y), full, *([names] if x.path == SPEED else [])]
+                     title="resonance speeds", lasting=True)  # fmt: skip
+        point, motion = self._at(line, x, y)
+        return [*steps, point, full, motion, *([names] if x.path == SPEED else [])]
 
-    def _at(self, line: Driveline, x: Axis, y: Axis) -> list[Step]:
+    def _at(self, line: Driveline, x: Axis, y: Axis) -> tuple[Step, Step]:
+        """Multipliers and motion at the point looked at."""
         at = dict(zip((x.path, y.path), self.point(line), strict=True))
         speed = at.pop(SPEED, None) or _speed(line)
         there = line
@@ -191,7 +193,7 @@ class StabilityView(View):
             there = with_number(there, path, value)
         multipliers = Call("tn.stability", (LINE,), {"speed": speed})
         motion = Call("tn.simulate", (LINE,), {"turns": float(TURNS), "speed": speed})
-        return [
+        return (
             Step(
                 "point", multipliers, "point", picture="", files=("nc",), title="multipliers at the point", line=there
             ),
@@ -204,7 +206,7 @@ class StabilityView(View):
                 files=("nc",),
                 line=there,
             ),
-        ]
+        )
 
     def side(self) -> Any:
         """Chart, multipliers, mode, motion."""
@@ -259,6 +261,8 @@ class _Side(Side):
         self.motion = Curves("turns of the input", "twist [deg]", height=290)
         self.said = pn.pane.HTML("", sizing_mode="stretch_width")
         self.extent: tuple[Axis, Axis] | None = None
+        self.whole: Any = None
+        self.ends: list[tuple[float, float]] = []
         self.count = 0
         self.panel = pn.Column(
             pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"),
@@ -282,20 +286,33 @@ class _Side(Side):
         else:
             self._named(data)
 
+    def refused(self, name: str, sentence: str) -> None:
+        """A line that has no chart may have multipliers and a motion at each point."""
+        self.whole, self.ends = None, []
+        figures.put(self.image, {key: [] for key in self.image.data})
+        self.said.object = f"<div style='font-size:13px' class='refusal'>no chart: {figures.text(sentence)}</div>"
+
     def _chart(self, name: str, data: Any) -> None:
         line = self.view.line_of(self)
         x, y = self.view.axes(line)
-        self._image(data, x, y)
+        fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
+        if fresh:
+            self._image(data, x, y)
         if self.extent != (x, y):
-            self.extent = (x, y)
+            self.extent, self.ends = (x, y), []
             self.figure.x_range.update(start=x.low / x.size, end=x.high / x.size)
             self.figure.y_range.update(start=y.low / y.size, end=y.high / y.size)
             self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = x.label, y.label
         at = self.view.point(line)
         figures.put(self.here, {"x": [at[0] / x.size], "y": [at[1] / y.size]})
         self._operating(line, x, y)
+        if not fresh:
+            return
+        self.whole = data if name == "chart" else None
         if name == "chart":
             self.chart_call = next(s for s in self.view.steps(line) if s.name == "chart")
+            if self.ends:
+                self.view.session.beside(self._refine(self.ends))
         text = "coarse, the full chart follows" if name == "coarse" else data["text"].replace("\n", "<br>")
         self.count += 1
         self.said.object = f"<div style='font-size:13px' data-chart='{name}' data-count='{self.count}'>{text}</div>"
@@ -340,7 +357,7 @@ class _Side(Side):
 
     def _zoomed(self, event: Any) -> None:
         """More points of the same chart where the picture shows a part of it."""
-        if self.extent is None or not hasattr(self, "chart_call"):
+        if self.extent is None or self.whole is None:
             return
         ends = []
         for axis, low, high in ((self.extent[0], event.x0, event.x1), (self.extent[1], event.y0, event.y1)):
@@ -348,12 +365,21 @@ class _Side(Side):
             if not a < b:
                 return
             ends.append((a, b))
+        if ends == [(axis.low, axis.high) for axis in self.extent]:
+            self.ends = []
+            self._image(self.whole, *self.extent)
+            return
+        self.ends = ends
         self.view.session.beside(self._refine(ends))
 
     async def _refine(self, ends: list[tuple[float, float]]) -> None:
         across, up = (bounded(self.view.settings[key], 2) for key in ("across", "up"))
         zoom = ((*ends[0], across), (*ends[1], up))
+        whole, extent = self.whole, self.extent
         data = await self.view.session.ask(self.chart_call.call, "chart", self.variant, zoom=zoom)
-        if self.extent is not None:
-            x, y = self.extent
-            self.view.session.locked(lambda: self._image(data, x, y))
+
+        def draw() -> None:
+            if extent is not None and self.whole is whole:
+                self._image(data, *extent)
+
+        self.view.session.locked(draw)
