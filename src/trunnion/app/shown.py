@@ -177,8 +177,7 @@ def point(result: Any) -> Plain:
     """Multipliers, verdict and the fastest disturbance."""
     names = [str(n) for n in result.names]
     z = np.asarray(result.multipliers)
-    at = result.set_aside if len(z) > result.set_aside else 0
-    column = int(np.argsort(-np.abs(z), kind="stable")[0 if at == 0 else at])
+    column = int(np.abs(np.abs(z) - result.spectral_radius).argmin())  # those set aside may be the largest
     mode = result.floquet_modes[: len(names), column]
     largest = mode[np.argmax(np.abs(mode))] if len(mode) else 1.0
     turns = result.period / (2 * np.pi)

@@ -264,8 +264,9 @@ class _Side(Side):
         self.whole: Any = None
         self.ends: list[tuple[float, float]] = []
         self.count = 0
+        self.picture = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
         self.panel = pn.Column(
-            pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"),
+            self.picture,
             self.said,
             self.point.panel,
             self.motion.panel,
@@ -289,12 +290,13 @@ class _Side(Side):
     def refused(self, name: str, sentence: str) -> None:
         """A line that has no chart may have multipliers and a motion at each point."""
         self.whole, self.ends = None, []
-        figures.put(self.image, {key: [] for key in self.image.data})
+        self.picture.visible = self.figure.visible = False
         self.said.object = f"<div style='font-size:13px' class='refusal'>no chart: {figures.text(sentence)}</div>"
 
     def _chart(self, name: str, data: Any) -> None:
         line = self.view.line_of(self)
         x, y = self.view.axes(line)
+        self.picture.visible = self.figure.visible = True
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
         if fresh:
             self._image(data, x, y)
