@@ -175,6 +175,12 @@ def test_zoom_equals_a_fresh_chart_and_integrates_nothing(
     check(zoomed)
 
 
+def test_the_critical_multiplier_is_the_one_above_the_axis(s1_chart: StabilityChart) -> None:
+    found = s1_chart.critical_multiplier
+    assert (found.imag >= 0).all() and (found.imag > 0).any() and (found.real < 0).any()
+    np.testing.assert_allclose(np.abs(found), s1_chart.spectral_radius, rtol=1e-12)
+
+
 def test_zoom_on_the_same_pixels_is_the_identity(s1_chart: StabilityChart) -> None:
     again = s1_chart.zoom((s1_chart.x[0], s1_chart.x[-1], 300), (s1_chart.y[0], s1_chart.y[-1], 300))
     assert np.array_equal(again.spectral_radius, s1_chart.spectral_radius)

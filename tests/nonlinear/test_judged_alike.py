@@ -40,14 +40,25 @@ def test_a_limit_cycle_keeps_its_phase_aside() -> None:
 
 
 def test_an_orbit_and_its_branch_have_one_verdict_near_the_circle() -> None:
-    """Damped by so little that the multipliers lie 2e-8 and less inside the unit circle."""
-    for damping, verdict in ((2e-8, "stable"), (1e-12, "undecided")):
+    """Damped by so little that the multipliers lie 2e-7 and less inside the unit circle, and not at all."""
+    for damping, verdict in ((2e-8, "stable"), (5e-11, "undecided"), (0.0, "marginal")):
         o = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=damping, mean_force=0.3, force=0.01, frequency=0.3)
         orbit = tn.piecewise_orbit(o, [1.3, 0.0])
         branch = tn.piecewise_branch(o, 0.29, 0.31, begin=0.3, start=orbit.start)
         place = int(np.argmin(np.abs(branch.parameter - 0.3)))
         assert branch.parameter[place] == 0.3
         assert str(orbit.verdict) == verdict == str(Verdict(int(branch.verdict[place])))
+
+
+@pytest.mark.parametrize(("damping", "verdict"), [(0.0, "marginal"), (1e-7, "stable")])
+def test_without_damping_orbits_branches_and_series_say_so_alike(damping: float, verdict: str) -> None:
+    duffing = tn.reference_system("duffing", damping=damping)
+    orbit = tn.periodic_response(duffing, start=[0.05, 0.0], settle=False)
+    frequency = duffing.parameters["frequency"]
+    branch = tn.periodic_branch(duffing, "frequency", 0.998 * frequency, 1.002 * frequency, begin=frequency)
+    series = tn.harmonic_balance(duffing, "frequency", 0.998 * frequency, 1.002 * frequency, harmonics=9)
+    found = {str(Verdict(int(v))) for v in (*branch.verdict, *series.branch.verdict)} | {str(orbit.verdict)}
+    assert found == {verdict}
 
 
 def test_a_branch_is_exact_between_its_points() -> None:

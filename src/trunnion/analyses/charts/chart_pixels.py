@@ -23,12 +23,16 @@ ROUNDING = 4e-15
 
 @dataclass(frozen=True)
 class Pixels:
-    """Arrays of any one shape: spectral radius, error bound, critical multiplier, verdict code."""
+    """Arrays of any one shape: spectral radius, error bound, critical multiplier (of a pair the one with the positive
+    imaginary part), verdict code."""
 
     radius: Array
     error: Array
     critical: Complex
     verdict: NDArray[np.int8]
+
+    def __post_init__(self) -> None:
+        np.abs(self.critical.imag, out=self.critical.imag)
 
 
 def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:

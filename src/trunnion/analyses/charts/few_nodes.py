@@ -57,12 +57,15 @@ def leading_patches(
 ) -> PatchedFunction | None:
     """Patches of the largest multipliers' e₁ … e_d over ``box``, each to ``tolerance`` of its size (1 at least).
 
-    None where that costs more than ``price_elsewhere`` [µs], or no group of multipliers stands apart.
+    None where that costs more than ``price_elsewhere`` [µs], no group of multipliers stands apart, or it holds them
+    all: then nothing is spared.
     """
     corners = _at_nodes(family, *_corners(box))
     price, spared = step_price(corners.states), price_elsewhere - pixels * pixel_price(6)
     group, nodes_expected = _forecast(family.rates(*_from_patch(family, *_corners(box))))
     dearest = spared / (nodes_expected * HALVINGS * price)
+    if group == corners.states:
+        return None
     if not LIKELY_STEPS < dearest or not _settles(corners, group, tolerance, dearest):
         return None
     most_work = SHARE * spared / price

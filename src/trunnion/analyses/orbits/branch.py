@@ -95,6 +95,9 @@ class Problem(Protocol):
     def radius_error(self, point: CurvePoint, radius: float) -> float:
         """What the spectral radius may be off by; any bound will do that decides on which side of 1 it lies."""
 
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether nothing damps the motion, so that no disturbance of it can die out without another that grows."""
+
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""
 
@@ -339,6 +342,7 @@ def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tupl
         ("branch point", _branching),
     )
     changes = [problem.changes(point) for point in curve.points]
+    values = [problem.multipliers(point) for point in curve.points]
     ahead = np.cumsum(1 + LOCATING * (np.diff(changes) != 0))
     points = [(curve.points[0], "")] if curve.points else []
     for i, (here, there) in enumerate(zip(curve.points[:-1], curve.points[1:], strict=True)):
@@ -348,8 +352,7 @@ def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tupl
             met = _located(problem, here, there, lambda p, n=before: float(problem.changes(p) == n) - 0.5)  # type: ignore[misc]
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
-            ends = test(problem.multipliers(here)), test(problem.multipliers(there))
-            alike = len(problem.multipliers(here)) == len(problem.multipliers(there))
+            ends, alike = (test(values[i]), test(values[i + 1])), len(values[i]) == len(values[i + 1])
             told = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
             if not told or (kind == "branch point" and i in folds):
                 continue
@@ -397,7 +400,7 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
     for row, values in zip(multipliers, counting, strict=True):
         row[: len(values)] = values
     radius = np.array([np.abs(values).max(initial=0.0) for values in counting])
-    errors = np.array([problem.radius_error(p, float(r)) for p, r in zip(points, radius, strict=True)])
+    verdict = [_verdict(problem, p, float(r)) for p, r in zip(points, radius, strict=True)]
     special = tuple(
         SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])
         for point, kind, values, seen in zip(points, kinds, multipliers, observed, strict=True)
@@ -410,7 +413,7 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         parameter=np.array([p.parameter for p in points]),
         start=np.array([problem.start(p) for p in points]).reshape(-1, n),
         multipliers=multipliers,
-        verdict=verdicts(radius, errors),
+        verdict=np.array(verdict, dtype=np.int8),
         peak_to_peak=np.array([o[0] for o in observed]).reshape(-1, len(problem.over.curves)),
         largest=np.array([o[1] for o in observed]).reshape(-1, len(problem.over.curves)),
         amplitude=np.array([o[2] for o in observed]).reshape(-1, n),
@@ -438,4 +441,10 @@ def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[CurvePoint
     if not root.converged:
         return point, Verdict.UNDECIDED
     radius = float(np.abs(problem.multipliers(point)).max())
-    return point, Verdict(int(verdicts(radius, problem.radius_error(point, radius))))
+    return point, _verdict(problem, point, radius)
+
+
+def _verdict(problem: Problem, point: CurvePoint, radius: float) -> Verdict:
+    error = problem.radius_error(point, radius)
+    undamped = abs(radius - 1) <= error and problem.undamped(point)
+    return Verdict(int(verdicts(radius, error, undamped)))

@@ -184,6 +184,10 @@ class _Balance(HarmonicEquations):
         better = float(np.abs(self.true.multipliers(closer)).max())
         return 2 * abs(better - radius) + self.true.radius_error(closer, better)
 
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether nothing damps the motion."""
+        return self.true.undamped(self.on_motion(point))
+
     def changes(self, point: CurvePoint) -> int:
         """Changes of regime in a period."""
         return self.true.changes(self.on_motion(point))

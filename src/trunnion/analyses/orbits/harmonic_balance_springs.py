@@ -344,6 +344,10 @@ class _Balance(Series):
         """Of twice the harmonics."""
         return replace(self, h=2 * self.h, told={})
 
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether no part has damping."""
+        return not self.system.damping.any()
+
     def radius_error(self, point: CurvePoint, radius: float) -> float:
         """Against the radius of the series of twice the harmonics, by twice the steps.
 

@@ -4,7 +4,7 @@ branches.
 An integrated motion is run at two tolerances, whose difference bounds the error of Φ and so of every multiplier
 (``numerics.spectrum``). Of a motion that nothing holds in phase the multiplier 1 is set aside, and that of each slider
 which never slips. A motion is undecided
-where the spectral radius is 1 to within its error (``results.verdict``).
+where the spectral radius is 1 to within its error (``results.verdict``), and marginal where besides nothing damps it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.closing import Closing, by_modulus
 from trunnion.numerics.continuation.arclength import CurvePoint
-from trunnion.numerics.integration.integration import Trajectory
+from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
 from trunnion.results.verdict import Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap
@@ -34,6 +34,9 @@ CLEAR = 1e-6
 """Distance of a spectral radius from 1 at which no error of the integration matters."""
 AT_REST = 1e-7
 """Movement over a period, in units of the states' scale and size, that counts as none: what shooting leaves is less."""
+UNDAMPED = 1e-10
+"""ln of what a volume of states changes by over a period, per state, below which nothing damps the motion."""
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 HELD = 1e-6, 100.0
 """How far, absolutely and over the error of Φ, a shift of the phase may miss coming back before something holds it."""
 
@@ -102,6 +105,12 @@ class IntegratedClosing(Closing[IntegratedMap]):
         found = self.judged(place, x, passage.run, coarse.run, missed)
         return float(spectral_radius(found.counted, found.counted_bound)[1])
 
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether volumes of states keep their size along the motion."""
+        place = self.place(point.z)
+        run = place(self.start(point), tangents=False, dense=True).run
+        return run.end is End.REACHED and keeps_volume(divergence_of(place.system, run), self.size)
+
 
 @dataclass
 class ExactClosing(Closing):  # type: ignore[type-arg]
@@ -111,10 +120,34 @@ class ExactClosing(Closing):  # type: ignore[type-arg]
         """Rounding, and what is left of closing."""
         return EXACT_ERROR
 
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether volumes of states keep their size along the motion."""
+        return _undamped(self.multipliers(point))
+
 
 def exact_verdict(values: Complex) -> Verdict:
     """The verdict on multipliers of a motion that is exact in pieces."""
-    return Verdict(int(verdicts(np.abs(values).max(), EXACT_ERROR)))
+    return Verdict(int(verdicts(np.abs(values).max(), EXACT_ERROR, _undamped(values))))
+
+
+def _undamped(values: Complex) -> bool:
+    with np.errstate(divide="ignore"):
+        return keeps_volume(float(np.log(np.abs(values)).sum()), len(values))
+
+
+def keeps_volume(change: float, size: int) -> bool:
+    """Whether a volume of ``size`` states that changes by e^change over a period keeps its size."""
+    return abs(change) < UNDAMPED * size
+
+
+def divergence_of(system: System, run: Trajectory) -> float:
+    """∫ tr ∂f/∂x dt over a run, from what is known of it or by Gauss's rule on every step."""
+    known = system.divergence
+    if known is not None:
+        return float(known(system.parameters) if callable(known) else known) * (run.time - float(run.start[0]))
+    times = (run.start[:, None] + run.length[:, None] * (_NODES + 1) / 2).ravel()
+    traces = system.divergence_at(times, run.at(times), np.repeat(run.regime, len(_NODES)))
+    return float(run.length / 2 @ (traces.reshape(-1, len(_NODES)) @ _WEIGHTS))
 
 
 def rests(place: IntegratedMap, run: Trajectory) -> bool:

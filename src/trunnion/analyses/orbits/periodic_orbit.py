@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.analyses.orbits.closing import Phase, checked_periods, close
-from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, rests
+from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, rests
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
@@ -124,7 +124,7 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
     radius, radius_error = np.array(0.0), np.array(0.0)
     if len(found.counted):
         radius, radius_error = spectral_radius(found.counted, found.counted_bound)
-    divergence = _divergence(system, run)
+    divergence = divergence_of(system, run)
     sign, log_det = np.linalg.slogdet(matrix * scale[None, :] / scale[:, None])
     jumps = system.regimes is not None and system.regimes.jump is not None and len(run.event_time) > 0
     nearest = int(np.argmin(np.abs(found.values - 1)))
@@ -149,7 +149,7 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
         monodromy=matrix,
         spectral_radius=float(radius),
         error_estimate=float(radius_error),
-        verdict=Verdict(int(verdicts(radius, radius_error, abs(divergence) < 1e-10 * n))),
+        verdict=Verdict(int(verdicts(radius, radius_error, keeps_volume(divergence, n)))),
         liouville_defect=np.nan if jumps else float(abs(log_det - divergence)) if sign > 0 else np.inf,
         residual=root.size,
         iterations=root.iterations,
@@ -216,16 +216,3 @@ def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = No
         outcome=outcome,
         trajectory=run,
     )
-
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-
-
-def _divergence(system: System, run: Trajectory) -> float:
-    """∫ tr ∂f/∂x dt over a run, from what is known of it or by Gauss's rule on every step."""
-    known = system.divergence
-    if known is not None:
-        return float(known(system.parameters) if callable(known) else known) * (run.time - float(run.start[0]))
-    times = (run.start[:, None] + run.length[:, None] * (_NODES + 1) / 2).ravel()
-    traces = system.divergence_at(times, run.at(times), np.repeat(run.regime, len(_NODES)))
-    return float(run.length / 2 @ (traces.reshape(-1, len(_NODES)) @ _WEIGHTS))
