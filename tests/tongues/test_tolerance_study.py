@@ -111,7 +111,9 @@ def test_intervals_overlap_those_of_plain_monte_carlo() -> None:
     assert hits >= 90
 
 
+STIFF = [*LINE.elements, tn.Shaft(stiffness=1e6, damping=1.0), tn.Disk(inertia=1e-2)]
 BAD = [
+    (lambda: tn.tolerance_study(tn.Driveline(STIFF), {"Shaft 1.stiffness": 0.1}, 1.2), "speeds = 1.2: is too slow"),
     (lambda: tn.tolerance_study(LINE, {}, 1.0), "tolerances = {}: must name one parameter or more"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is no tolerance"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", 2, 1)}, 1.0), "Shaft 1.stiffness = ('range', 2"),

@@ -9,6 +9,7 @@ equation). How W was found does not matter to a proof: it is the trigonometric p
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,7 @@ def floquet_form(a: Array, energy: Array) -> FloquetForm:
     with np.errstate(all="ignore"):
         modes, lam, exponents, basis, blocks, radius = harmonics(a, energy)
         w, slope = sampled(modes)
-        q = np.linalg.inv(np.where(np.isfinite(w), w, np.eye(w.shape[-1]))).astype(complex)
+        q = _inverse(w).astype(complex)
     each = np.linalg.norm(modes, axis=(2, 3))
     most, most_slope, most_bend = (((2 * np.abs(ORDERS)) ** k * each).sum(axis=1) for k in range(3))
     return FloquetForm(w, slope, q, lam, exponents, basis, blocks, radius, most, most_slope, most_bend)
@@ -76,13 +77,25 @@ def harmonics(a: Array, energy: Array) -> tuple[Complex, Complex, Complex, Compl
     phi = np.where(np.isfinite(phi), phi, np.eye(size))
     values, vectors = (part.astype(complex) for part in np.linalg.eig(phi))
     exponents, back, blocks = _grouped(values, vectors, energy)
-    lam = np.linalg.inv(back) @ (exponents[..., None] * back)
+    lam = _inverse(back) @ (exponents[..., None] * back)
     tau = HALF_TURN * np.arange(HARMONICS) / HARMONICS
     q = every @ vectors[:, None] * np.exp(-exponents[:, None, None, :] * tau[:, None, None])
-    rough = np.linalg.inv(back)[:, None] @ np.linalg.inv(np.where(np.isfinite(q), q, np.eye(size)))
+    rough = _inverse(back)[:, None] @ _inverse(q)
     modes: Complex = np.fft.fft(rough, axis=1) / HARMONICS
     modes[:, HARMONICS // 2] = 0.0  # the highest has no sign
     return modes, lam, exponents, back, blocks, np.abs(values).max(axis=1)
+
+
+def _inverse(matrix: NDArray[Any]) -> NDArray[Any]:
+    """Inverses (…, m, m); the identity where there is none, as where a stiff line's motion leaves the numbers' range: W
+    may be anything, and what it proves is bounded with it."""
+    finite = np.isfinite(matrix).all(axis=(-2, -1), keepdims=True)
+    tame = np.where(finite, matrix, np.eye(matrix.shape[-1]))
+    try:
+        return np.asarray(np.linalg.inv(tame))
+    except np.linalg.LinAlgError:
+        regular = (np.linalg.cond(tame) < 1 / np.finfo(float).eps)[..., None, None]
+        return np.asarray(np.linalg.inv(np.where(regular, tame, np.eye(matrix.shape[-1]))))
 
 
 def _integrated(a: Array) -> tuple[Array, Array]:

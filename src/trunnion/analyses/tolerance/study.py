@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import ManyLines
@@ -126,10 +127,17 @@ class ToleranceStudy(Result):
             + ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items()),
             "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
         ]
+        if self.undecided:
+            lines.append(
+                f"  {100 * self.undecided:.3g} % of the lines are undecided, within their error of the boundary, and "
+                "count as not stable"
+            )
         lines += [str(self.checks)] if self.checks is not None else []
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 
+UNKNOWN = 0.1
+"""Error of a spectral radius from which nothing is known of it."""
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 
@@ -193,6 +201,7 @@ def tolerance_study(
     for k, speed in enumerate(at.tolist()):
         table = tables(assembly, spreads, shares, speed)
         found = lines.judged(table, TOLERANCE)
+        _require_known(found, speed)
         growth[k] = lines.growth(table, found.radius)
         fine = np.isin(found.verdict, (Verdict.STABLE, Verdict.MARGINAL))
         at_each[k] = fine.mean()
@@ -224,6 +233,15 @@ def tolerance_study(
         left_out("tolerance_study", assembly.line),
         judged,
     )
+
+
+def _require_known(found: Pixels, speed: float) -> None:
+    """Refuse a speed at which the motion of no line is known: its share of stable lines would be 0 for nothing."""
+    if np.all(found.error > UNKNOWN):
+        raise InputError(
+            "is too slow for such stiff lines: over one turn their fastest mode makes too many cycles to be followed",
+            key="speeds", value=speed, remedy="leave it out, or take the stiffest parts as rigid",
+        )  # fmt: skip
 
 
 def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth: Array, speeds: Array) -> Worst:
