@@ -22,7 +22,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
-from trunnion.results.files import read_dataset, save_dataset
+from trunnion.results.files import read_dataset, save_numbers
 from trunnion.results.quantity_axes import parameter_axis
 from trunnion.results.verdict import Verdict, flag_attributes
 from trunnion.writing import written_whole
@@ -183,16 +183,7 @@ class StabilityChart(Result):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write netCDF-4, patches included; an existing file is replaced only when all is written."""
-        patches, direct = self.function.patches, self.function.direct
-        extra: dict[str, tuple[tuple[str, ...], Array]] = {
-            "patch_box": (("patch", "edge"), _edges([p.box for p in patches])),
-            "direct_box": (("direct", "edge"), _edges(list(direct))),
-        }
-        if patches:
-            extra["patch_coefficients"] = (("patch", "quantity", "degree_v", "degree_u"), _stacked(patches))
-            errors = np.stack([p.error for p in patches])
-            extra["patch_error"] = (("patch", "quantity", "block_v", "block_u"), errors)
-        save_dataset(self.data.assign(extra), path)
+        save_numbers([*self.declared(), *_declared_patches(self.function)], path)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per point: x, y, spectral radius, error estimate, verdict."""
@@ -319,6 +310,15 @@ def _function_of(data: xr.Dataset) -> PatchedFunction:
         return PatchedFunction((), direct)
     parts = zip(boxes, data["patch_coefficients"].values, data["patch_error"].values, strict=True)
     return PatchedFunction(tuple(Patch(*part) for part in parts), direct)
+
+
+def _declared_patches(function: PatchedFunction) -> Iterator[Held]:
+    """What a chart read from a file is evaluated by; not part of its dataset."""
+    yield over("patch edge", "patch_box", _edges([p.box for p in function.patches]))
+    yield over("direct edge", "direct_box", _edges(list(function.direct)))
+    if function.patches:
+        yield over("patch quantity degree_v degree_u", "patch_coefficients", _stacked(function.patches))
+        yield over("patch quantity block_v block_u", "patch_error", np.stack([p.error for p in function.patches]))
 
 
 def _stacked(patches: tuple[Patch, ...]) -> Array:

@@ -10,8 +10,11 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from trunnion._version import __version__
 from trunnion.errors import InputError
@@ -19,6 +22,8 @@ from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from trunnion.results.declared import Held
 
 FORMAT_VERSION = 1
 """Of what all files have in common; the attribute ``format`` tells kinds of results apart."""
@@ -48,7 +53,43 @@ def dataset_bytes(data: xr.Dataset) -> bytes:
     stream = io.BytesIO()
     with h5netcdf.File(stream, "w") as file:
         whole.dump_to_store(H5NetCDFStore(file))
-    content = stream.getvalue()
+    return _signed(stream.getvalue())
+
+
+def save_numbers(held: Iterable[Held], path: str | os.PathLike[str]) -> None:
+    """Write arrays of numbers and remarks as ``save_dataset`` would write their dataset; errors as there.
+
+    It does without xarray, whose import takes longer than most charts.
+    """
+    import h5netcdf
+
+    stream = io.BytesIO()
+    with h5netcdf.File(stream, "w") as file:
+        for one in held:
+            if one.axes is None:
+                if one.values is not None:
+                    file.attrs[one.name] = _attribute(one.values)
+                continue
+            values = np.asarray(one.values)
+            for axis, length in zip(one.axes, values.shape, strict=True):
+                if axis not in file.dimensions:
+                    file.dimensions[axis] = length
+            filled = np.nan if values.dtype.kind == "f" else None
+            variable = file.create_variable(one.name, one.axes, values.dtype, fillvalue=filled)
+            variable[...] = values
+            for name, value in one.attributes.items():
+                variable.attrs[name] = _attribute(value)
+        file.attrs["format_version"], file.attrs["trunnion"] = _attribute(FORMAT_VERSION), __version__
+    content = _signed(stream.getvalue())
+    with written_whole(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _attribute(value: Any) -> Any:
+    return value if isinstance(value, str) else np.atleast_1d(value)
+
+
+def _signed(content: bytes) -> bytes:
     return content + _LABEL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
