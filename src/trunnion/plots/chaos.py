@@ -15,7 +15,7 @@ from trunnion.analyses.chaos.poincare_map import PoincareMap
 from trunnion.analyses.motion.long_motion import wrapped
 from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, logarithmic, new_axes, plain
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis, state_axis
 from trunnion.systems.system import System
 
@@ -45,7 +45,7 @@ def draw_convergence(result: LyapunovSpectrum, axes: Axes | None = None) -> Axes
         value, width = result.exponents[j], result.half_width[j]
         axes.axhspan(value - width, value + width, color=colour, alpha=0.25, lw=0)
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
-    axes.set_xscale("log")
+    logarithmic(axes, "x")
     _labels(axes, "time averaged over [s]", "exponent [1/s]")
     if len(time) > 1:
         axes.set_xlim(time[0], time[-1])
@@ -160,7 +160,7 @@ def _convergence_panel(spectrum: LyapunovSpectrum, axes: Axes) -> None:
     for j in range(len(spectrum.exponents)):
         axes.plot(time, means[0, :, j], **_look(j), lw=1.2, label=f"L{j + 1}")
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
-    axes.set_xscale("log")
+    logarithmic(axes, "x")
     _labels(axes, "time averaged over [s]", "exponent [1/s]")
     _panel_legend(axes)
 

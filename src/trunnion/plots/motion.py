@@ -13,7 +13,7 @@ from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import FAINT, INK, SMALL, TEXT, logarithmic, new_axes, plain
 from trunnion.results.quantity_axes import QuantityAxis, state_axis
 from trunnion.results.speeds import show_speed
 from trunnion.systems.system import System
@@ -158,7 +158,7 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
         axes.bar(place, amplitude[:, i], width, label=name, color=colour, hatch=hatch, edgecolor="white", lw=0.3)
     top = float(amplitude.max()) if amplitude.size else 1.0
     if top > 0:
-        axes.set_yscale("log")
+        logarithmic(axes, "y")
         axes.set_ylim(top / 1e4, 2 * top)
     _labels(axes, "order [cycles per turn of the input]", "torque amplitude [N·m]")
     _legend(axes)

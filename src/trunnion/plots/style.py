@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from trunnion.errors import InputError
 from trunnion.writing import written_whole
@@ -43,6 +43,16 @@ def plain(axes: Axes) -> None:
     axes.tick_params(labelsize=TEXT, colors=INK, direction="out")
     for spine in axes.spines.values():
         spine.set_color(INK)
+
+
+def logarithmic(axes: Axes, axis: Literal["x", "y"]) -> None:
+    """Give one of the axes a logarithmic scale."""
+    from trunnion.plots.powers import PlainPowers
+
+    (axes.set_xscale if axis == "x" else axes.set_yscale)("log")
+    own = axes.xaxis if axis == "x" else axes.yaxis
+    own.set_major_formatter(PlainPowers())
+    own.set_minor_formatter(PlainPowers())
 
 
 def settle(axes: Axes) -> None:

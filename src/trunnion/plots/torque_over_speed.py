@@ -10,7 +10,7 @@ from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.linear.speed_sweep import SpeedSweep
 from trunnion.driveline.operation import Operation
 from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, logarithmic, new_axes, plain
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "", operati
         handles += axes.plot(x, sweep.torque_amplitude[:, i], label=shaft, **look)
     largest = float(np.nanmax(sweep.torque_amplitude))
     if largest > 0:
-        axes.set_yscale("log")
+        logarithmic(axes, "y")
         least = max(float(np.nanmin(sweep.torque_amplitude)), largest / 10**DECADES)
         axes.set_ylim(least / 1.5, 2.0 * largest)
     axes.set_xlim(x[0], x[-1])
