@@ -26,6 +26,11 @@ EASIER = (1.0, 30.0, 1000.0)
 """Tolerances to patch to, over the one asked for, until one is settled: errors of patches say which it was."""
 MOST_BOXES = 300
 """Boxes within which a tolerance settles; below the rounding of a stiff line's coefficients none ever does."""
+GROUP = 100
+"""Times the tolerance asked for, to which a stiff line's largest multipliers are known: what they then leave open, as
+stretches where a boundary may just be touched, is looked at by integration."""
+LOOKED_AT = 100_000
+"""Points of a picture that would cost about as much to look at as the rows of a search."""
 PIECES = 8
 """Into how many pieces such a stretch is cut."""
 
@@ -173,9 +178,15 @@ def patched(
     family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Callable[[float], None]
 ) -> Region:
     """Patch a family over the box that the values ``x`` and ``y`` span, however few points a picture of it would
-    have."""
+    have.
+
+    Of a stiff line by its largest multipliers alone where those stand apart and cost less: none of the others is ever
+    the first to leave the unit circle.
+    """
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box = _box(u, v)
+    if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, tell)) is not None:
+        return Region(family, few, box, threads)
     for share in EASIER:
         asked, most = share * tolerance / 4, MOST_BOXES if share != EASIER[-1] else np.inf
         sampler = family.sampler(box, 1_000_000, asked, threads)
