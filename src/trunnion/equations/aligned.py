@@ -38,13 +38,12 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
         c = topo.coordinate[topo.group_of(s)]
         if c >= 0:
             mass[:, c] += coefficients.inertia[:, s] * relative_ratio(topo, s) ** 2
-    damping, stiffness, loss = (np.zeros((cases, n, n)) for _ in range(3))
-    for e in range(len(topo.compliances)):
-        direction = elongation(topo, e)
-        outer = np.outer(direction, direction)
-        damping += coefficients.damping[:, e, None, None] * outer
-        stiffness += coefficients.stiffness[:, e, None, None] * outer
-        loss += coefficients.loss[:, e, None, None] * outer
+    directions = np.array([elongation(topo, e) for e in range(len(topo.compliances))]).reshape(-1, n)
+    outer = (directions[:, :, None] * directions[:, None, :]).reshape(-1, n * n)
+    damping, stiffness, loss = (
+        (part @ outer).reshape(cases, n, n) if part.any() else np.zeros((cases, n, n))
+        for part in (coefficients.damping, coefficients.stiffness, coefficients.loss)
+    )
     return AlignedMatrices(mass, damping, stiffness, loss)
 
 

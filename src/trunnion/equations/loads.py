@@ -135,6 +135,8 @@ def static_torque(topo: Topology, load: Array) -> Array:
     shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged).
     """
     torque = np.zeros((len(load), len(topo.compliances)))
+    if not load.any():
+        return torque
     for e in range(len(topo.compliances) - 1, -1, -1):
         far = topo.compliances[e].far_group
         own = float(topo.speed_ratio[topo.reference[far]])

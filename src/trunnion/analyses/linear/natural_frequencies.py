@@ -144,7 +144,9 @@ def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Arra
     ratio = np.divide(modal * frequency + lost, 2 * frequency**2, out=np.zeros(n), where=frequency > 0)
     if np.any(np.abs(ratio) >= 0.9):
         return ratio
-    values, _ = damped_modes(damping, stiffness + 1j * loss, float(frequency[frequency > 0].min(initial=np.inf)))
+    whole = stiffness + 1j * loss if loss.any() else stiffness
+    values = np.linalg.eigvals(_companion(damping, whole))
+    values = values[_oscillating(values, float(frequency[frequency > 0].min(initial=np.inf)))]
     oscillating = frequency > 0
     if len(values) == oscillating.sum():
         ratio[oscillating] = -values.real / np.abs(values)
@@ -157,8 +159,17 @@ def damped_modes(damping: Array, stiffness: Complex, lowest: float) -> tuple[Com
     C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
     own size, is no oscillation: far below ``lowest``, the lowest elastic frequency [rad/s].
     """
+    values, vectors = np.linalg.eig(_companion(damping, stiffness))
+    above = _oscillating(values, lowest)
+    return values[above], vectors[: len(damping), above]
+
+
+def _companion(damping: Array, stiffness: Array | Complex) -> Array | Complex:
     n = len(damping)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
+
+
+def _oscillating(values: Complex, lowest: float) -> NDArray[np.intp]:
+    """Places of eigenvalues with positive imaginary part, by modulus."""
     above = np.flatnonzero(values.imag > NO_OSCILLATION * lowest)
-    above = above[np.argsort(np.abs(values[above]))]
-    return values[above], vectors[:n, above]
+    return np.asarray(above[np.argsort(np.abs(values[above]))])
