@@ -145,7 +145,7 @@ def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Arra
     if np.any(np.abs(ratio) >= 0.9):
         return ratio
     whole = stiffness + 1j * loss if loss.any() else stiffness
-    values = np.linalg.eigvals(_companion(damping, whole))
+    values = np.asarray(np.linalg.eigvals(_companion(damping, whole)), dtype=complex)
     values = values[_oscillating(values, float(frequency[frequency > 0].min(initial=np.inf)))]
     oscillating = frequency > 0
     if len(values) == oscillating.sum():
