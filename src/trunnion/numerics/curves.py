@@ -42,6 +42,8 @@ WIDTH = 15
 """Points of a grid, twice as fine as the highest order needs, that a value is spread over."""
 BETA = 2.30 * WIDTH
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)
+_SMOOTH, _SMOOTH_WEIGHTS = np.polynomial.legendre.leggauss(64)
+"""Of what a value is spread by."""
 
 
 @dataclass(frozen=True)
@@ -213,6 +215,5 @@ def _kernel(z: Array) -> Array:
 
 def _spreading(frequency: Array) -> Array:
     """Fourier transform of the spreading at frequencies in cycles per point of the grid."""
-    nodes, weights = np.polynomial.legendre.leggauss(64)
-    turns = np.cos(np.pi * WIDTH * np.outer(frequency, nodes))
-    return np.asarray(turns @ (weights * _kernel(nodes)) * (WIDTH / 2))
+    turns = np.cos(np.pi * WIDTH * np.outer(frequency, _SMOOTH))
+    return np.asarray(turns @ (_SMOOTH_WEIGHTS * _kernel(_SMOOTH)) * (WIDTH / 2))
