@@ -9,12 +9,19 @@ from oracles.nonlinear import NonlinearChain
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.analyses.linear.forced_response import LinearResponse, periodic_states
+from trunnion.analyses.linear.forced_response import LinearResponse
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.linear import periodic_linear_system
-from trunnion.numerics.chain.dense_monodromy import propagate
+from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
 from trunnion.systems.periodic_linear import from_matrices
+
+
+def periodic_states(run: Propagation) -> np.ndarray:
+    """States (time, 2n) of the periodic solution; least-norm where a multiplier is 1 (a free line)."""
+    z = run.monodromy * run.scale[None, :] / run.scale[:, None]
+    start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular / run.scale, rcond=1e-13)[0] * run.scale
+    return run.states(start)
 
 
 def two_shafts(beta: float, load: float = 0.0) -> Chain:

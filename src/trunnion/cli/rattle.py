@@ -60,8 +60,9 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.orbits.frequency_response import ResponseComparison, methods_of
     from trunnion.analyses.orbits.frequency_response import frequency_response as compute
+    from trunnion.analyses.orbits.frequency_response import methods_of
+    from trunnion.analyses.orbits.frequency_response_result import ResponseComparison
     from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     subject, length = _subject(name, parameters)

@@ -266,7 +266,7 @@ def draw_response(
     top: float | None = None,
 ) -> Axes:
     """``draw_responses`` of one method's curve, or of all that a comparison holds."""
-    from trunnion.analyses.orbits.frequency_response import ResponseComparison
+    from trunnion.analyses.orbits.frequency_response_result import ResponseComparison
 
     responses = found.responses if isinstance(found, ResponseComparison) else {found.method: found}
     return draw_responses(responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)

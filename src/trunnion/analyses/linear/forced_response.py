@@ -24,7 +24,7 @@ from trunnion.errors import ComputationError
 from trunnion.results.declared import Held, Result, axis, over, remark
 
 if TYPE_CHECKING:
-    from trunnion.numerics.chain.dense_monodromy import Propagation
+    pass
 
 Array = NDArray[np.float64]
 
@@ -97,13 +97,6 @@ class LinearResponse(Result):
             f" ({'within' if self.linear else 'BEYOND'} the linear range of {LINEAR_RANGE} rad)"
         )
         return "\n".join(["linear forced response over one period", *rows, f"  {trust}"])
-
-
-def periodic_states(run: Propagation) -> Array:
-    """States (time, 2n) of the periodic solution; least-norm where a multiplier is 1 (a free line)."""
-    z = run.monodromy * run.scale[None, :] / run.scale[:, None]
-    start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular / run.scale, rcond=1e-13)[0] * run.scale
-    return run.states(start)
 
 
 def linear_response(assembly: Assembly, speed: float, *, statically_twisted: bool = True) -> LinearResponse:

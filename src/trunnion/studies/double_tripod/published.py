@@ -34,8 +34,6 @@ DENSITY, SHEAR_MODULUS = 7850.0, 77.3e9
 MIDSHAFT_LENGTH = 0.940
 """L_DM2 [m], Table 1."""
 WAVE_SPEED = float(np.sqrt(SHEAR_MODULUS / DENSITY))
-MOTOR_ORDERS = (6, 12, 24, 48, 96)
-"""n of Ω_AEM = 100nπ rad/s, equation (7)."""
 WORST_ANGLE = float(np.deg2rad(9.0))
 _OPTIONS = {
     "nonuniformity": ("printed", "derived"),

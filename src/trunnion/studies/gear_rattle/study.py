@@ -14,11 +14,10 @@ import numpy as np
 from trunnion.analyses.orbits.basins import Basins, basins
 from trunnion.analyses.orbits.frequency_response import (
     METHODS,
-    FrequencyResponse,
-    ResponseComparison,
     compare_responses,
     frequency_response,
 )
+from trunnion.analyses.orbits.frequency_response_result import FrequencyResponse, ResponseComparison
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.analyses.orbits.piecewise_sweep import Sweep, sweep
 from trunnion.analyses.perturbation.multiple_scales import multiple_scales
