@@ -86,9 +86,8 @@ class StabilityCertificate(Result):
             at = show_speed(self.counterexample["speed"], self.unit)
             head = f"not stable within {what}: at {at} the line with {values} is unstable"
         else:
-            head = (
-                f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, the rest is proved stable"
-            )
+            rest = "the rest is proved stable" if self.undecided_share < 1 else "no part of it is proved stable"
+            head = f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, {rest}"
         return "\n".join([head, f"  {self.boxes} boxes", *(f"  {finding}" for finding in self.findings)])
 
 
