@@ -1,4 +1,4 @@
-"""What the first minute of a session costs: analyze on compiled kernels, warm-up into an empty cache, small calls.
+"""What the first minute of a session costs: analyze with and without compiled kernels, warm-up, small calls.
 
 Processor seconds of whole processes (their children's too), beside seconds by the clock; medians.
 """
@@ -48,6 +48,15 @@ def of_analyze(file: Path, runs: int) -> None:
         taken = [command("analyze", str(file), "-o", folder) for _ in range(runs)]
     first, whole, processor = (statistics.median(part) for part in zip(*taken, strict=True))
     print(f"analyze {file.name}: findings after {first:.1f} s, all after {whole:.1f} s; {processor:.1f} s of processor")
+
+
+def of_cold_analyze(file: Path) -> None:
+    """``analyze`` with an empty cache, as after installing."""
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as cache:
+        first, whole, processor = command("analyze", str(file), "-o", folder, cache=cache)
+    print(
+        f"the same, empty cache: findings after {first:.1f} s, all after {whole:.1f} s; {processor:.0f} s of processor"
+    )
 
 
 def of_warm_up() -> None:
@@ -107,6 +116,7 @@ def main() -> None:
     of_small_calls()
     of_analyze(EXAMPLES / "truck.toml", chosen.runs)
     if not chosen.no_warm_up:
+        of_cold_analyze(EXAMPLES / "truck.toml")
         of_warm_up()
 
 

@@ -114,9 +114,21 @@ def _reports() -> None:
     report(loads(starter("two-shaft")))
 
 
+def _motions_with_stages() -> None:
+    from trunnion.analyses.motion.simulate import simulate
+    from trunnion.driveline import ConstantSpeed, Disk, Driveline, Element, HookeJoint, PiecewiseShaft, Shaft
+
+    elements: list[Element] = [
+        ConstantSpeed(), Shaft(stiffness=1.0, damping=0.1), Disk(inertia=1.0), HookeJoint(angle=0.2),
+        PiecewiseShaft(breakpoints=(-0.01, 0.01), stiffnesses=(1.0, 0.1, 1.0), damping=0.1), Disk(inertia=1.0),
+    ]  # fmt: skip
+    simulate(Driveline(elements), turns=1, speed=1.0)
+
+
 PARTS: dict[str, Callable[[], None]] = {
     "charts of plain lines": _charts_of_plain_lines,
     "charts of loaded lines": _charts_of_loaded_lines,
     "reports and motions": _reports,
+    "motions with stages": _motions_with_stages,
 }
 """What is compiled, each in a process of its own."""

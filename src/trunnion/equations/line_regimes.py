@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import prod
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -21,6 +22,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import SLIDER_STAGES, sliders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
+from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.piecewise_oscillator import Regimes as Stages
 from trunnion.systems.regimes import Regimes
@@ -32,6 +34,12 @@ Integers = NDArray[np.int64]
 MOST_REGIMES = 400
 GUARDS = 3
 """Per spring; as many as its stages need, see ``_numbered``."""
+
+
+def guards_kernel() -> ModuleType:
+    """The compiled switching functions and jumps of lines."""
+    here = Path(__file__)
+    return kernel_file(str(here.with_name("line_guards_kernel.py")), str(here.with_name("line_kernel.py")))
 
 
 @dataclass(frozen=True)
@@ -212,7 +220,7 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
                     directions[regime, GUARDS * i + guard] = int(part.directions[stage, guard])
     names = tuple(", ".join(f"{p.name} {p.words[r // p.stride % p.stages]}" for p in parts) for r in range(count))
     guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
-    compiled, jump = kernel.line_guards, kernel.line_jump
+    compiled, jump = guards_kernel().line_guards, guards_kernel().line_jump
     return LineRegimes(
         names,
         guards,

@@ -268,7 +268,8 @@ class LineSystem:
         topo = self.assembly.topology
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
         rotation = np.empty((len(t), len(topo.stations)))
-        kernel().observe(t, np.ascontiguousarray(x), system.numbers, twist, torque, rotation)
+        stages = np.zeros(twist.shape, dtype=np.int64)
+        kernel().observe(t, np.ascontiguousarray(x), system.numbers, twist, torque, rotation, stages)
         return LineMotion(twist, torque, rotation)
 
     def energy(self, system: System, time: ArrayLike, state: ArrayLike) -> tuple[Array, Array]:

@@ -52,6 +52,11 @@ def njit(
     return decorate
 
 
+def at_hand(*functions: Any) -> bool:
+    """Whether there is machine code of all these functions already, in memory, kept or come along."""
+    return all(function.overloads or function._cache.filled() for function in functions)
+
+
 def _kept_in(folder: Path | None, function: Callable[..., Any]) -> Any:
     """The cache of a function: below ``folder``, or for this process alone."""
     if folder is None:
@@ -86,6 +91,10 @@ class Kept(CACHE):
                 self._lock.release()
         return found
 
+    def filled(self) -> bool:
+        """Whether anything is kept, or came along."""
+        return bool(self._cache_file._load_index()) or shipped.in_use()
+
     def save_overload(self, signature: Any, compiled: Any) -> None:
         """Keep what was compiled, if there is room."""
         shipped.keep(self._py_func, signature, compiled)
@@ -106,6 +115,10 @@ class NotKept(NO_CACHE):
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The machine code for a signature, or None."""
         return shipped.load(self._function, signature, context)
+
+    def filled(self) -> bool:
+        """Whether anything came along."""
+        return shipped.in_use()
 
 
 @contextmanager

@@ -48,10 +48,15 @@ def shipped_folder() -> Path | None:
     return folder if folder.is_dir() and all(host.get(feature) for feature in NEEDED) else None
 
 
+def in_use() -> bool:
+    """Whether machine code came along and fits this process."""
+    return not os.environ.get(BUILD) and shipped_folder() is not None
+
+
 def load(function: Any, signature: Any, context: Any) -> Any:
     """The machine code that came along of a compiled function for a signature, or None."""
     folder = shipped_folder()
-    if folder is None or os.environ.get(BUILD):
+    if folder is None or not in_use():
         return None
     name = _name(function, signature)
     try:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.charts.stability_chart import stability_chart
+from trunnion.analyses.charts.stability_chart import chart_of_report
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.analyses.linear.along import stability_along
 from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
@@ -145,7 +145,7 @@ def charted(
     low, high = seen.speed_range
     across, up = points or (FINE if _has_borders(seen) else COARSE)
     axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
-    chart = stability_chart(seen.answer.assembly, *axes, tolerance=TOLERANCE, progress=progress)
+    chart = chart_of_report(seen.answer.assembly, *axes, TOLERANCE, progress)
     return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
 
 

@@ -178,7 +178,7 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
     # One patch may cover most of the pixels, so threads share strips.
     tasks = []
     for patch in function.patches:
-        rows, columns = _between(v, patch.box.v0, patch.box.v1), _between(u, patch.box.u0, patch.box.u1)
+        rows, columns = between(v, patch.box.v0, patch.box.v1), between(u, patch.box.u0, patch.box.u1)
         if rows.stop > rows.start and columns.stop > columns.start:
             width = (columns.stop - columns.start) * len(patch.error)
             along = patch.columns(u[columns])
@@ -209,18 +209,32 @@ def spot_check(
 
     The same pixels for the same shape: a chart built anew is asked first where it failed before.
     """
+    rows, columns = spots(pixels, count)
+    values, bounds = family.over_whole_periods().evaluate(x[columns], y[rows], sharply(tolerance), threads)
+    return compared(judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside), pixels, rows, columns)
+
+
+def sharply(tolerance: float) -> float:
+    """The tolerance of what checks or decides pixels."""
+    return max(tolerance * 1e-3, 1e-13)
+
+
+def spots(pixels: Pixels, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of ``count`` random pixels (y, x)."""
     shares = np.random.default_rng(pixels.verdict.size).random((count, 2))
-    rows, columns = (shares[:, 0] * len(y)).astype(int), (shares[:, 1] * len(x)).astype(int)
-    whole = family.over_whole_periods()
-    values, bounds = whole.evaluate(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads)
-    found = judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside)
+    height, width = pixels.verdict.shape
+    return (shares[:, 0] * height).astype(int), (shares[:, 1] * width).astype(int)
+
+
+def compared(found: Pixels, pixels: Pixels, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> SpotCheck:
+    """What pixels of a chart are off from ``found``, known more sharply."""
     off = np.abs(found.radius - pixels.radius[rows, columns])
     # Without error and without estimate is not off.
     ratio = off / np.maximum(pixels.error[rows, columns] + found.error, 1e-300)
     known = np.isfinite(ratio)
     if not known.any():
-        return SpotCheck(count, float("nan"), float("nan"))
-    return SpotCheck(count, float(ratio[known].max()), float(off[known].max()))
+        return SpotCheck(len(rows), float("nan"), float("nan"))
+    return SpotCheck(len(rows), float(ratio[known].max()), float(off[known].max()))
 
 
 def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:
@@ -232,15 +246,12 @@ def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: f
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
     if family.set_aside or not 0 < len(rows) <= family.affordable:
         return
-    found = judge_matrices(*family.matrices(x[columns], y[rows], max(tolerance * 1e-3, 1e-13), threads))
-    better = found.error < pixels.error[rows, columns]
-    here = rows[better], columns[better]
-    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
-    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
-    _decide_stiff(family, pixels, x, y)
+    found = judge_matrices(*family.matrices(x[columns], y[rows], sharply(tolerance), threads))
+    put_better(found, pixels, rows, columns)
+    decide_stiff(family, pixels, x, y)
 
 
-def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> None:
+def decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> None:
     """Once more for what is left, by the multipliers themselves of steps that are halved until they stay.
 
     What fast modes leave in the matrix makes its error far larger than theirs.
@@ -248,13 +259,18 @@ def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> No
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
     if not 0 < len(rows) <= FEW or (found := family.settled(x[columns], y[rows])) is None:
         return
+    put_better(found, pixels, rows, columns)
+
+
+def put_better(found: Pixels, pixels: Pixels, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> None:
+    """Put what is better known into pixels of a chart, in place."""
     better = found.error < pixels.error[rows, columns]
     here = rows[better], columns[better]
     pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
     pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
 
 
-def _between(axis: Array, low: float, high: float) -> slice:
+def between(axis: Array, low: float, high: float) -> slice:
     """Places of a monotonic axis that lie between two values."""
     inside = np.flatnonzero((axis >= low) & (axis <= high))
     return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)

@@ -153,7 +153,7 @@ class LineFamily:
 
     def rates(self, x: Array, y: Array) -> LineRates:
         """The equations at points (x, y), each a case."""
-        return LineRates.of(self.assembly, self._table(x, y), self.statically_twisted)
+        return LineRates.of(self.assembly, self.table(x, y), self.statically_twisted)
 
     def exponentials(self, x: Array, y: Array) -> ChainExponentials:
         """Points (x, y) as lanes of the kernel of exponential steps."""
@@ -161,9 +161,10 @@ class LineFamily:
         return ChainExponentials(self.program, self.lanes(x, y), self.period, steps)
 
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
-        return self.assembly.coefficients(self._table(x, y), statically_twisted=self.statically_twisted)
+        return self.assembly.coefficients(self.table(x, y), statically_twisted=self.statically_twisted)
 
-    def _table(self, x: Array, y: Array) -> Array:
+    def table(self, x: Array, y: Array) -> Array:
+        """Packed numbers (point, column) at points (x, y)."""
         table = self.assembly.table(len(x), self.speed)
         self.x.columns.put(table, x)
         self.y.columns.put(table, y)

@@ -14,10 +14,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.leading_group import Settling, group_sizes, known, settle
+from trunnion.analyses.charts.leading_group import Points, Settling, group_sizes, known, settle
 from trunnion.analyses.charts.prices import HALVINGS, pixel_price, step_price
 from trunnion.equations.first_order import LineRates
-from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
 from trunnion.numerics.patches.nested import FIRST_DEGREES, HIGHEST_DEGREE, Grid, Series
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
@@ -39,8 +38,8 @@ class Rated(Protocol):
     def rates(self, x: Array, y: Array) -> LineRates:
         """The equations at points (x, y), each a case."""
 
-    def exponentials(self, x: Array, y: Array) -> ChainExponentials:
-        """The same as lanes of the compiled kernel."""
+    def exponentials(self, x: Array, y: Array) -> Points:
+        """The same as points to be stepped."""
 
     def from_patch(self, value: Array, of_x: bool) -> Array:
         """Patch variable → axis value."""
@@ -91,7 +90,7 @@ def _from_patch(family: Rated, u: Array, v: Array) -> tuple[Array, Array]:
     return family.from_patch(u, True), family.from_patch(v, False)
 
 
-def _at_nodes(family: Rated, u: Array, v: Array) -> ChainExponentials:
+def _at_nodes(family: Rated, u: Array, v: Array) -> Points:
     return family.exponentials(*_from_patch(family, u, v))
 
 
@@ -122,7 +121,7 @@ def _forecast(corners: LineRates) -> tuple[int, float]:
     return d, along_u * along_v
 
 
-def _settles(corners: ChainExponentials, d: int, tolerance: float, dearest: float) -> bool:
+def _settles(corners: Points, d: int, tolerance: float, dearest: float) -> bool:
     """Whether the corners of a box, its slowest and steepest among them, are known from fewer steps than ``dearest``.
 
     A few points tell what hundreds would cost, before those are begun.

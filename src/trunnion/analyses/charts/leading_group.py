@@ -8,10 +8,11 @@ matrix has no part in them.
 
 from __future__ import annotations
 
+from typing import Protocol, Self
+
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_tables import LANES
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
@@ -31,19 +32,41 @@ TELLING = 100
 """Difference over its error at which two points are told apart without a second look."""
 
 
+class Points(Protocol):
+    """Lines over one period whose monodromy matrices come from exponential steps."""
+
+    @property
+    def steps(self) -> int:
+        """As many as see the fastest coefficient."""
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+
+    @property
+    def states(self) -> int:
+        """Size of the matrices."""
+
+    def monodromies(self, which: NDArray[np.intp], steps: int) -> tuple[Array, Array]:
+        """Z (point, m, m) and ∫ tr(M⁻¹C) dτ (point,) of the points ``which``, by so many steps."""
+
+    def and_also(self, other: Self) -> Self:
+        """These points and then those of ``other``."""
+
+
 class Settling:
     """Multipliers (point, m) at a growing number of points, of N/2, N and 2N ``steps``; ``work``: steps taken so far.
 
     Those of N/2 steps are NaN until a point is sharpened. trace (point,): ∫ tr(M⁻¹C) dτ over the period.
     """
 
-    def __init__(self, points: ChainExponentials, threads: int) -> None:
+    def __init__(self, points: Points, threads: int) -> None:
         self.points, self.threads, self.work = points, threads, 0
         self.fine, self.coarse, self.coarser = (np.empty((0, points.states), complex) for _ in range(3))
         self.norm, self.trace, self.steps = np.empty(0), np.empty(0), np.empty(0, dtype=np.intp)
         self._add(points.count)
 
-    def add(self, points: ChainExponentials) -> None:
+    def add(self, points: Points) -> None:
         """Multipliers of further points."""
         self.points = self.points.and_also(points)
         self._add(points.count)
@@ -147,7 +170,7 @@ def known(found: Settling, d: int) -> tuple[Array, Array, Array]:
     return fine, change + rounding, rounding
 
 
-def told_apart(both: ChainExponentials) -> bool:
+def told_apart(both: Points) -> bool:
     """Whether e₁ … e_m of two cases differ by far more than steps that are too long can make them."""
     found = Settling(both, 1)
     for _ in range(3):

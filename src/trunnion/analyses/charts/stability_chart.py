@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
-from trunnion.analyses.charts.building import build, decide, family_for, fill, way_named
+from trunnion.analyses.charts.building import Built, build, decide, family_for, fill, way_named
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
+from trunnion.analyses.charts.plain_chart import Plain, build_plainly, suits
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -84,10 +85,28 @@ def stability_chart(
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
     workers = threads or os.cpu_count() or 1
     tell = progress or (lambda share: None)
-    x_axis, y_axis = task.x, task.y
-    built = build(task.family, x_axis.values, y_axis.values, tolerance, workers, tell)
+    built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
     tell(1.0)
-    pixels = built.pixels
+    return _chart(task, built, tolerance, statically_twisted, workers)
+
+
+def chart_of_report(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, tolerance: float, progress: Progress | None = None
+) -> StabilityChart:
+    """As ``stability_chart`` of a driveline, in plain NumPy where that takes seconds: nothing is compiled then."""
+    tell = progress or (lambda share: None)
+    task, workers = line_task(assembly, x, y, None, True, plain=True), os.cpu_count() or 1
+    assert isinstance(task.family, LineFamily)
+    built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
+    if built is None:
+        built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
+    tell(1.0)
+    return _chart(task, built, tolerance, True, workers)
+
+
+def _chart(task: Task, built: Built, tolerance: float, twisted: bool, workers: int) -> StabilityChart:
+    """What was built, as a result."""
+    x_axis, y_axis, pixels = task.x, task.y, built.pixels
     remarks = [*task.remarks, *built.remarks]
     if isinstance(task.family, OwnFamily):
         remarks += task.family.failures(x_axis.values, y_axis.values, pixels.verdict == Verdict.FAILED, tolerance)
@@ -105,7 +124,7 @@ def stability_chart(
         speed=task.speed,
         period=task.family.period,
         tolerance=tolerance,
-        statically_twisted=statically_twisted,
+        statically_twisted=twisted,
         remarks=tuple(remarks),
         line=task.line,
         function=built.function,
@@ -141,8 +160,12 @@ def line_task(
     speed: float | None,
     twisted: bool,
     analysis: str = "stability_chart",
+    *,
+    plain: bool = False,
 ) -> Task:
     """A driveline over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
+
+    ``plain``: nothing is compiled for it, where the line suits that.
 
     Raises
     ------
@@ -177,20 +200,23 @@ def line_task(
     family = LineFamily(assembly, across, up, base, twisted)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
-    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line"), *said) if s)
+    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", plain), *said) if s)
     return Task(family, across, up, None if swept else base, assembly.line, remarks)
 
 
-def _idle(family: ChartFamily, x: Axis, y: Axis, what: str) -> list[str]:
+def _idle(family: ChartFamily, x: Axis, y: Axis, what: str, plain: bool = False) -> list[str]:
     """Sentences about axes that change nothing."""
 
     def decisive(x: Array, y: Array) -> Array:
         return family.evaluate(x, y, 1e-12, 1)[0]
 
+    differ = family.differ
+    if plain and isinstance(family, LineFamily) and suits(family):
+        decisive, differ = Plain(family).decisive, Plain(family).differ
     return [
         f"{own.label} changes nothing in this {what}"
         for own in (x, y)
-        if moves_nothing(decisive, x, y, own is x, family.differ)
+        if moves_nothing(decisive, x, y, own is x, differ)
     ]
 
 

@@ -111,6 +111,10 @@ def radii_on_rows(up, along, errors, row_block, column_block, radius, error, cri
                     critical[v, u, 0], critical[v, u, 1] = root[first + u, 0], root[first + u, 1]
 
 
+RADII = (_radii_of_columns, radii_on_rows)
+"""What is compiled to find radii."""
+
+
 @njit(nogil=True, inner=True)
 def _chunk(values, bounds, work, radius, error, critical):  # type: ignore[no-untyped-def]
     """A chunk of columns, of which the first len(radius) count; roots start from those of the neighbour."""

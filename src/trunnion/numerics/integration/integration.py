@@ -162,13 +162,14 @@ def integrate(
     whole = np.array([regime, 0, 0, 0, 0, 0, 1], dtype=np.int64)
     numbers = equations.numbers.copy()  # a right-hand side may work in them
     sides = np.zeros(own + len(watch.directions))
+    watched = watch.directions if len(sides) else None
     parts: list[tuple[Array, ...]] = []
     size = 256
     while True:
         buffer = _Buffer.of(size, n, dense, bool(len(sides)))
         code = core.advance(
             functions, numbers, watch.numbers, y, n, count, equations.transitions, equations.directions,
-            watch.directions, watch.stops, clock, whole, sides, float(end), float(tolerance), equations.weight,
+            watched, watch.stops, clock, whole, sides, float(end), float(tolerance), equations.weight,
             float(longest_step), most_steps, dense, *buffer.arrays,
         )  # fmt: skip
         parts.append(buffer.filled(int(whole[5]), int(whole[4])))

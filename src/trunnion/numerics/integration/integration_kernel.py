@@ -223,7 +223,14 @@ def interpolate(q, s, out):
 def evaluate(times, steps, coefficients, at, out):
     """States (m, n) at times ``at`` (m,) from the stored steps: start times, lengths and coefficients."""
     for j in range(at.size):
-        i = min(max(np.searchsorted(times, at[j], side="right") - 1, 0), times.size - 1)
+        low, high = 0, times.size  # the last step that does not begin after the time
+        while high - low > 1:
+            middle = (low + high) // 2
+            if times[middle] <= at[j]:
+                low = middle
+            else:
+                high = middle
+        i = low
         interpolate(coefficients[i], (at[j] - times[i]) / steps[i], out[j])
 
 
@@ -477,13 +484,16 @@ def advance(
     functions (4,): addresses of rate, guard, jump, and of the functions the caller watches, which receive the
         numbers ``asked`` in place of ``p`` (0: none).
     transitions, directions (regimes, guards): the regime a guard leads to (−1: not watched) and its direction.
-    watched, stops (events,): directions of the caller's functions, and whether they end the integration.
+    watched, stops (events,): directions of the caller's functions, and whether they end the integration. Where nothing
+        at all is watched ``watched`` is None: all that has to do with events is then left out when this is compiled.
     clock, whole, sides: carried from call to call; whole[FRESH] = 1 on the first.
     step_… (capacity, …): start, length, regime and end state of each step; ``coefficients`` if ``dense``.
     event_…: time, function and the states on both sides of each event.
     """
     rate, own = functions[0], transitions.shape[1]
-    m = own + watched.size
+    m = 0
+    if watched is not None:
+        m = own + watched.size
     wide = y.size
     k = np.zeros((ALL_STAGES, wide))
     new, spare = np.empty(wide), np.empty(wide)
@@ -492,15 +502,14 @@ def advance(
     active = np.zeros(m, dtype=np.int64)
     t, h, regime = clock[TIME], clock[STEP], whole[REGIME]
     whole[STORED], whole[EVENTS] = 0, 0
-    _directions(transitions, directions, watched, regime, active)
     if whole[FRESH] == 1:
         clock[SPAN] = end - t
         clock[LAST_EVENT] = -np.inf
-        if (
-            m > 0
-            and _new_sides(functions, t, y, p, asked, n, regime, own, -1, 0.0, False, active, g, slope, k, sides) < 0
-        ):
-            return REFUSED
+    if watched is not None:
+        _directions(transitions, directions, watched, regime, active)
+        if whole[FRESH] == 1 and m > 0:
+            if _new_sides(functions, t, y, p, asked, n, regime, own, -1, 0.0, False, active, g, slope, k, sides) < 0:
+                return REFUSED
     if _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
         return REFUSED
     for i in range(wide):
@@ -546,50 +555,51 @@ def advance(
         if (m > 0 or dense) and _dense(rate, t, step, y, new, p, n, regime, k, spare, q) != 0:
             clock[TIME], clock[STEP] = t, h
             return REFUSED
-        if m > 0:
-            which, low, high = _bracket(functions, t, step, q, p, asked, n, regime, own, sides, active, x, g, slope)
-            if which == -2:
-                clock[TIME], clock[STEP] = t, h
-                return REFUSED
-        if which >= 0:
-            side = 1.0 if active[which] == -1 else (-1.0 if active[which] == 1 else 0.0)
-            if side == 0.0:
-                interpolate(q, high, x)
-                _watched(functions, t + high * step, x, p, asked, n, regime, own, 0, g, slope)
-                side = -_sign(g[which])
-            fraction = _locate(functions, t, step, q, p, asked, n, regime, own, which, side, low, high, x, g, slope)
-            for _ in range(m):
-                other, beside = _earlier(
-                    functions, t, step, q, p, asked, n, regime, own, which, low, fraction, active, x, g, slope
-                )
-                if fraction < 0 or other < 0:
-                    break
-                which, side = other, beside
-                fraction = _locate(
-                    functions, t, step, q, p, asked, n, regime, own, which, side, low, fraction, x, g, slope
-                )
-            if fraction < 0:
-                clock[TIME], clock[STEP] = t, h
-                return REFUSED
-            step = fraction * step
-            for _ in range(4):
-                if _stages(rate, t, step, y, p, count, regime, k, new) != 0:
+        if watched is not None:
+            if m > 0:
+                which, low, high = _bracket(functions, t, step, q, p, asked, n, regime, own, sides, active, x, g, slope)
+                if which == -2:
                     clock[TIME], clock[STEP] = t, h
                     return REFUSED
-                _call_rate(rate, t + step, new, p, 0, regime, k[STAGES])
-                _watched(functions, t + step, new[:n], p, asked, n, regime, own, 1, g, slope)
-                speed = slope[which * (n + 1) + n]
-                for i in range(n):
-                    speed += slope[which * (n + 1) + i] * k[STAGES, i]
-                change = -g[which] / speed if speed != 0.0 else 0.0
-                if not abs(change) <= 1e-3 * step + 1e-12 * abs(t) or step + change <= 0:
-                    break  # tangential: the dense output's answer stands
-                if abs(change) <= 4 * EPS * (abs(t) + step):
-                    break
-                step += change
-            _call_rate(rate, t + step, new, p, count, regime, k[STAGES])
-            if dense:
-                _dense(rate, t, step, y, new, p, n, regime, k, spare, q)
+            if which >= 0:
+                side = 1.0 if active[which] == -1 else (-1.0 if active[which] == 1 else 0.0)
+                if side == 0.0:
+                    interpolate(q, high, x)
+                    _watched(functions, t + high * step, x, p, asked, n, regime, own, 0, g, slope)
+                    side = -_sign(g[which])
+                fraction = _locate(functions, t, step, q, p, asked, n, regime, own, which, side, low, high, x, g, slope)
+                for _ in range(m):
+                    other, beside = _earlier(
+                        functions, t, step, q, p, asked, n, regime, own, which, low, fraction, active, x, g, slope
+                    )
+                    if fraction < 0 or other < 0:
+                        break
+                    which, side = other, beside
+                    fraction = _locate(
+                        functions, t, step, q, p, asked, n, regime, own, which, side, low, fraction, x, g, slope
+                    )
+                if fraction < 0:
+                    clock[TIME], clock[STEP] = t, h
+                    return REFUSED
+                step = fraction * step
+                for _ in range(4):
+                    if _stages(rate, t, step, y, p, count, regime, k, new) != 0:
+                        clock[TIME], clock[STEP] = t, h
+                        return REFUSED
+                    _call_rate(rate, t + step, new, p, 0, regime, k[STAGES])
+                    _watched(functions, t + step, new[:n], p, asked, n, regime, own, 1, g, slope)
+                    speed = slope[which * (n + 1) + n]
+                    for i in range(n):
+                        speed += slope[which * (n + 1) + i] * k[STAGES, i]
+                    change = -g[which] / speed if speed != 0.0 else 0.0
+                    if not abs(change) <= 1e-3 * step + 1e-12 * abs(t) or step + change <= 0:
+                        break  # tangential: the dense output's answer stands
+                    if abs(change) <= 4 * EPS * (abs(t) + step):
+                        break
+                    step += change
+                _call_rate(rate, t + step, new, p, count, regime, k[STAGES])
+                if dense:
+                    _dense(rate, t, step, y, new, p, n, regime, k, spare, q)
         row = whole[STORED]
         step_start[row], step_length[row], step_regime[row] = t, step, regime
         _copy(new[:n], step_states[row])
@@ -606,48 +616,49 @@ def advance(
             t += step
         _copy(new, y)
         rejected = False
-        if m > 0 and which < 0:
-            _watched(functions, t, y[:n], p, asked, n, regime, own, 0, g, slope)
-            for i in range(m):
-                if g[i] != 0.0:
-                    sides[i] = _sign(g[i])
-        while which >= 0:
-            at = whole[EVENTS]
-            event_time[at], event_which[at] = t, which
-            _copy(y[:n], event_before[at])
-            then = transitions[regime, which] if which < own else regime
-            jumped = which < own and functions[2] != 0
-            if (
-                which < own
-                and _pass_event(
-                    functions, t, y, p, asked, n, count, regime, then, which, jumped, g[:own], slope, k, spare
+        if watched is not None:
+            if m > 0 and which < 0:
+                _watched(functions, t, y[:n], p, asked, n, regime, own, 0, g, slope)
+                for i in range(m):
+                    if g[i] != 0.0:
+                        sides[i] = _sign(g[i])
+            while which >= 0:
+                at = whole[EVENTS]
+                event_time[at], event_which[at] = t, which
+                _copy(y[:n], event_before[at])
+                then = transitions[regime, which] if which < own else regime
+                jumped = which < own and functions[2] != 0
+                if (
+                    which < own
+                    and _pass_event(
+                        functions, t, y, p, asked, n, count, regime, then, which, jumped, g[:own], slope, k, spare
+                    )
+                    != 0
+                ):
+                    clock[TIME], clock[STEP] = t, h
+                    return REFUSED
+                _copy(y[:n], event_after[at])
+                whole[EVENTS] += 1
+                near = t - clock[LAST_EVENT] <= 256 * EPS * max(abs(t), 1e-3 * clock[SPAN])
+                whole[QUICK] = whole[QUICK] + 1 if near else 0
+                clock[LAST_EVENT] = t
+                regime = then
+                whole[REGIME] = regime
+                _directions(transitions, directions, watched, regime, active)
+                again = _new_sides(
+                    functions, t, y, p, asked, n, regime, own, which, side, jumped, active, g, slope, k, sides
                 )
-                != 0
-            ):
-                clock[TIME], clock[STEP] = t, h
-                return REFUSED
-            _copy(y[:n], event_after[at])
-            whole[EVENTS] += 1
-            near = t - clock[LAST_EVENT] <= 256 * EPS * max(abs(t), 1e-3 * clock[SPAN])
-            whole[QUICK] = whole[QUICK] + 1 if near else 0
-            clock[LAST_EVENT] = t
-            regime = then
-            whole[REGIME] = regime
-            _directions(transitions, directions, watched, regime, active)
-            again = _new_sides(
-                functions, t, y, p, asked, n, regime, own, which, side, jumped, active, g, slope, k, sides
-            )
-            if again < 0 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
-                clock[TIME], clock[STEP] = t, h
-                return REFUSED
-            if whole[QUICK] > MOST_QUICK_EVENTS:
-                clock[TIME], clock[STEP] = t, h
-                return CHATTER
-            if which >= own and stops[which - own] != 0:
-                clock[TIME], clock[STEP] = t, h
-                return STOPPED
-            side = -side if not jumped else side
-            which = which if again == 1 else -1
+                if again < 0 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
+                    clock[TIME], clock[STEP] = t, h
+                    return REFUSED
+                if whole[QUICK] > MOST_QUICK_EVENTS:
+                    clock[TIME], clock[STEP] = t, h
+                    return CHATTER
+                if which >= own and stops[which - own] != 0:
+                    clock[TIME], clock[STEP] = t, h
+                    return STOPPED
+                side = -side if not jumped else side
+                which = which if again == 1 else -1
         for i in range(wide):
             if not abs(y[i]) < LARGEST:
                 clock[TIME], clock[STEP] = t, h

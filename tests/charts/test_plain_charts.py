@@ -1,0 +1,121 @@
+"""Charts in plain NumPy, as reports show them before kernels are compiled, against the compiled ones."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.analyses.charts import plain_chart
+from trunnion.analyses.charts.building import build
+from trunnion.analyses.charts.chart_families import LineFamily
+from trunnion.analyses.charts.plain_chart import build_plainly
+from trunnion.analyses.charts.plain_pixels import plain_radii
+from trunnion.analyses.charts.stability_chart import line_task
+from trunnion.equations.coefficients import assemble
+from trunnion.numerics.chain.characteristic import radii
+from trunnion.results.verdict import Verdict
+from trunnion.studies.entries import catalogue
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ANGLES = "HookeJoint *.angle"
+
+
+@pytest.fixture
+def nothing_compiled(monkeypatch):
+    monkeypatch.setattr(plain_chart, "at_hand", lambda *functions: False)
+
+
+def family(line, low, high, top, points) -> LineFamily:
+    axes = ("speed", low, high, points[0]), (ANGLES, 0.0, top, points[1])
+    found = line_task(assemble(line), *axes, None, True).family
+    assert isinstance(found, LineFamily)
+    return found
+
+
+LINES = {
+    # name: line, speeds, largest angle, points, way
+    "truck": (lambda: tn.load(EXAMPLES / "truck.toml"), (31.4, 251.3), 0.26, (40, 24), "patches"),
+    "two shafts, tongues": (lambda: catalogue("two-shaft-cardan"), (0.5, 2.0), 0.5, (60, 40), "patches"),
+    "two shafts, slow": (lambda: catalogue("two-shaft-cardan"), (0.03, 2.0), 0.5, (40, 20), "pixel by pixel"),
+    "three shafts": (lambda: catalogue("three-shaft-cardan"), (0.3, 2.0), 0.4, (40, 30), None),
+}
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_both_ways_agree(nothing_compiled, name):
+    make, speeds, top, points, way = LINES[name]
+    chart = family(make(), *speeds, top, points)
+    x, y = chart.x.values, chart.y.values
+    plain = build_plainly(chart, x, y, 1e-7, lambda share: None)
+    compiled = build(chart, x, y, 1e-9, 1, lambda share: None).pixels
+    assert plain is not None
+    assert way in (None, plain.way.name)
+    assert plain.check.worst_ratio <= 1
+    off = np.abs(plain.pixels.radius - compiled.radius)
+    assert np.all(off <= plain.pixels.error + compiled.error)
+    sure = (plain.pixels.verdict != Verdict.UNDECIDED) & (compiled.verdict != Verdict.UNDECIDED)
+    assert np.mean(sure) > 0.99
+    assert np.array_equal(plain.pixels.verdict[sure], compiled.verdict[sure])
+
+
+@pytest.mark.parametrize("m", (2, 4, 6))
+def test_radii_of_coefficients_as_the_kernel_finds_them(m):
+    rng = np.random.default_rng(m)
+    roots = rng.uniform(0.05, 1.1, (200, m // 2)) * np.exp(1j * rng.uniform(0, np.pi, (200, m // 2)))
+    roots[:50, 0] = roots[:50, 0].real + 0j  # double real roots, nearly
+    every = np.concatenate([roots, roots.conj()], axis=1)
+    signs = (-1.0) ** np.arange(1, m + 1)
+    values = np.array([signs * np.poly(row).real[1:] for row in every]).T.copy()
+    bounds = 10.0 ** rng.uniform(-12, -6, (m, 200))
+    values[0, 7] = np.nan
+    plain, kernel = plain_radii(values, bounds), radii(values, bounds)
+    there = np.arange(200) != 7
+    assert np.isnan(plain[0][7]) and np.isnan(plain[1][7])
+    assert np.all(np.abs(plain[0] - kernel[0])[there] <= (plain[1] + kernel[1])[there])
+    # The bound holds for coefficients anywhere within theirs, and is not far above the kernel's.
+    for _ in range(20):
+        moved = plain_radii(values + bounds * rng.choice([-1.0, 1.0], bounds.shape), np.zeros_like(bounds))[0]
+        assert np.all(np.abs(moved - plain[0])[there] <= plain[1][there] + 1e-7 * (np.arange(200) < 50)[there])
+    assert np.all(plain[1][there] <= 4 * kernel[1][there] + 1e-12)
+
+
+def test_what_is_compiled_already_is_used(monkeypatch):
+    """And a line that starts free is left to the kernels."""
+    chart = family(catalogue("two-shaft-cardan"), 0.5, 2.0, 0.5, (8, 6))
+    monkeypatch.setattr(plain_chart, "at_hand", lambda *functions: True)
+    assert not plain_chart.suits(chart)
+    assert build_plainly(chart, chart.x.values, chart.y.values, 1e-7, lambda share: None) is None
+
+
+def test_the_chart_of_a_report_compiles_no_kernel_of_charts(tmp_path):
+    """Only what integrates single points, for its check of itself."""
+    script = """
+import sys
+import trunnion as tn
+from numba.core import event
+from trunnion.analyses.charts.stability_chart import chart_of_report
+from trunnion.equations.coefficients import assemble
+
+class Heard(event.Listener):
+    names = []
+    def on_start(self, event):
+        Heard.names.append(event.data["dispatcher"].py_func.__module__)
+    def on_end(self, event):
+        pass
+
+with event.install_listener("numba:compile", Heard()):
+    axes = ("speed", 31.4, 251.3, 20), ("HookeJoint *.angle", 0.0, 0.26, 12)
+    chart = chart_of_report(assemble(tn.load(sys.argv[1])), *axes, 1e-7)
+print(chart.way, sorted({name for name in Heard.names if name.startswith("trunnion")}))
+"""
+    environment = os.environ | {"TRUNNION_CACHE": str(tmp_path)}
+    call = [sys.executable, "-c", script, str(EXAMPLES / "truck.toml")]
+    run = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.strip() == "patches ['trunnion.numerics.chain.dense_monodromy']"
