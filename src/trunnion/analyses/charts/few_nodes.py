@@ -53,17 +53,18 @@ def leading_patches(
     threads: int,
     price_elsewhere: float,
     tell: Callable[[float], None],
+    even_all: bool = False,
 ) -> PatchedFunction | None:
     """Patches of the largest multipliers' e₁ … e_d over ``box``, each to ``tolerance`` of its size (1 at least).
 
     None where that costs more than ``price_elsewhere`` [µs], no group of multipliers stands apart, or it holds them
-    all: then nothing is spared.
+    all and ``even_all`` is not asked for: elsewhere, then nothing is spared.
     """
     corners = _at_nodes(family, *_corners(box))
     price, spared = step_price(corners.states), price_elsewhere - pixels * pixel_price(6)
     group, nodes_expected = _forecast(family.rates(*_from_patch(family, *_corners(box))))
     dearest = spared / (nodes_expected * HALVINGS * price)
-    if group == corners.states:
+    if group == corners.states and not even_all:
         return None
     if not LIKELY_STEPS < dearest or not _settles(corners, group, tolerance, dearest):
         return None

@@ -151,7 +151,7 @@ def build_plainly(
         return None
     plain, way = Plain(family), LADDER[0]
     affordable = MOST_WORK * step_price(12) / SHARE + size * pixel_price(6)
-    function = leading_patches(plain, box, size, tolerance / 4, 1, affordable, tell)
+    function = leading_patches(plain, box, size, tolerance / 4, 1, affordable, tell, even_all=True)
     if function is not None:
         pixels = _pixels(function, u, v, family.size)
     elif size <= MOST_ALONE:
