@@ -7,6 +7,7 @@ from scipy.linalg import expm
 
 import trunnion as tn
 from trunnion.analyses.linear.along import NoSharedMotion, stability_along, straight_decay
+from trunnion.analyses.linear.own_motions import FreeBalance, MotionsBySpeed
 from trunnion.equations.coefficients import assemble
 from trunnion.numerics.chain.exponential_monodromy import exponential, exponential_monodromies
 from trunnion.results.verdict import Verdict
@@ -101,6 +102,41 @@ def test_free_bent_lines_about_their_own_motions(load):
         shaft(5e3, 2.0), disk(0.1), joint(np.deg2rad(9)), shaft(6e4, 4.0), disk(0.3, **load),
     ])  # fmt: skip
     _agrees(line, np.array([60.0, 87.0, 150.0]))
+
+
+def test_motions_that_are_known_give_the_same_whatever_was_asked_before():
+    """Multipliers about motions solved for other speeds first, with more harmonics, are those solved anew."""
+    line = tn.Driveline([
+        disk(0.4, drive_share=1), shaft(8e3, 4.0), disk(0.05), joint(0.3), shaft(5e3, 2.0), disk(0.1), joint(0.2),
+        shaft(6e4, 4.0), disk(0.3, load_torque=50.0),
+    ])  # fmt: skip
+    assembly, speeds = assemble(line), np.array([60.0, 87.0, 150.0])
+    solved = MotionsBySpeed(line)
+    for speed in (150.0, 3.0, 61.0):
+        solved.at(speed)
+    assert len({motion.h for motion in solved.at_all(speeds)}) > 1
+    known, anew = stability_along(assembly, speeds, motions=solved), stability_along(assembly, speeds)
+    assert set(solved.known) == {3.0, 60.0, 61.0, 87.0, 150.0}
+    assert known.critical == pytest.approx(anew.critical, rel=1e-7)
+    assert known.verdict.tolist() == anew.verdict.tolist()
+
+
+def test_an_assessment_solves_every_own_motion_once(monkeypatch):
+    asked = []
+    solve = FreeBalance.solve
+
+    def counted(balance, speed, h, guess):
+        asked.append((speed, h))
+        return solve(balance, speed, h, guess)
+
+    monkeypatch.setattr(FreeBalance, "solve", counted)
+    line = tn.Driveline([
+        disk(0.4, drive_share=1, excitation=[{"order": 2, "amplitude": 5.0}]), shaft(8e3, 4.0), disk(0.05), joint(0.1),
+        shaft(5e3, 2.0), disk(0.3, load_torque=50.0),
+    ])  # fmt: skip
+    check = tn.assess(line, (80.0, 80.0)).check("parametric stability")
+    assert str(check.status) == "satisfied"
+    assert len(asked) == len(set(asked)) > 0
 
 
 def test_free_lines_with_play_have_no_shared_motion():

@@ -17,7 +17,7 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
@@ -182,15 +182,26 @@ class LineSystem:
 
         return replace(self.system, numbers_of=numbers)
 
-    def numbers(self, row: Array, course: Course | None = None, drive: float = 0.0) -> Array:
+    def untwisted(self, table: Array) -> LineCoefficients:
+        """Coefficients about zero twist: what the nonlinear equations stand on."""
+        return self.assembly.coefficients(table, statically_twisted=False, free_play=True)
+
+    def numbers(
+        self,
+        row: Array,
+        course: Course | None = None,
+        drive: float = 0.0,
+        known: LineCoefficients | None = None,
+    ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
-        their own, drives with a share follow its speed and acceleration.
+        their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of the row, where
+        it is at hand.
         """
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
-        co = assembly.coefficients(table, statically_twisted=False, free_play=True)
+        co = known or self.untwisted(table)
         ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
         load, by_speed, by_square = co.load[0], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
         if course is not None and topo.free and given_shares(topo, assembly.packed.column, table).any():

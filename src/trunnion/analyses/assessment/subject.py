@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from trunnion.analyses.linear.along import StabilityAlong, stability_along
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
-from trunnion.analyses.orders.response import order_response
+from trunnion.analyses.orders.response import order_response, own_motions_of, response_about
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -23,6 +24,9 @@ from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
 Array = NDArray[np.float64]
 POINTS = 201
@@ -86,10 +90,12 @@ class Case:
         if self.known is not None:
             return self.known
         try:
-            found = order_response(self.assembly, self.speeds)
+            if not self.parametric:
+                return order_response(self.assembly, self.speeds)
+            found = response_about(self.assembly, self.speeds, self.motions)
         except (InputError, ComputationError) as error:
             return str(error).splitlines()[0]
-        return replace(found, judged=self._judged) if self.parametric else found
+        return replace(found, judged=self._judged)
 
     def respond(self) -> None:
         """Compute the response, so that cases can do it side by side."""
@@ -107,11 +113,16 @@ class Case:
         return bent(self.assembly) or any(mesh.stiffness_rates for mesh in self.assembly.topology.meshes)
 
     @cached_property
+    def motions(self) -> MotionsBySpeed | None:
+        """The own motions that response and stability are taken about, of a bent line that starts free."""
+        return own_motions_of(self.assembly)
+
+    @cached_property
     def along(self) -> StabilityAlong:
         """Stability at ``speeds`` and at the resonance speeds of the joints between them, which may be narrow."""
         low, high = float(self.speeds[0]), float(self.speeds[-1])
         named = [r.speed for r in resonance_speeds(self.assembly).within(low, high) if r.opens] if low < high else []
-        return stability_along(self.assembly, np.union1d(self.speeds, named))
+        return stability_along(self.assembly, np.union1d(self.speeds, named), motions=self.motions)
 
     def _judged(self) -> NDArray[np.int8]:
         if self.assembly.coefficients(self.assembly.table(1), any_frequency=True).loss.any():

@@ -8,6 +8,7 @@ kernel. Bent lines that start free are taken about their own periodic motions.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +28,9 @@ from trunnion.errors import InputError
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import without
 from trunnion.results.verdict import Verdict, verdicts
+
+if TYPE_CHECKING:
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -57,8 +61,16 @@ class StabilityAlong:
             return np.asarray(np.log(self.radius) * self.speed / self.period)
 
 
-def stability_along(assembly: Assembly, speeds: ArrayLike, *, statically_twisted: bool = True) -> StabilityAlong:
+def stability_along(
+    assembly: Assembly,
+    speeds: ArrayLike,
+    *,
+    statically_twisted: bool = True,
+    motions: MotionsBySpeed | None = None,
+) -> StabilityAlong:
     """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with bent joints or varying meshes.
+
+    ``motions`` : own motions that are known already.
 
     Raises
     ------
@@ -66,7 +78,7 @@ def stability_along(assembly: Assembly, speeds: ArrayLike, *, statically_twisted
     """
     speed = np.asarray(speeds, dtype=float)
     if assembly.topology.free and bent(assembly):
-        return _about_own_motions(assembly, speed)
+        return _about_own_motions(assembly, speed, motions)
     table = assembly.table(len(speed))
     table[:, 0] = speed
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
@@ -104,13 +116,13 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
     return StabilityAlong(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
 
 
-def _about_own_motions(assembly: Assembly, speed: Array) -> StabilityAlong:
+def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed | None) -> StabilityAlong:
     from trunnion.analyses.linear.own_motions import own_motions
 
     table = assembly.table(len(speed))
     table[:, 0] = speed
     require_balance(assembly, table)
-    motions = own_motions(assembly.line, speed)
+    motions = own_motions(assembly.line, speed, solved)
     if motions is None:
         raise NoSharedMotion(
             "starts free and has stages or play, so that each speed takes its own motion",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from trunnion.analyses.orbits.free_orbit import loaded_by_speed, torque_scale
 from trunnion.analyses.orbits.harmonic_equations import HarmonicEquations
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, rigid_rotation
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
 from trunnion.equations.exciters import quiet
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.line_system import LineSystem, line_system
@@ -84,53 +85,89 @@ def _deflated(matrix: Array, direction: Array) -> Array:
     return np.asarray((matrix - values[place] * np.outer(right, left)).real)
 
 
-def own_motions(line: Driveline, speeds: Array) -> OwnMotions | None:
+def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = None) -> OwnMotions | None:
     """Motions at all ``speeds`` [rad/s]; None for a line whose springs have stages or play.
 
-    ``found`` is False where the harmonics did not settle.
+    ``solved`` : what is known of them already. ``found`` is False where the harmonics did not settle.
     """
-    described = assemble(quiet(line))
-    if mean_by_load(line) and loaded_by_speed(described):
+    solved = solved or MotionsBySpeed(line)
+    if solved.hindered:
         return None
-    assembly = assemble(with_mean_clutches(described, float(speeds[0])))
-    prepared = line_system(assembly, float(speeds[0]))
-    if prepared.system.regimes is not None:
-        return None
-    balance = FreeBalance(assembly, 2 * np.pi * float(require_period(assembly.line, assembly.topology)))
-
-    def attempt(h: int, last: bool) -> list[FreeMotion] | None:
-        motions: list[FreeMotion] = []
-        for speed in speeds:
-            guess = motions[-1].rows if motions and motions[-1].found else None
-            motions.append(balance.solve(float(speed), h, guess))
-            if motions[-1].found and not motions[-1].resolved and not last:
-                return None
-        return motions
-
-    motions = with_enough(attempt, balance.fewest, MOST)
-    slopes, shift, drift = (np.stack(parts) for parts in zip(*map(balance.about, motions), strict=True))
-    n = assembly.topology.size
+    balance, motions = solved.balance, solved.at_all(speeds)
+    times = max(motion.times for motion in motions)
+    slopes, shift, drift = (np.stack(parts) for parts in zip(*(balance.about(m, times) for m in motions), strict=True))
+    n = balance.assembly.topology.size
     damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
     return OwnMotions(
         np.array([m.found and m.resolved for m in motions]),
         balance.period,
         slopes,
         shift,
-        None if loaded_by_speed(assembly) else drift,
+        None if loaded_by_speed(balance.assembly) else drift,
         np.abs(damping) * balance.period < 1e-12 * n,
     )
+
+
+class MotionsBySpeed:
+    """The motions of one line, each speed solved once: the orders and the stability along a range ask for the same.
+
+    Phases count from zero rotation of the input.
+    """
+
+    def __init__(self, line: Driveline) -> None:
+        self.line = line
+        self.known: dict[float, FreeMotion] = {}
+
+    @cached_property
+    def hindered(self) -> str:
+        """Why there is no balance of smooth equations for all speeds; empty where there is."""
+        if mean_by_load(self.line) and loaded_by_speed(assemble(quiet(self.line))):
+            return "the mean of its clutch changes with the speed besides"
+        if line_system(self.quiet, 1.0).system.regimes is not None:
+            return "it has stages or play besides"
+        return ""
+
+    @cached_property
+    def quiet(self) -> Assembly:
+        """The line without excitation, clutches that state a motion as their mean."""
+        return assemble(with_mean_clutches(assemble(quiet(self.line)), 1.0))
+
+    @cached_property
+    def balance(self) -> FreeBalance:
+        """What solves them."""
+        topo = self.quiet.topology
+        phase = np.eye(topo.size)[topo.coordinate[topo.group_of(0)]]
+        return FreeBalance(self.quiet, 2 * np.pi * float(require_period(self.quiet.line, topo)), phase)
+
+    def at_all(self, speeds: Array) -> list[FreeMotion]:
+        """The motions at all ``speeds`` [rad/s]."""
+        return [self.at(float(speed)) for speed in speeds]
+
+    def at(self, speed: float) -> FreeMotion:
+        """The motion at ``speed`` [rad/s], from that at the nearest known and with as many harmonics at least."""
+        if speed not in self.known:
+            found = [other for other, motion in self.known.items() if motion.found]
+            near = self.known[min(found, key=lambda other: abs(other - speed))] if found else None
+
+            def attempt(h: int, last: bool) -> FreeMotion | None:
+                motion = self.balance.solve(speed, h, None if near is None else near.rows)
+                return motion if last or motion.resolved or not motion.found else None
+
+            self.known[speed] = with_enough(attempt, self.balance.fewest if near is None else near.h, MOST)
+        return self.known[speed]
 
 
 @dataclass(frozen=True)
 class FreeMotion:
     """One motion: its states as series (2n, 2H + 1) [rad, rad/s]; torque [N m at the input] that drives beyond the
-    balance; ``rate``: torque → system."""
+    balance; ``rate``: torque → system; the line's coefficients at its speed, about zero twist."""
 
     found: bool
     speed: float
     rows: Array
     torque: float
     rate: Callable[[float], System]
+    coefficients: LineCoefficients
 
     @property
     def h(self) -> int:
@@ -184,61 +221,62 @@ class FreeBalance:
     def solve(self, speed: float, h: int, guess: Array | None) -> FreeMotion:
         """The motion of ``h`` harmonics at ``speed`` [rad/s] from a guess, or from rigid shafts."""
         line = LineSystem(self.assembly, speed)
-        torques = self._torques(line)
+        co = line.untwisted(self.row(speed)[None])
+        torques = self._torques(line, co)
         n, wide = len(self.turn), 2 * h + 1
         across = np.zeros(2 * n * wide + 1)
         across[: n * wide : wide] = self.phase / np.linalg.norm(self.phase)
         equations = HarmonicEquations(over=torques, periods=1, h=h)
-        starts = [self._rigid(line, h)] if guess is None else [fourier.resized(guess, h), self._rigid(line, h)]
-        for start in starts:
+        for known in (None,) if guess is None else (guess, None):
+            start = self._rigid(line, h, co) if known is None else fourier.resized(known, h)
             point = correct(
                 equations.equations, np.append(start.ravel(), 0.0), across, scale=equations.scale, tolerance=CLOSED,
                 to_rounding=True,
             )  # fmt: skip
             if point is not None:
-                return FreeMotion(True, speed, equations.rows(point), point.parameter, torques.at)
-        return FreeMotion(False, speed, starts[-1], 0.0, torques.at)
+                return FreeMotion(True, speed, equations.rows(point), point.parameter, torques.at, co)
+        return FreeMotion(False, speed, start, 0.0, torques.at, co)
 
-    def _torques(self, line: LineSystem) -> Torques:
+    def _torques(self, line: LineSystem, co: LineCoefficients) -> Torques:
         row = self.row(line.speed)
-        numbers = line.numbers(row)
-        drive = line.numbers(row, drive=1.0) - numbers
+        numbers = line.numbers(row, known=co)
+        drive = line.numbers(row, drive=1.0, known=co) - numbers
         system = replace(line.system, period=self.period / line.speed)
 
         def at(torque: float) -> System:
             return replace(system, numbers_of=lambda _: numbers + torque * drive)
 
-        return Torques(at, np.append(np.asarray(system.scale), torque_scale(line)))
+        return Torques(at, np.append(np.asarray(system.scale), torque_scale(line, co)))
 
     def row(self, speed: float) -> Array:
         """The line's numbers at ``speed``."""
         return self.assembly.table(1, speed)[0]
 
-    def _rigid(self, line: LineSystem, h: int) -> Array:
+    def _rigid(self, line: LineSystem, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (2n, 2h + 1)."""
         topo, count = self.assembly.topology, 4 * h + 4
         theta = self.period * np.arange(count) / count
-        co = self.assembly.coefficients(self.row(line.speed)[None], statically_twisted=False, free_play=True)
         base, plain = (base_motion(topo, case, theta, ratio_values(topo)).angle[0] for case in (co, co.straight))
         held = (line.twisted() - line.rigid(0.0))[: topo.size]
         rows = fourier.rows_of((base - plain)[:, topo.firsts].T + held[:, None], h)
         rows[:, 0] -= self.phase * (self.phase @ rows[:, 0]) / (self.phase @ self.phase)
         return np.concatenate([rows, fourier.rate(rows, 2 * np.pi * line.speed / self.period)])
 
-    def about(self, motion: FreeMotion) -> tuple[Complex, Array, Array]:
-        """A's Fourier coefficients, the shift of the phase and the change of the speed, in energy-like units."""
+    def about(self, motion: FreeMotion, times: int) -> tuple[Complex, Array, Array]:
+        """A's Fourier coefficients, ``times`` of them, the shift of the phase and the change of the speed, in
+        energy-like units."""
         n, speed = len(self.turn), motion.speed
         rates, slopes = motion.sampled()
         spectrum = np.fft.fft(slopes[:, n:], axis=0) / motion.times
-        co = self.assembly.coefficients(self.row(speed)[None], statically_twisted=False, free_play=True)
-        root = np.sqrt(aligned_matrices(self.assembly.topology, co).mass[0])
+        root = np.sqrt(aligned_matrices(self.assembly.topology, motion.coefficients).mass[0])
         ratio = root[:, None] / root[None, :]
         stiffness = -spectrum[0, :, :n].real * ratio / speed**2
         unit = float(np.sqrt(max(np.abs(np.diag(stiffness)).mean(), 1e-300)))
-        a = np.zeros((motion.times, 2 * n, 2 * n), dtype=complex)
+        a = np.zeros((times, 2 * n, 2 * n), dtype=complex)
         a[0, :n, n:] = np.eye(n) * unit
-        a[:, n:, :n] = spectrum[:, :, :n] * (ratio / (speed**2 * unit))
-        a[:, n:, n:] = spectrum[:, :, n:] * (ratio / speed)
+        at = np.fft.fftfreq(motion.times, 1 / motion.times).astype(int)  # from the end where negative
+        a[at, n:, :n] = spectrum[:, :, :n] * (ratio / (speed**2 * unit))
+        a[at, n:, n:] = spectrum[:, :, n:] * (ratio / speed)
         scale = np.concatenate([root, root / unit])
         shift = np.concatenate([rates[0, :n] / speed + self.turn, rates[0, n:] / speed**2]) * scale
         return a, shift, np.concatenate([np.zeros(n), self.turn]) * scale

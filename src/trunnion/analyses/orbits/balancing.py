@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from trunnion.analyses.orbits.branch import PeriodicBranch, Problem, collect, follow_both_ways
 from trunnion.numerics import harmonics as fourier
@@ -133,10 +134,16 @@ def with_enough(attempt: Callable[[int, bool], T | None], fewest: int, most: int
     """What ``attempt(h, last)`` finds first, h doubled from ``fewest`` to ``most``, where ``last`` is True: it must."""
     h = fewest
     # Matrices of a few hundred rows: a library's threads would spend their time waiting for each other.
-    with threadpool_limits(1, user_api="blas"):
+    with _libraries().limit(limits=1, user_api="blas"):
         while (found := attempt(h, h >= most)) is None:
             h = min(2 * h, most)
     return found
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """What NumPy has loaded; looking for it takes as long as a small balance."""
+    return ThreadpoolController()
 
 
 def _followed(problem: Balance, begin: float, low: float, high: float, most_points: int, limit: float) -> Found | None:

@@ -100,7 +100,6 @@ class HarmonicEquations(Series):
         slope = np.zeros((n, wide, n, wide))
         for i in range(n):
             slope[i, :, i, :] = fourier.rate_matrix(h, omega)
-            for j in range(n):
-                if np.any(jacobians[:, i, j]):
-                    slope[i, :, j, :] -= fourier.product_matrix(jacobians[:, i, j], h)
+        of, by = np.nonzero(jacobians.any(axis=0))
+        slope[of, :, by, :] -= fourier.product_matrix(np.ascontiguousarray(jacobians[:, of, by].T), h)
         return left.ravel(), slope.reshape(n * wide, n * wide) / omega

@@ -17,16 +17,13 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.own_motions import MOST, FreeBalance, FreeMotion
-from trunnion.analyses.orbits.balancing import with_enough
-from trunnion.analyses.orbits.free_orbit import loaded_by_speed
+from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
-from trunnion.equations.exciters import BaseOfExcitation, quiet
+from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.exciters import BaseOfExcitation
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.line_system import LineSystem
 from trunnion.equations.linear import stiffness_waves
-from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Link, Topology
 from trunnion.errors import ComputationError
@@ -64,20 +61,12 @@ class OwnBase:
 class OwnOrders:
     """Own motions of one line, speed after speed."""
 
-    def __init__(self, assembly: Assembly, turns: Fraction) -> None:
-        if mean_by_load(assembly.line) and loaded_by_speed(assembly):
-            refuse_own_motion(
-                assembly, "the mean of its clutch changes with the speed besides: use tn.periodic_response"
-            )
-        self.quiet = assemble(with_mean_clutches(assemble(quiet(assembly.line)), 1.0))
-        self.topo, self.period = self.quiet.topology, 2 * np.pi * float(turns)
-        prepared = line_system(self.quiet, 1.0)
-        if prepared.system.regimes is not None:
-            refuse_own_motion(assembly, "it has stages or play besides: use tn.periodic_response")
-        # Phases count from zero rotation of the input.
-        self.phase = np.eye(self.topo.size)[self.topo.coordinate[self.topo.group_of(0)]]
-        self.balance = FreeBalance(self.quiet, self.period, self.phase)
-        self.last: FreeMotion | None = None
+    def __init__(self, assembly: Assembly, solved: MotionsBySpeed | None = None) -> None:
+        self.solved = solved or MotionsBySpeed(assembly.line)
+        if self.solved.hindered:
+            refuse_own_motion(assembly, f"{self.solved.hindered}: use tn.periodic_response")
+        self.quiet, self.balance = self.solved.quiet, self.solved.balance
+        self.topo, self.period, self.phase = self.quiet.topology, self.balance.period, self.balance.phase
 
     def at(self, speed: float) -> OwnBase:
         """The motion at mean input ``speed`` [rad/s].
@@ -86,14 +75,15 @@ class OwnOrders:
         ------
         ComputationError : no motion found.
         """
-        motion, line = self._motion(speed), LineSystem(self.quiet, speed)
-        topo, table = self.topo, self.quiet.table(1, speed)
-        co = self.quiet.coefficients(table, statically_twisted=False, free_play=True)
+        motion = self.solved.at(speed)
+        if not motion.found:
+            raise ComputationError(f"no own motion of the free line was found at {speed * 30 / np.pi:.5g} rpm")
+        topo, co = self.topo, motion.coefficients
         ratios = ratio_values(topo)
         tau = self.period * np.arange(motion.times) / motion.times
         rates, slopes = motion.sampled()
         drive = motion.sampled(more=1.0)[0] - rates
-        observed = line.observe(line.with_drive(motion.torque), tau / speed, motion.states)
+        observed = LineSystem(self.quiet, speed).observe(motion.rate(motion.torque), tau / speed, motion.states)
         uniform = base_motion(topo, co.straight, tau, ratios).angle[0]
         rigid = base_motion(topo, co, tau, ratios).angle[0] - uniform
         relative = _relative(topo, co, uniform + observed.rotation, ratios)
@@ -124,20 +114,6 @@ class OwnOrders:
             rate=2 * np.pi * speed / self.period,
             count=motion.h,
         )
-
-    def _motion(self, speed: float) -> FreeMotion:
-        """The motion, from that of the speed before and with as many harmonics at least."""
-        before = self.last
-
-        def attempt(h: int, last: bool) -> FreeMotion | None:
-            motion = self.balance.solve(speed, h, None if before is None else before.rows)
-            if not motion.found:
-                raise ComputationError(f"no own motion of the free line was found at {speed * 30 / np.pi:.5g} rpm")
-            return motion if motion.resolved or last else None
-
-        self.last = None  # what follows a failure begins anew
-        self.last = with_enough(attempt, self.balance.fewest if before is None else before.h, MOST)
-        return self.last
 
 
 def _relative(topo: Topology, co: LineCoefficients, angle: Array, ratios: Array) -> Array:

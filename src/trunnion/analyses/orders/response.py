@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,6 +36,9 @@ from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
 Array = NDArray[np.float64]
 TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
@@ -82,9 +86,28 @@ def order_response(
     table[:, 0] = speed
     require_steady_base(assembly, table)
     wanted = None if orders is None else _checked_orders(orders)
-    spectrum = order_spectrum(assembly, speed, statically_twisted=statically_twisted, progress=progress)
-    judged = partial(verdicts_at, assembly, speed, statically_twisted=statically_twisted)
+    twisted, motions = statically_twisted, own_motions_of(assembly)
+    spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
+    judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
     return _result(assembly, spectrum, judged, wanted)
+
+
+def own_motions_of(assembly: Assembly) -> MotionsBySpeed | None:
+    """For the motions that a bent line which starts free is taken about, each solved once; None for other lines."""
+    if not (assembly.topology.free and bent(assembly)):
+        return None
+    # Loaded for lines that need it: it brings the compiler and the orbits with it.
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
+
+    return MotionsBySpeed(assembly.line)
+
+
+def response_about(assembly: Assembly, speeds: Array, motions: MotionsBySpeed | None) -> OrderResponse:
+    """As ``order_response``, about ``motions`` that may be known already; its verdicts are not judged."""
+    table = assembly.table(len(speeds))
+    table[:, 0] = speeds
+    require_steady_base(assembly, table)
+    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, motions=motions))
 
 
 def rough_response(assembly: Assembly, speeds: Array) -> OrderResponse:

@@ -37,6 +37,7 @@ from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 
 if TYPE_CHECKING:
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
     from trunnion.analyses.orders.own_orders import OwnBase, OwnOrders
 
 Array = NDArray[np.float64]
@@ -59,6 +60,7 @@ def order_spectrum(
     statically_twisted: bool = True,
     linearised: bool = False,
     rough: bool = False,
+    motions: MotionsBySpeed | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> OrderSpectrum:
     """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
@@ -67,14 +69,16 @@ def order_spectrum(
     ``linearised`` each is solved as X₀ + A₀⁻¹(G − AX₀) about the first, X₀: right to first order, and as smooth a
     function of the numbers as A and G are, however near a resonance. With ``rough`` each cause
     makes the nearest side orders alone, and a bent line that starts free is taken about the motion of rigid shafts:
-    right to first order in what joints force, a tenth of the time.
+    right to first order in what joints force, a tenth of the time. ``motions``: own motions that are known already.
 
     Raises
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     shaken = exciters(assembly)
-    case = _Case(assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough)
+    case = _Case(
+        assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough, motions
+    )
     parts: list[tuple[OrderSum, Array]] = []
     done = 0
     while done < len(speed):
@@ -163,6 +167,7 @@ class _Case:
         numbers: Array,
         linearised: bool,
         rough: bool,
+        motions: MotionsBySpeed | None,
     ) -> None:
         self.linearised, self.rough = linearised, rough
         self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
@@ -177,7 +182,7 @@ class _Case:
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
-        self.own = _own_orders(assembly, self.turns) if self.topo.free and bent(assembly) and not about_rigid else None
+        self.own = _own_orders(assembly, motions) if self.topo.free and bent(assembly) and not about_rigid else None
         self.reach = ROUGH_REACH if rough else _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.few: Array | None = None
@@ -440,8 +445,8 @@ def _reach(joints: tuple[JointLaw, ...]) -> int:
     return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))
 
 
-def _own_orders(assembly: Assembly, turns: Fraction) -> OwnOrders:
+def _own_orders(assembly: Assembly, motions: MotionsBySpeed | None) -> OwnOrders:
     """Loaded for lines that need it: it brings the compiler and the orbits with it."""
     from trunnion.analyses.orders.own_orders import OwnOrders
 
-    return OwnOrders(assembly, turns)
+    return OwnOrders(assembly, motions)

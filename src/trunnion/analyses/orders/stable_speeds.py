@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,15 +13,25 @@ from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.results.verdict import Verdict
 
+if TYPE_CHECKING:
+    from trunnion.analyses.linear.own_motions import MotionsBySpeed
+
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
 GROWS = 1e-9
 """Real part of an eigenvalue, relative to the largest, from which a straight line counts as unstable."""
 
 
-def verdicts_at(assembly: Assembly, speed: Array, *, statically_twisted: bool = True) -> Codes:
+def verdicts_at(
+    assembly: Assembly,
+    speed: Array,
+    *,
+    statically_twisted: bool = True,
+    motions: MotionsBySpeed | None = None,
+) -> Codes:
     """Codes of ``Verdict`` (speed,) at every ``speed`` [rad/s]; FAILED where a loss factor holds at all frequencies,
     which has no equations in time, so that no multipliers exist, and where the computation failed.
+    ``motions``: own motions that are known already.
     """
     table = assembly.table(len(speed))
     table[:, 0] = speed
@@ -28,7 +40,7 @@ def verdicts_at(assembly: Assembly, speed: Array, *, statically_twisted: bool = 
     if co.loss.any() and varies:
         return np.full(len(speed), Verdict.FAILED, dtype=np.int8)
     if varies:
-        return stability_along(assembly, speed, statically_twisted=statically_twisted).verdict
+        return stability_along(assembly, speed, statically_twisted=statically_twisted, motions=motions).verdict
     return _straight(assembly, co)
 
 
