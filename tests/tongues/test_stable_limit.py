@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import two_shafts
@@ -9,6 +11,8 @@ import two_shafts
 import trunnion as tn
 from trunnion.analyses.limits.result import LimitKind
 from trunnion.analyses.limits.stable_limit import limit_of_chart
+from trunnion.analyses.tongues.region import unpatched
+from trunnion.analyses.tongues.tongues import task_of
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
@@ -246,3 +250,38 @@ def test_refusals(run, message: str) -> None:
     with pytest.raises(tn.InputError) as caught:
         run()
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def hardly_damped_truck() -> tn.Driveline:
+    """Modes that die within the period beside one that hardly does: its matrix hides what grows slowly."""
+    line = tn.load(Path(__file__).parents[2] / "examples/truck.toml")
+    changes = {}
+    for name, element in zip(line.names, line.elements, strict=True):
+        for key, share in (("damping", 0.02), ("loss_factor", 0.05)):
+            if value := getattr(element, key, None):
+                changes[name] = {key: share * value}
+    return line.replace_all(changes)
+
+
+def at_angle(line: tn.Driveline, angle: float) -> tn.Driveline:
+    return line.replace_all({name: {"angle": angle} for name in line.names if "joint" in name})
+
+
+def test_slow_growth_beside_fast_modes_is_told() -> None:
+    """Each point is judged as ``stability`` judges it: the matrix's error of 1e-5 left all of these open."""
+    line, speed, angles = hardly_damped_truck(), tn.rpm(336), np.array([0.33, 0.34])
+    task = task_of(line, ("HookeJoint *.angle", 0.3, 0.36), ("speed", 0.999 * speed, 1.001 * speed), None, True, "stable_limit")
+    region = unpatched(task.family, task.x.values, task.y.values, 1)
+    found = region.judged(task.family.to_patch(angles, True), np.repeat(task.family.to_patch([speed], False), 2))
+    assert found.verdict.tolist() == [Verdict.STABLE, Verdict.UNSTABLE]
+    for radius, error, angle in zip(found.radius, found.error, angles, strict=True):
+        expected = tn.stability(at_angle(line, angle), speed)
+        assert abs(radius - expected.spectral_radius) <= error + expected.error_estimate < 1e-7
+
+
+@pytest.mark.slow
+def test_slow_growth_beside_fast_modes_bounds_the_limit() -> None:
+    line, speed = hardly_damped_truck(), tn.rpm(336)
+    found = tn.stable_limit(line, "HookeJoint *.angle", [speed], low=0.3, high=0.36)
+    verdicts = [tn.stability(at_angle(line, found.limit[0] + aside), speed).verdict for aside in (-2e-4, 2e-4)]
+    assert verdicts == [Verdict.STABLE, Verdict.UNSTABLE]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import ChartFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, put_better
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.patches import patches
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
@@ -260,14 +260,6 @@ def decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> Non
     if not 0 < len(rows) <= FEW or (found := family.settled(x[columns], y[rows])) is None:
         return
     put_better(found, pixels, rows, columns)
-
-
-def put_better(found: Pixels, pixels: Pixels, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> None:
-    """Put what is better known into pixels of a chart, in place."""
-    better = found.error < pixels.error[rows, columns]
-    here = rows[better], columns[better]
-    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
-    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
 
 
 def between(axis: Array, low: float, high: float) -> slice:

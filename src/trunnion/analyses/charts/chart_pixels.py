@@ -61,6 +61,14 @@ def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
     return Pixels(radius, off, critical, verdicts(radius, off, np.abs(trace) < 1e-12 * (matrix.shape[1] // 2)))
 
 
+def put_better(found: Pixels, pixels: Pixels, *places: NDArray[np.intp]) -> None:
+    """Put what is better known into ``pixels`` at ``places``, an array of numbers an axis, in place."""
+    better = found.error < pixels.error[places]
+    here = tuple(axis[better] for axis in places)
+    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
+    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
+
+
 def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_aside: int) -> Pixels:
     """Pixels (v, u) of rows ``v`` of a patch, whose columns ``along`` belong to ``u``."""
     m, shape = _multipliers_in(along, size), (len(v), len(u))

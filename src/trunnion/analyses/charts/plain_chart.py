@@ -21,12 +21,11 @@ from trunnion.analyses.charts.building import (
     between,
     compared,
     decide_stiff,
-    put_better,
     sharply,
     spots,
 )
 from trunnion.analyses.charts.chart_families import LineFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge_matrices
+from trunnion.analyses.charts.chart_pixels import Pixels, judge_matrices, put_better
 from trunnion.analyses.charts.few_nodes import SHARE, leading_patches
 from trunnion.analyses.charts.leading_group import symmetric_functions, told_apart
 from trunnion.analyses.charts.plain_pixels import plain_pixels

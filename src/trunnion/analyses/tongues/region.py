@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import ChartFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, put_better
 from trunnion.analyses.tongues.boundaries import MOST
 from trunnion.numerics.chain.characteristic import without_ones
 from trunnion.numerics.patches import patches
@@ -20,6 +20,8 @@ Places = NDArray[np.intp]
 
 SHARPEST = 1e-13
 """Error asked of single integrations, which settle what patches suggest."""
+COARSE = 1e-10
+"""Errors of ρ above this are looked into where they leave the verdict open."""
 NODES = 48
 """Samples of a piece of a row that no patch covers."""
 EASIER = (1.0, 30.0, 1000.0)
@@ -103,7 +105,14 @@ class Region:
             found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
         else:
             found = judge_matrices(*self.family.matrices(x[order], y[order], SHARPEST, self.threads))
+            self._settle(found, x[order], y[order])
         return Pixels(found.radius[back], found.error[back], found.critical[back], found.verdict[back])
+
+    def _settle(self, found: Pixels, x: Array, y: Array) -> None:
+        """Once more, in place, what the matrix leaves open: fast modes make its error far larger than that of ρ."""
+        open_ = np.flatnonzero((np.abs(found.radius - 1) <= found.error) & (found.error > COARSE))
+        if len(open_) and (better := self.family.settled(x[open_], y[open_])) is not None:
+            put_better(better, found, open_)
 
     def above_one(self, u: Array, v: Array) -> Array:
         """Spectral radius less 1 (points,)."""

@@ -22,11 +22,14 @@ from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.meetings import meetings
 from trunnion.analyses.tongues.region import Piece, Places, Region
 from trunnion.analyses.tongues.series_roots import row_roots
+from trunnion.results.verdict import Verdict
 
 Array = NDArray[np.float64]
 
 TIGHT = 1e-7
 """Half of the first bracket about a zero of the patches, as a share of the box."""
+UNTOLD = 1e-6
+"""An error of ρ above which an open verdict is no answer; below, ρ is 1 as far as anybody asks."""
 EXACT = 1e-14
 """How closely edges are solved, as a share of the box."""
 LOOKS = 9
@@ -57,7 +60,7 @@ class Row:
     there.
 
     ``clipped`` (intervals, 2): whether an end is the end of the box; ``failed``: somewhere on the row the motion could
-    not be computed.
+    not be computed, or not closely enough to tell whether it grows.
     """
 
     v: float
@@ -185,7 +188,8 @@ def _settled(region: Region, v: Array, marks: _Marks) -> list[Row]:
     found = region.judged(probes, v[which])
     unstable = found.radius - 1 > found.error
     kinds = kind_of(found.critical)
-    return _edges(region, v, gaps, which, unstable, found.radius, kinds)
+    told = (found.verdict != Verdict.UNDECIDED) | (found.error < UNTOLD)
+    return _edges(region, v, gaps, which, unstable, np.where(told, found.radius, np.nan), kinds)
 
 
 def _flat(close: Iterable[list[tuple[float, float]]]) -> tuple[Places, Array]:
