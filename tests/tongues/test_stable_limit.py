@@ -270,7 +270,8 @@ def at_angle(line: tn.Driveline, angle: float) -> tn.Driveline:
 def test_slow_growth_beside_fast_modes_is_told() -> None:
     """Each point is judged as ``stability`` judges it: the matrix's error of 1e-5 left all of these open."""
     line, speed, angles = hardly_damped_truck(), tn.rpm(336), np.array([0.33, 0.34])
-    task = task_of(line, ("HookeJoint *.angle", 0.3, 0.36), ("speed", 0.999 * speed, 1.001 * speed), None, True, "stable_limit")
+    axes = ("HookeJoint *.angle", 0.3, 0.36), ("speed", 0.999 * speed, 1.001 * speed)
+    task = task_of(line, *axes, None, True, "stable_limit")
     region = unpatched(task.family, task.x.values, task.y.values, 1)
     found = region.judged(task.family.to_patch(angles, True), np.repeat(task.family.to_patch([speed], False), 2))
     assert found.verdict.tolist() == [Verdict.STABLE, Verdict.UNSTABLE]
