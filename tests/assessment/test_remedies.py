@@ -223,3 +223,36 @@ def test_the_command_prints_and_writes_what_helps(tmp_path):
     assert content["sensitivities"]["max torque of shaft"]["shaft.stiffness"] < 0
     plain = json.loads(CliRunner().invoke(app, ["assess", str(tmp_path / "line.toml"), "--json"]).stdout)
     assert "remedies" not in plain and plain["checks"][0]["order"] == 2.0
+
+
+def bent_free(*limits):
+    """A free line with two bent joints, shaken by order 2; the lower mode crosses it inside the range."""
+    shaken = [{"order": 2, "amplitude": 30.0}]
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.35, name="engine", drive_share=1, excitation=shaken),
+            tn.Shaft(stiffness=6e3, damping=6.0, name="clutch"),
+            tn.Disk(inertia=0.05, name="flange"),
+            tn.HookeJoint(angle=0.1, name="joint 1"),
+            tn.Shaft(stiffness=2e4, damping=4.0, name="tube"),
+            tn.HookeJoint(angle=0.08, name="joint 2"),
+            tn.Disk(inertia=1.3, name="wheel", load_torque=40.0),
+        ],
+        limits=limits,
+    )
+
+
+def test_remedies_of_bent_free_lines_are_those_of_the_whole_judgement():
+    """Found about rigid shafts, judged about own motions where checks bind: true of the changed line judged whole."""
+    line, speeds = bent_free(tn.Limit(of="clutch", max_torque=150.0)), (60.0, 90.0)
+    found = tn.remedies(line, speeds, checks=["max torque of clutch"])
+    before = found.assessment.check("max torque of clutch")
+    assert before.status is Status.EXCEEDED and found.remedies
+    for remedy in found.remedies:
+        element, key = remedy.variable.rsplit(".", 1)
+        after = tn.assess(line.replace(element, **{key: remedy.after}), speeds)
+        check = after.check("max torque of clutch")
+        assert check.status is Status.SATISFIED, remedy.sentence
+        assert check.value == pytest.approx(remedy.value, rel=5e-3)
+        worse = {c.name for c in after.checks if c.status is Status.EXCEEDED}
+        assert worse <= {c.name for c in found.assessment.checks if c.status is Status.EXCEEDED}

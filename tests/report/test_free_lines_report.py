@@ -10,6 +10,9 @@ import pytest
 import trunnion as tn
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.equations.coefficients import assemble
+from trunnion.reporting.answer import answer
+from trunnion.reporting.contents import gather
+from trunnion.reporting.overview import at_speed
 from trunnion.reporting.overview_findings import remark_findings, response_findings
 from trunnion.results.finding import Gravity
 
@@ -62,3 +65,23 @@ def test_a_resonance_beyond_the_range_is_named_where_it_raises_torques_inside() 
     )
     narrow = (tn.rpm(600), tn.rpm(800))
     assert not any("ω₃" in f.sentence for f in response_findings(assembly, resonance_speeds(assembly), narrow, "rpm"))
+
+
+@pytest.mark.slow
+def test_the_report_of_a_bent_line_that_starts_free_says_what_would_help() -> None:
+    """The clutch is tight at one speed: the report names a change, as of any other line."""
+    shaken = [{"order": 2, "amplitude": 30.0}]
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=0.35, name="engine", drive_share=1, excitation=shaken),
+            tn.Shaft(stiffness=6e3, damping=6.0, name="clutch"),
+            tn.HookeJoint(angle=0.05, name="joint"),
+            tn.Disk(inertia=1.3, name="wheel", load_torque=40.0),
+        ],
+        limits=[tn.Limit(of="clutch", max_torque=150.0)],
+        operation=tn.Operation(speed_range=(70.0, 75.0)),
+    )  # fmt: skip
+    contents = gather(at_speed(answer(line)))
+    assert contents.helped is not None and contents.helped.remedies
+    assert any(s.startswith("max torque of clutch: ") for s in contents.helped.sentences)
+    assert not any("What would help" in words for words in contents.left_out)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.remedies.remedies import remedies
+from trunnion.analyses.assessment.remedies.remedies import remedies_of
 from trunnion.analyses.assessment.remedies.result import Remedies
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.kinetostatics import kinetostatics
@@ -21,7 +21,6 @@ from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance
 from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.reporting.answer import NEARLY
 from trunnion.reporting.overview import Overview
@@ -83,7 +82,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         *(Finding(Gravity.CAUTION, f"{sentence.rstrip('.')}.") for sentence in without),
     ]
     findings = [*seen.findings, *more]
-    helped = _helped(seen, left_out)
+    helped = _helped(seen)
     whole = Contents(
         seen, assembly, turn, sweep, None, bending, loaded, campbell, helped, by_gravity(findings), tuple(left_out)
     )
@@ -99,21 +98,13 @@ def with_chart(contents: Contents, seen: Overview) -> Contents:
     return replace(contents, overview=seen, limit=limit, findings=by_gravity([*contents.findings, *new]))
 
 
-def _helped(seen: Overview, left_out: list[str]) -> Remedies | None:
+def _helped(seen: Overview) -> Remedies | None:
     """What would help, where a check is exceeded or nearly reached."""
     checks = seen.assessment.checks
     if not any(c.status is Status.EXCEEDED or (c.status is Status.SATISFIED and c.spare < NEARLY) for c in checks):
         return None
-    assembly = seen.answer.assembly
-    if assembly.topology.free and bent(assembly):
-        # Hundreds of changed lines are judged, each speed of which needs a motion of its own.
-        left_out.append(
-            "What would help: takes many minutes for a bent line that starts free; ask for it with trunnion assess "
-            "FILE --remedies, or tn.remedies(line, checks=[…])"
-        )
-        return None
     try:
-        return remedies(seen.line, seen.speed_range, unit=seen.unit)
+        return remedies_of(seen.answer.subject, checks)
     except (InputError, ComputationError):  # help beyond the answer, which stands without it
         return None
 

@@ -80,8 +80,13 @@ def subject_of(
 
 def checks_of(subject: Subject) -> tuple[Check, ...]:
     """All checks in order, of each the load case that binds."""
-    on_threads(Case.prepare, subject.cases, os.cpu_count() or 1)
+    prepare(subject.cases)
     return in_order([*worst(check for case in subject.cases for check in by_case(subject, case)), *of_line(subject)])
+
+
+def prepare(cases: tuple[Case, ...]) -> None:
+    """Compute what the checks look at, cases side by side."""
+    on_threads(Case.prepare, cases, os.cpu_count() or 1)
 
 
 def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:

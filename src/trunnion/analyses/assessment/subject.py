@@ -16,7 +16,7 @@ from trunnion.analyses.linear.along import StabilityAlong, stability_along
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
-from trunnion.analyses.orders.response import order_response, own_motions_of, response_about
+from trunnion.analyses.orders.response import order_response, own_motions_of, response_about, rough_response
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -62,7 +62,7 @@ class Subject:
 @dataclass(frozen=True)
 class Case:
     """The line under one load case ("" as stated), and the speeds that it is judged at; ``known``: its response there,
-    where that is known already."""
+    where that is known already; ``rough``: to look around, see ``rough_response``."""
 
     name: str
     assembly: Assembly
@@ -71,6 +71,7 @@ class Case:
     points: int = POINTS
     given: tuple[float, ...] = ()
     known: OrderResponse | None = None
+    rough: bool = False
 
     @cached_property
     def speeds(self) -> Array:
@@ -90,6 +91,8 @@ class Case:
         if self.known is not None:
             return self.known
         try:
+            if self.rough:
+                return rough_response(self.assembly, self.speeds)
             if not self.parametric:
                 return order_response(self.assembly, self.speeds)
             found = response_about(self.assembly, self.speeds, self.motions)
@@ -106,6 +109,11 @@ class Case:
         _ = self.answer, self.modes
         with suppress(InputError, ComputationError):  # said where it is looked at
             _ = self.along if self.parametric else None
+
+    @property
+    def costly(self) -> bool:
+        """Whether every speed takes a motion of its own."""
+        return self.assembly.topology.free and bent(self.assembly)
 
     @property
     def parametric(self) -> bool:

@@ -214,7 +214,9 @@ class _Case:
         groups, layers, times = self._plan(self.reach)
         n = self.topo.size
         most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
-        return max(1, MOST_NUMBERS // max(most**2, 4 * times * n**2))
+        # To look around, equations that stand for all speeds are written out once.
+        written = 0 if self.rough and self.few is not None else 4 * times * n**2
+        return max(1, MOST_NUMBERS // max(most**2, written))
 
     def solved(self, table: Array) -> tuple[OrderSum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""

@@ -175,7 +175,7 @@ def _under_load(case: Case, one: Direction) -> Direction:
 
 def _of(subject: Subject, case: Case, line: Driveline) -> tuple[Subject, Case]:
     changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high))
-    return changed, next(c for c in changed.cases if c.name == case.name)
+    return changed, replace(next(c for c in changed.cases if c.name == case.name), rough=case.rough)
 
 
 def _at_speed(subject: Subject, case: Case, check: Check, speed: float) -> Iterator[Check]:

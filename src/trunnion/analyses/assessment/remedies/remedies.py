@@ -43,7 +43,9 @@ def remedies(
 
     Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase,
     and verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
-    worse. A range of values narrower than a step (3 to 10 %) can be missed. What is zero is not varied.
+    worse. Of a bent line that starts free each is judged about its own periodic motion at the speeds where its checks
+    bind and those beside them, and sensitivities are those about the motion of rigid shafts. A range of values narrower
+    than a step (3 to 10 %, of bent free lines 5 to 20 %) can be missed. What is zero is not varied.
 
     Parameters
     ----------
@@ -69,7 +71,19 @@ def remedies(
 margin 1.52 %
     """
     subject = subject_of(line, speeds, load_case, unit)
-    base = checks_of(subject)
+    return remedies_of(subject, checks_of(subject), checks=checks, near=near, most=most, progress=progress)
+
+
+def remedies_of(
+    subject: Subject,
+    base: tuple[Check, ...],
+    *,
+    checks: Iterable[str] | None = None,
+    near: float = NEAR,
+    most: int = MOST,
+    progress: Callable[[float], None] | None = None,
+) -> Remedies:
+    """The same for a line whose checks, ``base``, are known."""
     judged = judgement(subject, base)
     goals = _goals(base, checks, near)
     design = Design(subject.line)

@@ -7,7 +7,8 @@ would say, and judged wholly. A window of values narrower than a step can be mis
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +16,12 @@ import numpy as np
 from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.assessment.remedies.trials import Checks, Trials
 from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
+from trunnion.numerics.threads import on_threads
 
 SIZES = (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7)
 """Sizes of changes tried; the largest is a factor of two."""
+FEWER_SIZES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7)
+"""The same where every line costs seconds."""
 PROBES = (0.2, 0.7)
 """Sizes at which a variable shows whether it matters at all."""
 IDLE = 0.02
@@ -47,20 +51,23 @@ class Search:
     def __init__(self, trials: Trials, goals: dict[str, float], most: int, progress: Callable[[float], None] | None):
         self.trials, self.goals, self.most, self.progress = trials, goals, most, progress
         self.variables = trials.design.variables
+        self.sizes: tuple[float, ...] = FEWER_SIZES if trials.costly else SIZES
+        self.probes: tuple[float, ...] = PROBES[1:] if trials.costly else PROBES
 
     def run(self) -> list[Found]:
         """The smallest changes for every goal, smallest first; of each variable the smaller direction."""
         matter = self._that_matter()
         passed: dict[str, dict[str, Found]] = {name: {} for name in self.goals}
         last = 0.0
-        for step, size in enumerate(SIZES):
+        for step, size in enumerate(self.sizes):
             open_goals = [name for name in self.goals if len(passed[name]) < self.most]
             if not open_goals:
                 break
+            self._ahead([v for v in matter if any(v.path not in passed[name] for name in open_goals)], [size])
             for name in open_goals:
                 self._step(name, matter, last, size, passed[name])
             last = size
-            self._tell((step + 2) / (len(SIZES) + 1))
+            self._tell((step + 2) / (len(self.sizes) + 1))
         self._tell(1.0)
         return [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
 
@@ -71,10 +78,11 @@ class Search:
     def _that_matter(self) -> list[DesignVariable]:
         """Variables that move the margin of a goal; a nut that nothing hangs on is not turned twelve times."""
         kept = []
+        self._ahead(self.variables, self.probes)
         for i, variable in enumerate(self.variables):
-            if any(self._moves(variable, sign * size) for size in PROBES for sign in (-1.0, 1.0)):
+            if any(self._moves(variable, sign * size) for size in self.probes for sign in (-1.0, 1.0)):
                 kept.append(variable)
-            self._tell((i + 1) / len(self.variables) / (len(SIZES) + 1))
+            self._tell((i + 1) / len(self.variables) / (len(self.sizes) + 1))
         return kept
 
     def _moves(self, variable: DesignVariable, size: float) -> bool:
@@ -87,6 +95,13 @@ class Search:
             if now and not abs(now.spare - before.spare) <= IDLE * abs(goal - before.spare):
                 return True
         return False
+
+    def _ahead(self, variables: Iterable[DesignVariable], sizes: Iterable[float]) -> None:
+        """Judge changes of these sizes, up and down, side by side where every line costs seconds."""
+        if not self.trials.costly:
+            return
+        every = [(v, sign * size) for v in variables for size in sizes for sign in (-1.0, 1.0)]
+        on_threads(lambda one: self._quick(*one), every, os.cpu_count() or 1)
 
     def _quick(self, variable: DesignVariable, size: float) -> Checks | None:
         value = variable.at(size)
