@@ -7,7 +7,7 @@ Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}]
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
-from trunnion.analyses.orders.straight import straight_about_first, straight_response
+from trunnion.analyses.orders.straight import loss_matrix, straight_about_first, straight_response
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
     BaseOfExcitation,
@@ -233,7 +233,7 @@ class _Case:
     def _straight(self, table: Array) -> OrderSum:
         topo, speed, co = self.topo, table[:, 0], self.coefficients(table)
         matrices = line_matrices(topo, co, np.zeros(1))
-        loss = _loss_matrix(self.assembly, co)
+        loss = loss_matrix(topo, co)
         base = self._base(table, co, np.zeros(1))
         total = OrderSum(len(speed), channels_of(topo).count, topo.size)
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
@@ -428,17 +428,6 @@ class _Case:
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
                 total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
-
-
-def _loss_matrix(assembly: Assembly, co: LineCoefficients) -> Array:
-    """H (case, n, n) of a straight line: its stiffness matrix with the loss in the place of k."""
-    if not co.loss.any():
-        n = assembly.topology.size
-        return np.zeros((len(co.speed), n, n))
-    none = {
-        key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load", "viscous", "quadratic")
-    }
-    return line_matrices(assembly.topology, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
 
 
 def _reach(joints: tuple[JointLaw, ...]) -> int:

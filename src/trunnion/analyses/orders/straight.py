@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.linear import LineMatrices
+from trunnion.equations.coefficients import LineCoefficients
+from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve
 
@@ -25,6 +26,16 @@ ROUNDING = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 SINGULAR = 1e-13
 """Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
+
+
+def loss_matrix(topo: Topology, co: LineCoefficients) -> Array:
+    """H (case, n, n) of a straight line: its stiffness matrix with the loss in the place of k."""
+    if not co.loss.any():
+        return np.zeros((len(co.speed), topo.size, topo.size))
+    none = {
+        key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load", "viscous", "quadratic")
+    }
+    return line_matrices(topo, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
 
 
 def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
