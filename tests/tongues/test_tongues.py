@@ -177,6 +177,18 @@ def test_long_lines_miss_no_resonance_of_first_order(seed: int, shafts: int) -> 
         assert tn.stability(changed, float(x), tolerance=1e-13).spectral_radius > 1
 
 
+@pytest.mark.slow
+def test_rounding_of_undamped_rows_hides_no_region() -> None:
+    """Every interval of a row is one where ``stability`` grows, and between them nothing does."""
+    line, angle = long_line(0, 4, 0.0), 0.17
+    intervals, _ = row_of(line, 220.0, 300.0, angle)
+    changed = line.replace_all({f"HookeJoint {k}": {"angle": angle} for k in (1, 2)})
+    assert any(low < 284.514 and high > 285.05 for low, high in intervals)  # missed, though 0.54 rad/s wide
+    for speed in np.linspace(220.5, 299.5, 80):
+        inside = any(low < speed < high for low, high in intervals)
+        assert (tn.stability(changed, float(speed), tolerance=1e-12).verdict is Verdict.UNSTABLE) == inside, speed
+
+
 def test_meetings_of_multipliers_are_closed_in_on() -> None:
     """Two that pass each other on the circle, one that meets its conjugate, and none that decays."""
     theta = np.linspace(0.0, 3.0, 200)

@@ -123,6 +123,8 @@ def _functions(undamped: bool):  # type: ignore[no-untyped-def]
 
 SAMPLES = 512
 """Points of a piece of a row at which eigenvalues are looked at, of lines of more than three unknowns."""
+ROUNDING = 1e-9
+"""ρ − 1 of interpolated matrices below this may be rounding; regions that grow by less are found as meetings."""
 BESIDE = np.pi / SAMPLES / 4
 """Half of the stretch about a meeting of two multipliers that is looked at closely, in θ."""
 NEAR = 0.5
@@ -142,11 +144,13 @@ def _sampled(region: Region, piece: Piece, v: Array) -> tuple[Places, Array, Pla
     for r in range(len(piece.rows)):
         values = multipliers(theta, np.full(len(theta), r))
         over = np.abs(values).max(axis=1) - 1
-        changes = np.flatnonzero(over[:-1] * over[1:] < 0)
+        # Without damping ρ is 1 where stable: its rounding has either sign and would hide where regions begin.
+        grows = over > ROUNDING
+        changes = np.flatnonzero(grows[:-1] != grows[1:])
         places += ((u[changes] + u[changes + 1]) / 2).tolist()
         rows += [int(piece.rows[r])] * len(changes)
         top = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:])) + 1
-        top = top[(over[top] < 0) & (-over[top] < NEAR * np.abs(over).mean())]
+        top = top[~grows[top] & (-over[top] < NEAR * np.abs(over).mean()) & ~piece.undamped[r]]
         stretches = [(u[k - 1], u[k + 1]) for k in top]
         _, met = meetings(lambda at, own, r=r: multipliers(at, own + r), theta, values[None])  # type: ignore[misc]
         at, reach = (
@@ -181,7 +185,8 @@ def _settled(region: Region, v: Array, marks: _Marks) -> list[Row]:
         # A stretch whose highest point is unstable is a gap of its own with that point in it.
         if height > 0:
             peaks[r].append(place)
-            marks.at[r] += [a for a in ends if a != place]
+            wide = ends[1] - ends[0]  # where the top is an end, the region goes on beyond it
+            marks.at[r] += [ends[0] - wide * (place == ends[0]), ends[1] + wide * (place == ends[1])]
     gaps = [_gaps(region, at, peak) for at, peak in zip(marks.at, peaks, strict=True)]
     which = np.concatenate([np.full(len(g), r) for r, g in enumerate(gaps)]).astype(np.intp)
     probes = np.concatenate([g[:, 2] for g in gaps])
