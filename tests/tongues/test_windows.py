@@ -7,6 +7,9 @@ import pytest
 import two_shafts
 
 import trunnion as tn
+from trunnion.analyses.limits.result import LimitKind
+from trunnion.analyses.tongues.region import Region
+from trunnion.analyses.tongues.windows import UNKNOWN
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
@@ -141,3 +144,42 @@ def test_patches_that_never_settle_are_asked_for_less() -> None:
             e.model_copy(update={"damping": 5 * needed * factor}) if isinstance(e, tn.Shaft) else e for e in elements
         ]
         assert (tn.stability(tn.Driveline(changed), 144.0).spectral_radius < 1) is stable
+
+
+@pytest.fixture
+def untold(monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
+    """Angles between which every integration is too inaccurate to tell."""
+    band, judged = (0.61, 0.73), Region.judged
+
+    def blind(self: Region, u, v):
+        found = judged(self, u, v)
+        hidden = np.zeros(len(u), dtype=bool)
+        for angle in (self.x(u), self.y(v)):  # the speeds below lie outside the band
+            hidden |= (angle > band[0]) & (angle < band[1])
+        found.error[hidden] = 1e-3
+        found.verdict[hidden] = Verdict.UNDECIDED
+        return found
+
+    monkeypatch.setattr(Region, "judged", blind)
+    return band
+
+
+def test_no_window_where_stability_is_not_known(untold: tuple[float, float]) -> None:
+    """Speeds without an instability at these angles: what cannot be told ends the window, and is said."""
+    found = tn.stable_windows(LINE, "HookeJoint 1.angle", 0.5, 0.8, (0.82, 0.83), rows=9)
+    assert not len(found.tongues) and found.largest <= untold[0] and found.smallest >= untold[1]
+    assert found.ends[0][1].region == UNKNOWN and f"set by {UNKNOWN}" in found.sentence
+    rows = [y for y in np.linspace(0.5, 0.8, 9).tolist() if untold[0] < y < untold[1]]
+    assert sorted({u.y for u in found.tongues.unknown}) == pytest.approx(rows, rel=1e-12)
+    assert "could not be told" in str(found.tongues)
+    assert found.tongues.data.sizes["unknown"] == len(found.tongues.unknown)
+
+
+def test_a_limit_is_unknown_where_part_of_its_range_is(untold: tuple[float, float]) -> None:
+    """The row of a speed runs through angles that cannot be told, though nothing was found unstable."""
+    known = tn.stable_limit(LINE, "HookeJoint 1.angle", [0.825], low=0.5, high=0.6)
+    assert known.smallest == 0.6 and known.sentence.startswith("Stable at")
+    found = tn.stable_limit(LINE, "HookeJoint 1.angle", [0.825], low=0.5, high=0.8)
+    assert found.kind.tolist() == [LimitKind.UNKNOWN] and np.isnan(found.smallest)
+    assert not len(found.windows[0]) and not len(found.common_windows)
+    assert "it is not known" in found.sentence

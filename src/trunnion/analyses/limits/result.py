@@ -40,7 +40,7 @@ MEANING = {
     LimitKind.CROSSING: "unstable just above the limit",
     LimitKind.BEYOND: "no instability found up to the end of the range",
     LimitKind.AT_ONCE: "unstable from the start of the range",
-    LimitKind.UNKNOWN: "could not be computed",
+    LimitKind.UNKNOWN: "could not be computed, or not closely enough to tell",
 }
 
 
@@ -93,19 +93,26 @@ class StableLimit(Result):
 
     @property
     def windows(self) -> tuple[Array, ...]:
-        """The stable ranges (ranges, 2) of each speed, those above the limit among them."""
-        return tuple(_between(ranges, self.low, self.high) for ranges in self.unstable)
+        """The stable ranges (ranges, 2) of each speed, those above the limit among them; none where it is unknown."""
+        known = (self.kind != LimitKind.UNKNOWN).tolist()
+        return tuple(
+            _between(ranges, self.low, self.high) if told else np.zeros((0, 2))
+            for ranges, told in zip(self.unstable, known, strict=True)
+        )
 
     @property
     def common_windows(self) -> Array:
-        """The ranges (ranges, 2) that are stable at all these speeds."""
+        """The ranges (ranges, 2) that are stable at all these speeds; none where one of them is unknown."""
+        if np.any(self.kind == LimitKind.UNKNOWN):
+            return np.zeros((0, 2))
         every = np.concatenate([*self.unstable, np.zeros((0, 2))])
         return _between(every[np.argsort(every[:, 0])], self.low, self.high)
 
     @property
     def smallest(self) -> float:
-        """The largest value that is stable at all these speeds; ``high`` where nothing was unstable."""
-        return float(np.nanmin(self.limit)) if np.any(np.isfinite(self.limit)) else float("nan")
+        """The largest value that is stable at all these speeds; ``high`` where nothing was unstable, NaN where one of
+        them is unknown."""
+        return float(self.limit.min())
 
     @property
     def critical_speed(self) -> float | None:
@@ -144,7 +151,9 @@ class StableLimit(Result):
         at = self.critical_speed
         if np.any(self.kind == LimitKind.UNKNOWN):
             failed = show_speed(float(self.speed[self.kind == LimitKind.UNKNOWN][0]), unit)
-            said = f"At {failed} stability could not be computed over the whole range of the {shown.quantity}"
+            said = (
+                f"At {failed} it is not known over the whole range of the {shown.quantity} whether the line is stable"
+            )
         elif at is None:
             said = f"Stable at {span} up to {shown.value(self.high)}, the end of the range"
         elif np.any(self.kind == LimitKind.AT_ONCE):

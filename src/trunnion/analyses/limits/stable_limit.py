@@ -155,7 +155,10 @@ class _Stability:
             rows += unstable_intervals(region, v)
         at_once = np.array([bool(len(row) and row.clipped[0, 0]) for row in rows])
         return cls(
-            speed, tuple(region.in_x(row.low, row.high) for row in rows), at_once, np.array([r.failed for r in rows])
+            speed,
+            tuple(region.in_x(row.low, row.high) for row in rows),
+            at_once,
+            np.array([len(r.unknown) > 0 for r in rows]),
         )
 
 

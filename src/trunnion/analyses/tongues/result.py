@@ -99,13 +99,26 @@ class Tongue:
         return float((self.high - self.low).max())
 
 
+@dataclass(frozen=True)
+class Unknown:
+    """A stretch ``x`` (low, high) of the row at ``y`` where it could not be told whether the motion grows.
+
+    between: the next rows below and above, up to which nothing is known of these x.
+    """
+
+    y: float
+    x: tuple[float, float]
+    between: tuple[float, float]
+
+
 @dataclass(frozen=True, repr=False)
 class Tongues(Result):
     """Every instability region found in a box, by falling growth rate; a sequence of ``Tongue``.
 
     x_range, y_range: the box, SI units; rows: how many values of y were searched; complete: whether each of these was
     searched for every zero of the boundary functions, or sampled; ``search`` says it in words; ``row_step`` is the
-    largest distance between rows: a region that lies wholly between two of them is not in the list.
+    largest distance between rows: a region that lies wholly between two of them is not in the list. ``unknown``: where
+    rows could not be told; an empty list of tongues means stability only where nothing is.
     """
 
     tongues: tuple[Tongue, ...]
@@ -120,6 +133,7 @@ class Tongues(Result):
     row_step: float
     complete: bool
     search: str
+    unknown: tuple[Unknown, ...]
     line: Driveline | None
     remarks: tuple[str, ...] = ()
     find: Intervals | None = field(default=None, repr=False, compare=False)
@@ -167,6 +181,12 @@ class Tongues(Result):
         points = np.concatenate([t.boundary for t in every] or [np.zeros((0, 2))])
         yield over("point", "boundary_x", points[:, 0], self.x_unit, self.x_label)
         yield over("point", "boundary_y", points[:, 1], self.y_unit, self.y_label)
+        yield axis("unknown", np.arange(len(self.unknown)))
+        yield over("unknown", "unknown_y", np.array([u.y for u in self.unknown]), self.y_unit, self.y_label)
+        for k, end in enumerate(("from", "to")):
+            yield over(
+                "unknown", f"unknown_x_{end}", np.array([u.x[k] for u in self.unknown]), self.x_unit, self.x_label
+            )
         yield remark("x", self.x_label)
         yield remark("y", self.y_label)
         yield remark("x_range", list(self.x_range))

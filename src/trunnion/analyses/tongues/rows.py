@@ -59,8 +59,8 @@ class Row:
     """Unstable intervals of the row at ``v``, rising: ``low``, ``high``, a point ``inside`` each, all in u; ``kind``
     there.
 
-    ``clipped`` (intervals, 2): whether an end is the end of the box; ``failed``: somewhere on the row the motion could
-    not be computed, or not closely enough to tell whether it grows.
+    ``clipped`` (intervals, 2): whether an end is the end of the box; ``unknown`` (stretches, 2): from where to where, u
+    rising, the motion could not be computed, or not closely enough to tell whether it grows.
     """
 
     v: float
@@ -69,7 +69,7 @@ class Row:
     inside: Array
     kind: NDArray[np.int8]
     clipped: NDArray[np.bool_]
-    failed: bool = False
+    unknown: Array
 
     def __len__(self) -> int:
         return len(self.low)
@@ -268,7 +268,7 @@ def _edges(
         rows.append(
             Row(
                 float(v[r]), np.array(low), np.array(high), np.array(inside), np.array(kind, dtype=np.int8),
-                np.array(clipped, dtype=bool).reshape(-1, 2), bool(np.isnan(radius[own]).any()),
+                np.array(clipped, dtype=bool).reshape(-1, 2), every[own[np.isnan(radius[own])], :2],
             )
         )  # fmt: skip
     return rows

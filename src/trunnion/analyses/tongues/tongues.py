@@ -20,9 +20,9 @@ from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.joining import Strand, joined
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import Region, patched
-from trunnion.analyses.tongues.result import Tongue, Tongues, by_growth
+from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
 from trunnion.analyses.tongues.ridges import TIP, ridge, tips
-from trunnion.analyses.tongues.rows import Kind, unstable_intervals
+from trunnion.analyses.tongues.rows import Kind, Row, unstable_intervals
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
@@ -84,6 +84,7 @@ def tongues(
     found = [_tongue(task, region, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
     tell(1.0)
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
+    unknown = _unknown(region, searched)
     return Tongues(
         _numbered(found),
         task.x.label,
@@ -96,7 +97,8 @@ def tongues(
         len(searched),
         float(np.abs(steps).max()),
         region.by_coefficients and not region.uncovered,
-        _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit),
+        _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit) + _unknown_words(unknown),
+        unknown,
         task.line,
         task.remarks,
         _finder(region),
@@ -136,6 +138,27 @@ def _search_words(region: Region, rows: int, step: float, unit: str) -> str:
     if region.uncovered:
         return f"{apart} were searched; {region.uncovered} parts of the box resisted and were sampled"
     return f"{apart} were searched completely; a region that lies wholly between two rows is not listed"
+
+
+def _unknown(region: Region, rows: list[Row]) -> tuple[Unknown, ...]:
+    """Where rows could not be told, each with the rows next to it: what lies between is not known either."""
+    found = []
+    for k, row in enumerate(rows):
+        beside = (rows[max(k - 1, 0)].v, rows[min(k + 1, len(rows) - 1)].v)
+        low, high = sorted(float(region.y(np.array(v))) for v in beside)
+        ends = [(float(a), float(b)) for a, b in region.in_x(*row.unknown.T)]
+        found += [Unknown(float(region.y(np.array(row.v))), x, (low, high)) for x in ends]
+    return tuple(sorted(found, key=lambda place: (place.y, place.x)))
+
+
+def _unknown_words(unknown: tuple[Unknown, ...]) -> str:
+    if not unknown:
+        return ""
+    rows, first = len({place.y for place in unknown}), unknown[0]
+    return (
+        f"; on {rows} of them it could not be told whether the motion grows, first at y = {first.y:.6g} for x from "
+        f"{first.x[0]:.6g} to {first.x[1]:.6g}"
+    )
 
 
 def _finder(region: Region) -> Callable[[float], Array]:

@@ -33,12 +33,14 @@ Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
 """Numbers of a description that damp."""
+UNKNOWN = "no answer"
+"""Region of an end beyond which it could not be told whether the motion grows."""
 
 
 @dataclass(frozen=True)
 class End:
-    """Where a window ends: the speed [rad/s] that turns unstable first, and the region it belongs to; None at the
-    ends of the range asked for."""
+    """Where a window ends: the speed [rad/s] that turns unstable first, and the region it belongs to, or ``UNKNOWN``
+    where it could not be told; None at the ends of the range asked for."""
 
     speed: float
     region: str
@@ -84,7 +86,8 @@ class StableWindows(Result):
         span = f"from {show_speed(self.speeds[0], self.speed_unit)} to {show_speed(self.speeds[1], self.speed_unit)}"
         if not len(self.windows):
             asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
-            return f"No {asked} keeps every speed {span} stable."
+            known = "is known to keep" if self.tongues.unknown else "keeps"
+            return f"No {asked} {known} every speed {span} stable."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
             begin = f"{self._value(low)}{self._why(below)}"
@@ -226,22 +229,32 @@ def _require_speeds(speeds: object) -> None:
 
 
 def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:
-    """What of the range no tongue covers, and what ends each part."""
+    """What of the range no tongue covers and is known, and what ends each part."""
     low, high = found.y_range
-    covered = sorted(((float(t.y[0]), float(t.y[-1]), t) for t in found), key=lambda c: c[0])
     windows: list[tuple[float, float]] = []
     ends: list[tuple[End | None, End | None]] = []
     at, below = low, None
-    for begin, end, tongue in covered:
+    for begin, end, first, last in sorted([*_covered(found), *_untold(found)], key=lambda part: part[0]):
         if begin > at:
             windows.append((at, begin))
-            ends.append((below, _end(tongue, 0)))
+            ends.append((below, first))
         if end > at or at == low:
-            at, below = max(end, at), _end(tongue, -1)
+            at, below = max(end, at), last
     if at < high:
         windows.append((at, high))
         ends.append((below, None))
     return np.array(windows).reshape(-1, 2), tuple(ends)
+
+
+def _covered(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
+    for tongue in found:
+        yield float(tongue.y[0]), float(tongue.y[-1]), _end(tongue, 0), _end(tongue, -1)
+
+
+def _untold(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
+    for place in found.unknown:
+        end = End(sum(place.x) / 2, UNKNOWN)
+        yield *place.between, end, end
 
 
 def _end(tongue: Tongue, place: int) -> End:
