@@ -7,7 +7,8 @@ from scipy.linalg import expm
 
 import trunnion as tn
 from trunnion.analyses.linear.along import NoSharedMotion, stability_along, straight_decay
-from trunnion.analyses.linear.own_motions import FreeBalance, MotionsBySpeed
+from trunnion.analyses.linear.free_balance import FreeBalance
+from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.equations.coefficients import assemble
 from trunnion.numerics.chain.exponential_monodromy import exponential, exponential_monodromies
 from trunnion.results.verdict import Verdict
@@ -113,10 +114,11 @@ def test_motions_that_are_known_give_the_same_whatever_was_asked_before():
     assembly, speeds = assemble(line), np.array([60.0, 87.0, 150.0])
     solved = MotionsBySpeed(line)
     for speed in (150.0, 3.0, 61.0):
-        solved.at(speed)
-    assert len({motion.h for motion in solved.at_all(speeds)}) > 1
+        solved.at_all(np.array([speed]))
+    together = solved.at_all(np.array([3.0, 61.0, 150.0]))
+    assert len({one.rows.shape for one in solved.known.values()}) > 1
     known, anew = stability_along(assembly, speeds, motions=solved), stability_along(assembly, speeds)
-    assert set(solved.known) == {3.0, 60.0, 61.0, 87.0, 150.0}
+    assert set(solved.known) == {3.0, 60.0, 61.0, 87.0, 150.0} and together.found.all() and together.resolved.all()
     assert known.critical == pytest.approx(anew.critical, rel=1e-7)
     assert known.verdict.tolist() == anew.verdict.tolist()
 
@@ -125,8 +127,8 @@ def test_an_assessment_solves_every_own_motion_once(monkeypatch):
     asked = []
     solve = FreeBalance.solve
 
-    def counted(balance, speed, h, guess):
-        asked.append((speed, h))
+    def counted(balance, speed, h, guess=None):
+        asked.extend((one, h) for one in speed.tolist())
         return solve(balance, speed, h, guess)
 
     monkeypatch.setattr(FreeBalance, "solve", counted)

@@ -192,21 +192,22 @@ class LineSystem:
         course: Course | None = None,
         drive: float = 0.0,
         known: LineCoefficients | None = None,
+        case: int = 0,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
-        their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of the row, where
-        it is at hand.
+        their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
+        number ``case``, where they are at hand.
         """
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
         co = known or self.untwisted(table)
         ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
-        load, by_speed, by_square = co.load[0], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
+        load, by_speed, by_square = co.load[case], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
         if course is not None and topo.free and given_shares(topo, assembly.packed.column, table).any():
             load, by_speed, by_square = accelerating_loads(
-                topo, assembly.packed.column, row, co.inertia[0], course.acceleration
+                topo, assembly.packed.column, row, co.inertia[case], course.acceleration
             )
         course, core = course or Course(float(row[0])), kernel()
         if drive:
@@ -221,11 +222,11 @@ class LineSystem:
             out[core.BEFORE], out[core.LINK] = station.before, getattr(core, station.link.name, core.ROOT)
             out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
             out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
-            out[core.INERTIA] = co.inertia[0, s]
+            out[core.INERTIA] = co.inertia[case, s]
             out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] = load[s], by_speed[s], by_square[s]
             out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] *= np.sign(mean[s])
             before = phase[station.before] if station.before >= 0 else 0.0
-            chi = before + co.shift[0, s]
+            chi = before + co.shift[case, s]
             if station.link is Link.SHAFT:
                 phase[s] = chi
             elif station.link is Link.RATIO:
@@ -258,10 +259,10 @@ class LineSystem:
             if e in laws:
                 law = [begin, laws[e].stride, laws[e].stages, len(laws[e].error), len(laws[e].wave)]
                 begin += laws[e].numbers.size
-            compliances.append([*ends, co.stiffness[0, e], co.damping[0, e], *law])
+            compliances.append([*ends, co.stiffness[case, e], co.damping[case, e], *law])
         law_numbers = np.concatenate([law.numbers for law in laws.values()] or [np.zeros(0)])
         for s, joint in joints.items():
-            ripple = _put_joint(core, joint, stations[s], begin)
+            ripple = _put_joint(core, joint, case, stations[s], begin)
             law_numbers, begin = np.append(law_numbers, ripple), begin + ripple.size
         head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
         rubbing = sliders(assembly, row)
@@ -276,11 +277,15 @@ class LineSystem:
     def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
         """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters)."""
         t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
+        return self.observed(t, x, system.numbers)
+
+    def observed(self, t: Array, x: Array, numbers: Array) -> LineMotion:
+        """The same of states x (time, state) at times t (time,), under ``numbers`` as of ``numbers``."""
         topo = self.assembly.topology
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
         rotation = np.empty((len(t), len(topo.stations)))
         stages = np.zeros(twist.shape, dtype=np.int64)
-        kernel().observe(t, np.ascontiguousarray(x), system.numbers, twist, torque, rotation, stages)
+        kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, stages)
         return LineMotion(twist, torque, rotation)
 
     def energy(self, system: System, time: ArrayLike, state: ArrayLike) -> tuple[Array, Array]:
@@ -350,15 +355,20 @@ def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:
     return table
 
 
-def _put_joint(core: ModuleType, law: JointLaw, out: Array, place: int) -> Array:
-    """Put a law into its station's numbers; what of it stands at ``place`` among all numbers."""
+def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: int) -> Array:
+    """Put a law's ``case`` into its station's numbers; what of it stands at ``place`` among all numbers."""
+
+    def number(part: Array) -> float:
+        every = np.reshape(part, -1)  # one for each case, or for all
+        return float(every[min(case, len(every) - 1)])
+
     if isinstance(law, CrossLaw):
-        t, cosine = float(law.t[0, 0]), float(law.cosine[0, 0])
+        t, cosine = number(law.t), number(law.cosine)
         out[core.LINK], out[core.SIZE], out[core.COSINE], out[core.SQUARE] = core.CROSS, t, cosine, 4 * t / (1 + t) ** 2
         return np.zeros(0)
     assert isinstance(law, FourierLaw)
     out[core.LINK], out[core.SIZE], out[core.COSINE] = core.FOURIER, place, len(law.orders)
-    parts = [np.broadcast_to(part, (1, 1))[0, 0] for part in (*law.amplitude, *law.phase)]
+    parts = [number(part) for part in (*law.amplitude, *law.phase)]
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
 
 

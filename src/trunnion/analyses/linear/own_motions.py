@@ -1,51 +1,37 @@
-"""The periodic motions of a bent line that starts free, at many mean speeds, by harmonic balance.
+"""The periodic motions of a bent line that starts free, at many mean speeds, and its equations linearised about them.
 
-The balance of ``orbits.harmonic_equations``, its parameter the torque that drives beyond the balance of the loads. The
-mean deviation has no part of a turn of the whole line, which fixes the phase. Excitations of disks and transmission
-errors are left out, as in ``own_motion``, which finds one motion by shooting.
+Each is solved once by ``free_balance``, whoever asks: the orders and the stability along a range. Excitations of disks
+and transmission errors are left out, as in ``own_motion``, which finds one motion by shooting.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.orbits.balancing import with_enough
-from trunnion.analyses.orbits.free_orbit import loaded_by_speed, torque_scale
-from trunnion.analyses.orbits.harmonic_equations import HarmonicEquations
+from trunnion.analyses.linear.free_balance import MOST, MOST_NUMBERS, FreeBalance, FreeMotions
+from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.aligned import aligned_matrices, rigid_rotation
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.aligned import aligned_matrices
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import quiet
-from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.continuation.arclength import correct
-from trunnion.numerics.integration.sampled_rates import sampled_rates
-from trunnion.numerics.spectrum import along, without
-from trunnion.systems.system import System
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-FEWEST, MOST = 6, 48
-"""Harmonics of the period kept."""
-CLOSED = 1e-7
-"""Correction, in units of the states' scales, at which a motion is found."""
-NEGLIGIBLE = 1e-10
-"""Size of the outermost harmonics [rad] that is small enough."""
 
 
 @dataclass(frozen=True)
 class OwnMotions:
     """Slopes along the motions, and what is no disturbance of them.
 
-    found (speed,); period [rad of input angle]; slopes: Fourier coefficients (speed, harmonic, 2n, 2n) of A in
+    found (speed,); period [rad of input angle]; slopes: Fourier coefficients (speed, harmonic ≥ 0, 2n, 2n) of A in
     x′ = A(τ)x, states in energy-like units; shift, drift (speed, 2n): the disturbances that shift the phase, and that
     change the speed where no torque depends on it (else None).
     """
@@ -60,29 +46,41 @@ class OwnMotions:
     def rates(self, which: NDArray[np.intp], tau: Array) -> Array:
         """A (case, time, 2n, 2n) at input angles ``tau``."""
         slopes = self.slopes[which]
-        h = np.fft.fftfreq(slopes.shape[1], 1 / slopes.shape[1])
-        wave = np.exp(1j * np.outer(tau, h) * (2 * np.pi / self.period))
-        flat = slopes.reshape(*slopes.shape[:2], -1)
-        return np.asarray((wave @ flat).real.reshape(len(which), len(tau), *slopes.shape[2:]))
+        # Of a real A the coefficients at −h are conjugates: the sum is that of cosines and sines.
+        h = np.arange(slopes.shape[1])
+        angle = np.outer(tau, h) * (2 * np.pi / self.period)
+        twice = np.where(h > 0, 2.0, 1.0)
+        wave = np.concatenate([np.cos(angle) * twice, -np.sin(angle) * twice], axis=1)
+        flat = slopes.reshape(len(which), len(h), -1)
+        flat = np.concatenate([flat.real, flat.imag], axis=1)
+        return np.asarray((wave @ flat).reshape(len(which), len(tau), *slopes.shape[2:]))
 
     def beside_neutral(self, which: NDArray[np.intp], matrix: Array) -> Array:
         """Matrices (case, 2n − 1, 2n − 1) without the shift of the phase; 0 for the multiplier of the speed."""
-        kept = []
-        for case, z in zip(which, matrix, strict=True):
-            if not np.isfinite(z).all():
-                kept.append(np.full((z.shape[0] - 1, z.shape[0] - 1), np.nan))
-                continue
-            rest, basis = without(z, self.shift[case][:, None])
-            kept.append(rest if self.drift is None else _deflated(rest, self.drift[case] @ basis))
-        return np.stack(kept)
+        finite = np.isfinite(matrix).all(axis=(1, 2))
+        left = np.full((len(matrix), matrix.shape[1] - 1, matrix.shape[2] - 1), np.nan)
+        rest = np.linalg.qr(self.shift[which][finite][:, :, None], mode="complete")[0][:, :, 1:]
+        left[finite] = rest.transpose(0, 2, 1) @ matrix[finite] @ rest
+        if self.drift is not None:
+            direction = (self.drift[which][finite][:, None] @ rest)[:, 0]
+            left[finite] = _deflated(left[finite], direction)
+        return left
 
 
 def _deflated(matrix: Array, direction: Array) -> Array:
-    """``matrix`` with 0 in place of the eigenvalue whose eigenvector is nearest to ``direction``."""
+    """``matrix`` (case, m, m), 0 in place of the eigenvalue whose eigenvector is nearest to a ``direction`` (case, m).
+
+    The direction is that of a slow change without oscillation: eigenvalues that are real and positive go before others.
+    """
     values, vectors = np.linalg.eig(matrix)
-    place = along(matrix, direction)
-    right, left = vectors[:, place], np.linalg.inv(vectors)[place]
-    return np.asarray((matrix - values[place] * np.outer(right, left)).real)
+    near = np.abs(direction[:, None] @ vectors)[:, 0] / np.linalg.norm(vectors, axis=1)
+    steady = (np.abs(values.imag) <= 1e-12 * np.abs(values)) & (values.real > 0)
+    place = np.argmax(np.where(steady | ~steady.any(axis=1, keepdims=True), near, -1.0), axis=1)[:, None]
+    right = np.take_along_axis(vectors, place[:, None], axis=2)[..., 0]
+    one = (np.arange(matrix.shape[1]) == place).astype(float)[..., None]
+    left = np.linalg.solve(vectors.transpose(0, 2, 1), one)[..., 0]
+    value = np.take_along_axis(values, place, axis=1)[..., None]
+    return np.asarray((matrix - value * right[:, :, None] * left[:, None]).real)
 
 
 def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = None) -> OwnMotions | None:
@@ -93,19 +91,52 @@ def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = 
     solved = solved or MotionsBySpeed(line)
     if solved.hindered:
         return None
-    balance, motions = solved.balance, solved.at_all(speeds)
-    times = max(motion.times for motion in motions)
-    slopes, shift, drift = (np.stack(parts) for parts in zip(*(balance.about(m, times) for m in motions), strict=True))
-    n = balance.assembly.topology.size
+    motions = solved.at_all(speeds)
+    n, balance = len(motions.balance.turn), motions.balance
+    at_once = max(1, MOST_NUMBERS // (motions.times * (2 * n) ** 2))
+    parts = [_about(motions.part(slice(i, i + at_once))) for i in range(0, len(speeds), at_once)]
+    slopes, shift, drift = (np.concatenate(each) for each in zip(*parts, strict=True))
     damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
     return OwnMotions(
-        np.array([m.found and m.resolved for m in motions]),
+        motions.found & motions.resolved,
         balance.period,
         slopes,
         shift,
         None if loaded_by_speed(balance.assembly) else drift,
         np.abs(damping) * balance.period < 1e-12 * n,
     )
+
+
+def _about(motions: FreeMotions) -> tuple[Complex, Array, Array]:
+    """A's Fourier coefficients (case, harmonic ≥ 0, 2n, 2n), the shift of the phase and the change of the speed
+    (case, 2n), in energy-like units."""
+    balance, speed = motions.balance, motions.speed
+    n = len(balance.turn)
+    rates, slopes = motions.sampled()
+    spectrum = np.fft.rfft(slopes[:, :, n:], axis=1)[:, :-1] / motions.times
+    root = np.sqrt(aligned_matrices(balance.assembly.topology, motions.coefficients).mass)
+    ratio = root[:, :, None] / root[:, None, :]
+    stiffness = -spectrum[:, 0, :, :n].real * ratio / (speed**2)[:, None, None]
+    unit = np.sqrt(np.maximum(np.abs(np.einsum("cii->ci", stiffness)).mean(axis=1), 1e-300))
+    a = np.zeros((*spectrum.shape[:2], 2 * n, 2 * n), dtype=complex)
+    a[:, 0, :n, n:] = np.eye(n) * unit[:, None, None]
+    a[..., n:, :n] = spectrum[..., :n] * (ratio / (speed**2 * unit)[:, None, None])[:, None]
+    a[..., n:, n:] = spectrum[..., n:] * (ratio / speed[:, None, None])[:, None]
+    scale = np.concatenate([root, root / unit[:, None]], axis=1)
+    over = speed[:, None]
+    shift = np.concatenate([rates[:, 0, :n] / over + balance.turn, rates[:, 0, n:] / over**2], axis=1) * scale
+    drift = np.concatenate([np.zeros(n), balance.turn]) * scale
+    return a, shift, drift
+
+
+@dataclass(frozen=True)
+class _One:
+    """One motion that is known: see ``FreeMotions``."""
+
+    found: bool
+    rows: Array
+    torque: float
+    numbers: Array
 
 
 class MotionsBySpeed:
@@ -116,7 +147,7 @@ class MotionsBySpeed:
 
     def __init__(self, line: Driveline) -> None:
         self.line = line
-        self.known: dict[float, FreeMotion] = {}
+        self.known: dict[float, _One] = {}
 
     @cached_property
     def hindered(self) -> str:
@@ -135,148 +166,47 @@ class MotionsBySpeed:
     @cached_property
     def balance(self) -> FreeBalance:
         """What solves them."""
-        topo = self.quiet.topology
-        phase = np.eye(topo.size)[topo.coordinate[topo.group_of(0)]]
-        return FreeBalance(self.quiet, 2 * np.pi * float(require_period(self.quiet.line, topo)), phase)
+        return FreeBalance(self.quiet, 2 * np.pi * float(require_period(self.quiet.line, self.quiet.topology)))
 
-    def at_all(self, speeds: Array) -> list[FreeMotion]:
-        """The motions at all ``speeds`` [rad/s]."""
-        return [self.at(float(speed)) for speed in speeds]
+    def at_all(self, speeds: Array) -> FreeMotions:
+        """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
+        self._solve(np.array([speed for speed in dict.fromkeys(speeds.tolist()) if speed not in self.known]))
+        known = [self.known[speed] for speed in speeds.tolist()]
+        h = max(fourier.order(one.rows) for one in known)
+        return FreeMotions(
+            self.balance,
+            speeds,
+            np.array([one.found for one in known]),
+            np.stack([fourier.resized(one.rows, h) for one in known]),
+            np.array([one.torque for one in known]),
+            np.stack([one.numbers for one in known]),
+        )
 
-    def at(self, speed: float) -> FreeMotion:
-        """The motion at ``speed`` [rad/s], from that at the nearest known and with as many harmonics at least."""
-        if speed not in self.known:
-            found = [other for other, motion in self.known.items() if motion.found]
-            near = self.known[min(found, key=lambda other: abs(other - speed))] if found else None
+    def _solve(self, speeds: Array) -> None:
+        """From rigid shafts, where that leads nowhere from the nearest motion found; harmonics doubled until they are
+        enough."""
+        h, guess = self.balance.fewest, None
+        most = max(h, MOST)
+        while len(speeds):
+            motions = self._from_neighbours(self.balance.solve(speeds, h, guess))
+            enough = motions.resolved | ~motions.found | (h >= most)
+            for i in np.flatnonzero(enough):
+                self.known[float(speeds[i])] = _One(
+                    bool(motions.found[i]), motions.rows[i], float(motions.torque[i]), motions.numbers[i]
+                )
+            h = min(2 * h, most)
+            speeds, guess = speeds[~enough], fourier.resized(motions.rows[~enough], h)
 
-            def attempt(h: int, last: bool) -> FreeMotion | None:
-                motion = self.balance.solve(speed, h, None if near is None else near.rows)
-                return motion if last or motion.resolved or not motion.found else None
-
-            self.known[speed] = with_enough(attempt, self.balance.fewest if near is None else near.h, MOST)
-        return self.known[speed]
-
-
-@dataclass(frozen=True)
-class FreeMotion:
-    """One motion: its states as series (2n, 2H + 1) [rad, rad/s]; torque [N m at the input] that drives beyond the
-    balance; ``rate``: torque → system; the line's coefficients at its speed, about zero twist."""
-
-    found: bool
-    speed: float
-    rows: Array
-    torque: float
-    rate: Callable[[float], System]
-    coefficients: LineCoefficients
-
-    @property
-    def h(self) -> int:
-        return fourier.order(self.rows)
-
-    @property
-    def times(self) -> int:
-        """Samples of the period that hold the motion and its slopes."""
-        return 4 * self.h + 4
-
-    @property
-    def resolved(self) -> bool:
-        """Whether the outermost harmonics of all rotations are negligible."""
-        rotations = self.rows[: len(self.rows) // 2]
-        return bool(np.hypot(rotations[:, self.h], rotations[:, -1]).max() <= 2 * NEGLIGIBLE)
-
-    @property
-    def states(self) -> Array:
-        """States (time, 2n)."""
-        return np.ascontiguousarray(fourier.samples(self.rows, self.times).T)
-
-    def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
-        """Rates (time, 2n) and their slopes (time, 2n, 2n) by the states, under ``more`` torque; NaN if none."""
-        system, count = self.rate(self.torque + more), len(self.rows)
-        assert system.forcing_period is not None
-        times = system.forcing_period * np.arange(self.times) / self.times
-        found = sampled_rates(system.equations, times, self.states, 0)
-        missing = np.full((self.times, count), np.nan), np.full((self.times, count, count), np.nan)
-        return missing if found is None else found[:2]
-
-
-@dataclass(frozen=True)
-class Torques:
-    """The systems of a free line by the torque [N m] of its drives; scale (2n + 1,) of states and torque."""
-
-    at: Callable[[float], System]
-    scale: Array
-
-
-class FreeBalance:
-    """Motions of a free line of ``period`` [rad of input angle] by the balance of their harmonics; the mean deviation
-    has no part along ``phase`` (n,), by default a turn of the whole line."""
-
-    def __init__(self, assembly: Assembly, period: float, phase: Array | None = None) -> None:
-        topo = assembly.topology
-        self.assembly, self.period, self.turn = assembly, period, rigid_rotation(topo)
-        self.phase = self.turn if phase is None else phase
-        fastest = max(float(rate) for rate in topo.rates) * period / (2 * np.pi)
-        self.fewest = max(FEWEST, int(np.ceil(3 * fastest)))
-
-    def solve(self, speed: float, h: int, guess: Array | None) -> FreeMotion:
-        """The motion of ``h`` harmonics at ``speed`` [rad/s] from a guess, or from rigid shafts."""
-        line = LineSystem(self.assembly, speed)
-        co = line.untwisted(self.row(speed)[None])
-        torques = self._torques(line, co)
-        n, wide = len(self.turn), 2 * h + 1
-        across = np.zeros(2 * n * wide + 1)
-        across[: n * wide : wide] = self.phase / np.linalg.norm(self.phase)
-        equations = HarmonicEquations(over=torques, periods=1, h=h)
-        for known in (None,) if guess is None else (guess, None):
-            start = self._rigid(line, h, co) if known is None else fourier.resized(known, h)
-            point = correct(
-                equations.equations, np.append(start.ravel(), 0.0), across, scale=equations.scale, tolerance=CLOSED,
-                to_rounding=True,
-            )  # fmt: skip
-            if point is not None:
-                return FreeMotion(True, speed, equations.rows(point), point.parameter, torques.at, co)
-        return FreeMotion(False, speed, start, 0.0, torques.at, co)
-
-    def _torques(self, line: LineSystem, co: LineCoefficients) -> Torques:
-        row = self.row(line.speed)
-        numbers = line.numbers(row, known=co)
-        drive = line.numbers(row, drive=1.0, known=co) - numbers
-        system = replace(line.system, period=self.period / line.speed)
-
-        def at(torque: float) -> System:
-            return replace(system, numbers_of=lambda _: numbers + torque * drive)
-
-        return Torques(at, np.append(np.asarray(system.scale), torque_scale(line, co)))
-
-    def row(self, speed: float) -> Array:
-        """The line's numbers at ``speed``."""
-        return self.assembly.table(1, speed)[0]
-
-    def _rigid(self, line: LineSystem, h: int, co: LineCoefficients) -> Array:
-        """Rigid shafts, each twisted by the torque that it carries on average, as series (2n, 2h + 1)."""
-        topo, count = self.assembly.topology, 4 * h + 4
-        theta = self.period * np.arange(count) / count
-        base, plain = (base_motion(topo, case, theta, ratio_values(topo)).angle[0] for case in (co, co.straight))
-        held = (line.twisted() - line.rigid(0.0))[: topo.size]
-        rows = fourier.rows_of((base - plain)[:, topo.firsts].T + held[:, None], h)
-        rows[:, 0] -= self.phase * (self.phase @ rows[:, 0]) / (self.phase @ self.phase)
-        return np.concatenate([rows, fourier.rate(rows, 2 * np.pi * line.speed / self.period)])
-
-    def about(self, motion: FreeMotion, times: int) -> tuple[Complex, Array, Array]:
-        """A's Fourier coefficients, ``times`` of them, the shift of the phase and the change of the speed, in
-        energy-like units."""
-        n, speed = len(self.turn), motion.speed
-        rates, slopes = motion.sampled()
-        spectrum = np.fft.fft(slopes[:, n:], axis=0) / motion.times
-        root = np.sqrt(aligned_matrices(self.assembly.topology, motion.coefficients).mass[0])
-        ratio = root[:, None] / root[None, :]
-        stiffness = -spectrum[0, :, :n].real * ratio / speed**2
-        unit = float(np.sqrt(max(np.abs(np.diag(stiffness)).mean(), 1e-300)))
-        a = np.zeros((times, 2 * n, 2 * n), dtype=complex)
-        a[0, :n, n:] = np.eye(n) * unit
-        at = np.fft.fftfreq(motion.times, 1 / motion.times).astype(int)  # from the end where negative
-        a[at, n:, :n] = spectrum[:, :, :n] * (ratio / (speed**2 * unit))
-        a[at, n:, n:] = spectrum[:, :, n:] * (ratio / speed)
-        scale = np.concatenate([root, root / unit])
-        shift = np.concatenate([rates[0, :n] / speed + self.turn, rates[0, n:] / speed**2]) * scale
-        return a, shift, np.concatenate([np.zeros(n), self.turn]) * scale
+    def _from_neighbours(self, motions: FreeMotions) -> FreeMotions:
+        """With those that were not found looked for again from the nearest that were, outwards."""
+        found, rows, torque = motions.found.copy(), motions.rows.copy(), motions.torque.copy()
+        lost = np.flatnonzero(~found)
+        while len(lost) and found.any():
+            there = np.flatnonzero(found)
+            apart = np.abs(motions.speed[lost][:, None] - motions.speed[there])
+            next_to = np.argsort(apart.min(axis=1))[0]
+            i, near = lost[next_to], there[apart[next_to].argmin()]
+            one = self.balance.solve(motions.speed[[i]], motions.h, rows[[near]])
+            found[i], rows[i], torque[i] = one.found[0], one.rows[0], one.torque[0]
+            lost = np.delete(lost, next_to)
+        return FreeMotions(self.balance, motions.speed, found, rows, torque, motions.numbers)

@@ -8,6 +8,7 @@ of the drives, at given speeds instead of along a branch.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -133,11 +134,15 @@ def balanced(
 def with_enough(attempt: Callable[[int, bool], T | None], fewest: int, most: int) -> T:
     """What ``attempt(h, last)`` finds first, h doubled from ``fewest`` to ``most``, where ``last`` is True: it must."""
     h = fewest
-    # Matrices of a few hundred rows: a library's threads would spend their time waiting for each other.
-    with _libraries().limit(limits=1, user_api="blas"):
+    with on_one_thread():
         while (found := attempt(h, h >= most)) is None:
             h = min(2 * h, most)
     return found
+
+
+def on_one_thread() -> AbstractContextManager[object]:
+    """For matrices of a few hundred rows: a library's threads would spend their time waiting for each other."""
+    return _libraries().limit(limits=1, user_api="blas")
 
 
 @cache

@@ -23,7 +23,7 @@ from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERAN
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.coefficients import Assembly, LineCoefficients, joint_laws
+from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
@@ -163,13 +163,10 @@ def loaded_by_speed(assembly: Assembly) -> bool:
     return any(disk.viscous_load or disk.quadratic_load for disk in disks)
 
 
-def torque_scale(line: LineSystem, known: LineCoefficients | None = None) -> float:
-    """The torque [N m] at the input that changes the speed over a period by what counts as one in error control.
-
-    ``known`` : the line's coefficients, where they are at hand.
-    """
+def torque_scale(line: LineSystem) -> float:
+    """The torque [N m] at the input that changes the speed over a period by what counts as one in error control."""
     topo, system = line.assembly.topology, line.system
     assert system.forcing_period is not None
-    co = known or line.untwisted(line.assembly.table(1, line.speed))
+    co = line.untwisted(line.assembly.table(1, line.speed))
     inertia = float(co.inertia[0] @ np.array([float(q) for q in topo.speed_ratio]) ** 2)
     return float(np.asarray(system.scale)[topo.size]) * inertia / float(system.forcing_period)

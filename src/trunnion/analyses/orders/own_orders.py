@@ -22,7 +22,6 @@ from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import BaseOfExcitation
 from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.line_system import LineSystem
 from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Link, Topology
@@ -35,12 +34,13 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class OwnBase:
-    """The own motion at one speed, at ``tau`` (time,) over the period, and the equations linearised about it.
+    """The own motions at some speeds, at ``tau`` (time,) over the period, and the equations linearised about them.
 
-    relative (time, station): r of each station from its group's first; ratio (time, spring) of the near ends; mass
-    (time, n); base: what excitations need; seen (time, channel): the motion itself; by_state (harmonic, n, 2n) and
-    by_drive (harmonic, n): Fourier coefficients of the slopes of accelerations, by states and by the drives' torque;
-    phase (n,): the input among the unknowns; rate b Ω [rad/s]; count: harmonics kept on each side.
+    relative (case, time, station): r of each station from its group's first; ratio (case, time, spring) of the near
+    ends; mass (case, time, n); base: what excitations need; seen (case, time, channel): the motion itself; by_state
+    (case, harmonic, n, 2n) and by_drive (case, harmonic, n): Fourier coefficients of the slopes of accelerations, by
+    states and by the drives' torque; phase (n,): the input among the unknowns; rate (case,) b Ω [rad/s]; count:
+    harmonics kept on each side.
     """
 
     tau: Array
@@ -54,125 +54,125 @@ class OwnBase:
     by_drive: Complex
     coefficients: LineCoefficients
     phase: Array
-    rate: float
+    rate: Array
     count: int
 
 
 class OwnOrders:
-    """Own motions of one line, speed after speed."""
+    """Own motions of one line at any speeds."""
 
     def __init__(self, assembly: Assembly, solved: MotionsBySpeed | None = None) -> None:
         self.solved = solved or MotionsBySpeed(assembly.line)
         if self.solved.hindered:
             refuse_own_motion(assembly, f"{self.solved.hindered}: use tn.periodic_response")
         self.quiet, self.balance = self.solved.quiet, self.solved.balance
-        self.topo, self.period, self.phase = self.quiet.topology, self.balance.period, self.balance.phase
+        self.topo = self.quiet.topology
 
-    def at(self, speed: float) -> OwnBase:
-        """The motion at mean input ``speed`` [rad/s].
+    def at(self, speeds: Array) -> OwnBase:
+        """The motions at mean input ``speeds`` (case,) [rad/s].
 
         Raises
         ------
         ComputationError : no motion found.
         """
-        motion = self.solved.at(speed)
-        if not motion.found:
-            raise ComputationError(f"no own motion of the free line was found at {speed * 30 / np.pi:.5g} rpm")
-        topo, co = self.topo, motion.coefficients
-        ratios = ratio_values(topo)
-        tau = self.period * np.arange(motion.times) / motion.times
-        rates, slopes = motion.sampled()
-        drive = motion.sampled(more=1.0)[0] - rates
-        observed = LineSystem(self.quiet, speed).observe(motion.rate(motion.torque), tau / speed, motion.states)
-        uniform = base_motion(topo, co.straight, tau, ratios).angle[0]
-        rigid = base_motion(topo, co, tau, ratios).angle[0] - uniform
+        motions = self.solved.at_all(speeds)
+        if not motions.found.all():
+            lost = speeds[~motions.found][0] * 30 / np.pi
+            raise ComputationError(f"no own motion of the free line was found at {lost:.5g} rpm")
+        topo, co, n = self.topo, motions.coefficients, self.topo.size
+        ratios, tau = ratio_values(topo), motions.tau
+        rates, slopes = motions.sampled()
+        drive = motions.sampled(more=1.0)[0] - rates
+        observed = motions.observed()
+        uniform = base_motion(topo, co.straight, tau, ratios).angle
+        rigid = base_motion(topo, co, tau, ratios).angle - uniform
         relative = _relative(topo, co, uniform + observed.rotation, ratios)
-        mass = np.zeros((len(tau), topo.size))
+        mass = np.zeros((len(speeds), len(tau), n))
         for s in range(len(topo.stations)):
             if (i := topo.coordinate[topo.group_of(s)]) >= 0:
-                mass[:, i] += co.inertia[0, s] * relative[:, s] ** 2
+                mass[..., i] += co.inertia[:, None, s] * relative[..., s] ** 2
         places = channels_of(topo)
-        seen = np.zeros((len(tau), places.count))
-        seen[:, places.twist], seen[:, places.torque] = observed.twist, observed.torque
-        seen[:, places.deviation] = observed.rotation[:, topo.firsts]
+        seen = np.zeros((len(speeds), len(tau), places.count))
+        seen[..., places.twist], seen[..., places.torque] = observed.twist, observed.torque
+        seen[..., places.deviation] = observed.rotation[..., topo.firsts]
         before = [topo.stations[joint].before for joint in topo.joints]
         # Equations are linear about the own motion: where the load twists a joint's input to on average is no swing.
         swing = observed.rotation - rigid
-        seen[:, places.joint_input] = (swing - swing.mean(axis=0))[:, before]
+        seen[..., places.joint_input] = (swing - swing.mean(axis=1, keepdims=True))[..., before]
         return OwnBase(
             tau=tau,
             relative=relative,
-            ratio=relative[:, [c.near for c in topo.compliances]],
+            ratio=relative[..., [c.near for c in topo.compliances]],
             mass=mass,
-            base=BaseOfExcitation(relative[None], observed.rotation[None]),
+            base=BaseOfExcitation(relative, observed.rotation),
             wave=stiffness_waves(topo, co, tau),
             seen=seen,
-            by_state=np.fft.fft(slopes[:, topo.size :], axis=0) / len(tau),
-            by_drive=np.fft.fft(drive[:, topo.size :], axis=0) / len(tau),
+            by_state=np.fft.fft(slopes[:, :, n:], axis=1) / len(tau),
+            by_drive=np.fft.fft(drive[..., n:], axis=1) / len(tau),
             coefficients=co,
-            phase=self.phase,
-            rate=2 * np.pi * speed / self.period,
-            count=motion.h,
+            phase=self.balance.phase,
+            rate=motions.rate,
+            count=motions.h,
         )
 
 
 def _relative(topo: Topology, co: LineCoefficients, angle: Array, ratios: Array) -> Array:
-    """r (time, station) of every station from its group's first, where stations stand at ``angle`` (time, station)."""
+    """r (case, time, station) of every station from its group's first, where stations stand at ``angle``, of the same
+    shape."""
     r, laws = np.ones_like(angle), list(co.joints)
     for s, station in enumerate(topo.stations):
         b = station.before
         if station.link is Link.JOINT:
-            _, eta, _, _ = laws.pop(0).at(angle[None, :, b] + co.shift[:, s, None])
-            r[:, s] = eta[0] * r[:, b]
+            r[..., s] = laws.pop(0).at(angle[..., b] + co.shift[:, s, None]).ratio * r[..., b]
         elif station.link not in (Link.ROOT, Link.SHAFT):
-            r[:, s] = r[:, b] / ratios[s]
+            r[..., s] = r[..., b] / ratios[s]
     return r
 
 
-def about(own: OwnBase, carrier: float, h: Integers, right: Complex) -> Complex:
-    """X (h, n) [rad] at harmonics ``h`` under accelerations ``right`` (h, n).
+def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
+    """X (case, h, n) [rad] at harmonics ``h`` under accelerations ``right`` (case, h, n).
 
-    ``carrier`` [rad/s] is κΩ, or a frequency fixed in time.
+    ``carrier`` (case,) [rad/s] is κΩ, or a frequency fixed in time.
     """
-    n, times = own.mass.shape[1], len(own.tau)
-    s = 1j * (carrier + own.rate * h)
+    cases, times, n = own.mass.shape
+    s = 1j * (carrier[:, None] + own.rate[:, None] * h)
     apart = h[:, None] - h[None, :]
     known = (np.abs(apart) < times // 2)[..., None, None]
-    slopes = np.where(known, own.by_state[apart % times], 0.0)
-    blocks = -slopes[..., :n] - slopes[..., n:] * s[None, :, None, None]
+    slopes = np.where(known, own.by_state[:, apart % times], 0.0)
+    blocks = -slopes[..., :n] - slopes[..., n:] * s[:, None, :, None, None]
     every = np.arange(len(h))
-    blocks[every, every] += (s**2)[:, None, None] * np.eye(n)
+    blocks[:, every, every] += (s**2)[..., None, None] * np.eye(n)
     size = len(h) * n
-    matrix = np.zeros((size + 1, size + 1), dtype=complex)
-    matrix[:size, :size] = blocks.transpose(0, 2, 1, 3).reshape(size, size)
-    unit = float(np.abs(matrix[:size, :size]).max())
-    matrix[size, size] = unit
-    if carrier == 0 and h[0] <= 0 <= h[-1]:
-        column = own.by_drive[h % times].reshape(-1)
+    matrix = np.zeros((cases, size + 1, size + 1), dtype=complex)
+    matrix[:, :size, :size] = blocks.transpose(0, 1, 3, 2, 4).reshape(cases, size, size)
+    unit = np.abs(matrix[:, :size, :size]).max(axis=(1, 2))
+    matrix[:, size, size] = unit
+    if not carrier.any() and h[0] <= 0 <= h[-1]:
+        column = own.by_drive[:, h % times].reshape(cases, size)
         at = int(-h[0]) * n
-        matrix[:size, size] = -column * (unit / np.abs(column).max())
-        matrix[size, at : at + n], matrix[size, size] = unit * own.phase, 0.0
-    found = np.linalg.solve(matrix, np.append(right.reshape(-1), 0.0))[:size].reshape(len(h), n)
-    return np.asarray(found, dtype=complex)
+        matrix[:, :size, size] = -column * (unit / np.abs(column).max(axis=1))[:, None]
+        matrix[:, size, at : at + n], matrix[:, size, size] = unit[:, None] * own.phase, 0.0
+    forced = np.concatenate([right.reshape(cases, size), np.zeros((cases, 1))], axis=1)
+    return np.asarray(np.linalg.solve(matrix, forced[..., None])[:, :size, 0].reshape(cases, len(h), n))
 
 
 def seen_about(own: OwnBase, topo: Topology, h: Integers, x: Complex) -> Complex:
-    """Channels (1, h, channel) without torque of X (h, n)."""
+    """Channels (case, h, channel) without torque of X (case, h, n)."""
     times = 1 << int(np.ceil(np.log2(len(h) + len(own.tau))))
-    ratio, relative = _finer(own.ratio, times)[None], _finer(own.relative, times)[None]
-    return channels_of_harmonics(topo, x[None], h, times, ratio, relative)
+    return channels_of_harmonics(topo, x, h, times, _finer(own.ratio, times), _finer(own.relative, times))
 
 
 def _finer(values: Array, times: int) -> Array:
-    """Periodic values (time, …) at ``times`` samples instead."""
-    return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=0), times, axis=0) * (times / len(values)))
+    """Periodic values (case, time, …) at ``times`` samples instead."""
+    return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=1), times, axis=1) * (times / values.shape[1]))
 
 
 Add = Callable[[Fraction, float, Complex], None]
 
 
 def add_own(own: OwnBase, cycles: Fraction, add: Add) -> None:
-    """The own motion's harmonics, ``add``ed by order."""
-    spectrum = np.fft.fft(own.seen, axis=0) / len(own.tau)
+    """The own motions' harmonics, ``add``ed by order."""
+    times = len(own.tau)
+    spectrum = np.fft.fft(own.seen, axis=1) / times
     for h in range(-own.count, own.count + 1):
-        add(h * cycles, 0.0, spectrum[None, h % len(own.tau)])
+        add(h * cycles, 0.0, spectrum[:, h % times])

@@ -190,7 +190,7 @@ class _Case:
         if self.varies and self.alike and not self.loss_in_time and self.own is None:
             self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
-            self.batch = 1
+            self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
         elif self.varies:
             self.batch = self._batch()
         else:
@@ -221,7 +221,7 @@ class _Case:
     def solved(self, table: Array) -> tuple[OrderSum, Array]:
         """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
-            return self._about_own_motion(self.own.at(float(table[0, 0])), table[:1])
+            return self._about_own_motions(self.own.at(table[:, 0]), table)
         if not self.varies:
             return self._straight(table), np.zeros(len(table))
         while True:
@@ -308,38 +308,37 @@ class _Case:
         largest = np.maximum(largest, least)
         return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
-    def _about_own_motion(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
-        """One speed of a bent line that starts free."""
+    def _about_own_motions(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
+        """Some speeds of a bent line that starts free."""
         from trunnion.analyses.orders.own_orders import about, add_own, seen_about
 
-        topo, cycles, speed = self.topo, 1 / self.turns, float(table[0, 0])
+        topo, cycles, speed, times = self.topo, 1 / self.turns, table[:, 0], len(own.tau)
         places, co = channels_of(topo), own.coefficients
-        total, last = OrderSum(1, places.count, topo.size), 0.0
+        total, last = OrderSum(len(speed), places.count, topo.size), np.zeros(len(speed))
         add_own(own, cycles, total.add)
         for group in groups_of(self.shaken, self.row, cycles, own.count):
-            carrier = group.frequency or float(group.carrier) * speed
+            carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
             centres = [m for _, m in group.members]
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
-            right, error = (
-                np.zeros((len(h), topo.size), dtype=complex),
-                np.zeros((len(h), places.springs), dtype=complex),
-            )
+            right = np.zeros((len(speed), len(h), topo.size), dtype=complex)
+            error = np.zeros((len(speed), len(h), places.springs), dtype=complex)
             for exciter, m in group.members:
-                nu = np.array([[carrier + m * own.rate]])
+                nu = (carrier + m * own.rate)[:, None]
                 force, twist = self._sources(group, table, co, own.base, nu, own.wave, exciter)
                 near = np.abs(h - m) <= own.count
-                change = np.fft.fft(force[0] / own.mass, axis=0) / len(own.tau)
-                right[near] += change[(h[near] - m) % len(own.tau)]
-                error[h == m] += twist[0]
+                change = np.fft.fft(force / own.mass, axis=1) / times
+                right[:, near] += change[:, (h[near] - m) % times]
+                error[:, h == m] += twist
             seen = seen_about(own, topo, h, about(own, carrier, h, right))
             seen[..., places.twist] += error
-            self._add_torque(seen, co, np.asarray(carrier + own.rate * h[None], dtype=float))
+            self._add_torque(seen, co, carrier[:, None] + own.rate[:, None] * h)
             self._add_waves(seen, co, h, own.wave, own=False)
-            last = max(last, float(np.abs(seen[0, [0, -1]][:, places.torque]).max()))
+            last = np.maximum(last, np.abs(seen[:, [0, -1]][..., places.torque]).max(axis=(1, 2)))
             for j, harmonic in enumerate(h):
                 total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
-        largest = max((float(np.abs(a[:, places.torque]).max()) for a in total.amplitude.values()), default=0.0)
-        return total, np.array([last / largest if largest else 0.0])
+        sizes = [np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()]
+        largest = np.max(sizes, axis=0) if sizes else np.zeros(len(speed))
+        return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
     def _base(self, table: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
         plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
