@@ -31,6 +31,11 @@ class Curves:
     ) -> None:
         self.figure = figures.plot(x, y, height=height, title=title, **more)
         self.source = ColumnDataSource(data={"xs": [], "ys": [], "colour": [], "dash": [], "width": [], "name": []})
+        self.areas = ColumnDataSource(data={"xs": [], "ys": []})
+        self.figure.patches(
+            "xs", "ys", source=self.areas, color=figures.ORANGE, fill_alpha=0.25, line_alpha=0.0,
+            hatch_pattern="right_diagonal_line", hatch_alpha=0.4, hatch_color=figures.ORANGE,
+        )  # fmt: skip
         drawn = self.figure.multi_line(
             "xs", "ys", line_color="colour", line_dash="dash", line_width="width", source=self.source
         )
@@ -66,6 +71,10 @@ class Curves:
         source, item = self.marks[name]
         figures.put(source, {"x": np.asarray(x, dtype=float), "y": np.asarray(y, dtype=float)})
         item.visible = len(source.data["x"]) > 0
+
+    def fill(self, areas: Sequence[tuple[Any, Any]]) -> None:
+        """Areas (x, y) under the curves, in place of those that are."""
+        figures.put(self.areas, {"xs": [np.asarray(x) for x, _ in areas], "ys": [np.asarray(y) for _, y in areas]})
 
     def set(
         self,

@@ -30,9 +30,9 @@ class Help:
         self.session = session
         self.keywords: Mapping[str, Any] = {}
         self.toml = ""
-        self.search = pn.widgets.Button(name="What would help?", button_type="primary", width=180)
+        self.search = pn.widgets.Button(label="What would help?", button_type="primary", width=180)
         self.search.on_click(lambda event: self.session.beside(self._search()))
-        self.limits = pn.widgets.Button(name="State limits", width=140)
+        self.limits = pn.widgets.Button(label="State limits", width=140)
         self.limits.on_click(lambda event: self.session.state_limits())
         self.list = pn.Column(sizing_mode="stretch_width", margin=0)
         row = pn.Row(self.search, self.limits, margin=0)
@@ -54,7 +54,7 @@ class Help:
     def _show(self, found: list[dict[str, Any]]) -> None:
         rows = []
         for remedy in found:
-            button = pn.widgets.Button(name="Try it", width=80, align="center")
+            button = pn.widgets.Button(label="Try it", width=80, align="center")
             button.on_click(lambda event, remedy=remedy: self._try(remedy))
             text = pn.pane.HTML(f"<span>{html.escape(remedy['sentence'])}</span>", sizing_mode="stretch_width")
             rows.append(pn.Row(button, text, sizing_mode="stretch_width", margin=0))

@@ -75,7 +75,7 @@ class Page:
         names = {kind.title: kind.name for kind in VIEWS}
         self._quiet = False
         self.navigation = pn.widgets.RadioButtonGroup(
-            name="View", options=names, button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
+            label="View", options=names, button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
         )
         self.navigation.param.watch(lambda event: choose(event.new) if not self._quiet else None, "value")
         self.said = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 0), css_classes=["refusal"])
@@ -83,7 +83,7 @@ class Page:
             name="progress", value=0, max=100, width=220, active=False, visible=False, margin=(8, 0)
         )
         self.state = pn.pane.HTML("", margin=(4, 10))
-        self.cancel_button = pn.widgets.Button(name="Cancel", width=80, disabled=True, margin=(2, 8))
+        self.cancel_button = pn.widgets.Button(label="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
         self.status = pn.Column(
             self.said, pn.Row(self.bar, self.cancel_button, self.state, margin=0), sizing_mode="stretch_width", margin=0
@@ -119,6 +119,8 @@ class Page:
         self._quiet = True
         self.navigation.value = view.name
         self._quiet = False
+        for _, side in sides:
+            side.narrow(len(sides) > 1)
         titles = {"kept": "the kept variant", "now": "now"}
         pictures = [
             pn.Column(

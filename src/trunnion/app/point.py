@@ -19,7 +19,7 @@ class Point:
             "real", "imaginary", title="multipliers", height=300, tools="pan,wheel_zoom,reset", match_aspect=True
         )
         self.circle.sizing_mode = "fixed"
-        self.circle.width = 330
+        self.circle.width = 300
         turn = np.linspace(0, 2 * np.pi, 181)
         self.circle.line(np.cos(turn), np.sin(turn), color=figures.INK)
         self.multipliers = ColumnDataSource(data={"x": [], "y": [], "size": []})
@@ -35,15 +35,25 @@ class Point:
         )  # fmt: skip
         self.mode.add_layout(self.mode.legend[0], "below")
         self.mode.legend.orientation = "horizontal"
+        self.mode.legend.location = "top_left"
+        self.mode.legend.border_line_color = None
         self.mode.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        row = pn.Row(
-            pn.pane.Bokeh(self.circle, width=330, height=300),
+        self.pictures = [
+            pn.pane.Bokeh(self.circle, width=300, height=300),
             pn.pane.Bokeh(self.mode, sizing_mode="stretch_width"),
-            sizing_mode="stretch_width",
-            margin=0,
-        )
-        self.panel = pn.Column(self.text, row, sizing_mode="stretch_width", margin=0)
+        ]
+        self.panel = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.is_narrow: bool | None = None
+        self.narrow(False)
+
+    def narrow(self, narrow: bool) -> None:
+        """Set the pictures below each other, or beside each other."""
+        if self.is_narrow is narrow:
+            return
+        self.is_narrow = narrow
+        kind = pn.Column if narrow else pn.Row
+        self.panel.objects = [self.text, kind(*self.pictures, sizing_mode="stretch_width", margin=0)]
 
     def set(self, data: Any, speed_unit: tuple[str, float]) -> None:
         """Show a point."""

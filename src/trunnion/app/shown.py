@@ -239,23 +239,34 @@ def drawn(result: Any) -> str:
 
 
 def limit(result: Any) -> Plain:
-    """Largest stable value over speed."""
+    """Largest stable value at some speeds, and what is unstable between them."""
     others = [(o.name, np.where(o.reached <= result.high, o.reached, np.nan)) for o in result.others]
-    return {"speed": result.speed, "limit": result.limit, "others": others, "text": str(result)}
+    return windows(result.whole) | {
+        "speed": result.speed, "limit": result.limit, "others": others, "text": str(result)
+    }  # fmt: skip
 
 
 def windows(result: Any) -> Plain:
     """Outlines of the regions behind stable windows, and the ends of the windows inside the range searched."""
-    regions = [
+    ends = sorted({float(v) for v in result.windows.ravel() if result.low < v < result.high})
+    return {"speeds": result.speeds, "regions": outlines(result.tongues), "ends": ends, "text": str(result)}
+
+
+def tongues(result: Any) -> Plain:
+    """Outlines of the regions of instability, and what the search says."""
+    return {"regions": outlines(result), "search": result.search}
+
+
+def outlines(found: Any) -> list[tuple[str, Any, Any]]:
+    """Name and closed outline (x, y) of every region."""
+    return [
         (
             str(t.resonance or t.kind),
             np.concatenate([t.low, t.high[::-1], t.low[:1]]),
             np.concatenate([t.y, t.y[::-1], t.y[:1]]),
         )
-        for t in result.tongues
+        for t in found
     ]
-    ends = sorted({float(v) for v in result.windows.ravel() if result.low < v < result.high})
-    return {"speeds": result.speeds, "regions": regions, "ends": ends, "text": str(result)}
 
 
 def tolerances(result: Any) -> Plain:

@@ -57,11 +57,11 @@ class Sliders:
         self.session, self.changed = session, changed
         self.size = 1.0
         self._quiet = False
-        self.which = pn.widgets.Select(name="Parameter to move", options=[], sizing_mode="stretch_width")
-        self.slider = pn.widgets.FloatSlider(name="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
-        self.value = pn.widgets.FloatInput(name="Value as a number", width=105)
-        self.low = pn.widgets.FloatInput(name="Slider from", width=72)
-        self.high = pn.widgets.FloatInput(name="to", width=72)
+        self.which = pn.widgets.Select(label="Parameter to move", options=[], sizing_mode="stretch_width")
+        self.slider = pn.widgets.FloatSlider(label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
+        self.value = pn.widgets.FloatInput(label="Value as a number", width=105)
+        self.low = pn.widgets.FloatInput(label="Slider from", width=72)
+        self.high = pn.widgets.FloatInput(label="to", width=72)
         self.message = pn.pane.HTML("", css_classes=["refusal"])
         self.which.param.watch(lambda event: self._chosen(), "value")
         self.slider.param.watch(lambda event: self._moved(event.new), "value")
@@ -94,13 +94,13 @@ class Sliders:
         shown = now / self.size
         self._quiet = True
         try:
-            same = keep and self.slider.name.startswith(path) and self.slider.start <= shown <= self.slider.end
+            same = keep and self.slider.label.startswith(path) and self.slider.start <= shown <= self.slider.end
             if not same:
                 low, high = _ends(shown, unit)
                 self.low.value, self.high.value = low, high
                 self.slider.param.update(start=low, end=high, step=(high - low) / STEPS)
-            self.slider.name = f"{path} [{unit}]"
-            self.value.name = f"Value [{unit}]"
+            self.slider.label = f"{path} [{unit}]"
+            self.value.label = f"Value [{unit}]"
             rounded = float(f"{shown:.10g}")
             self.slider.value, self.value.value = min(max(rounded, self.slider.start), self.slider.end), rounded
             self.message.object = ""
@@ -163,9 +163,9 @@ def difference(kept: str | None, line: Driveline) -> str:
 
 def buttons(keep: Callable[[Any], None], drop: Callable[[Any], None], swap: Callable[[Any], None]) -> tuple[Any, ...]:
     """Keep this variant, compare no more, swap the two."""
-    one = pn.widgets.Button(name="Keep this variant to compare", width=230)
-    two = pn.widgets.Button(name="Compare no more", width=140, disabled=True)
-    three = pn.widgets.Button(name="Swap", width=70, disabled=True)
+    one = pn.widgets.Button(label="Keep this variant to compare", width=230)
+    two = pn.widgets.Button(label="Compare no more", width=140, disabled=True)
+    three = pn.widgets.Button(label="Swap", width=70, disabled=True)
     for button, action in ((one, keep), (two, drop), (three, swap)):
         button.on_click(action)
     return one, two, three

@@ -47,8 +47,13 @@ def draw(
     top = limit.high * up.factor
     ends = limit.kind == LimitKind.BEYOND
     edges = _edges(x)
-    _unstable(axes, limit, edges, up.factor)
-    axes.plot(x, np.where(ends, np.nan, y), color=EDGE, lw=1.4, marker="." if len(x) == 1 else None, zorder=3)
+    if limit.whole is None:
+        _unstable(axes, limit, edges, up.factor)
+    else:
+        _regions(axes, limit, up.factor, speed_factor(unit))
+    few = len(x) == 1 or limit.whole is not None  # between its points the line would claim what is not so
+    look: dict[str, Any] = {"marker": ".", "ls": ""} if few else {"lw": 1.4}
+    axes.plot(x, np.where(ends, np.nan, y), color=EDGE, zorder=3, **look)
     shown = _others(axes, limit, x, up.factor)
     _values(axes, values or {}, up.factor, limit)
     if operating and operating.speed:
@@ -58,12 +63,12 @@ def draw(
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
     axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
     plain(axes)
-    if ends.all():
+    if ends.all() and not (limit.whole and len(limit.whole.tongues)):
         axes.text(
             0.5, 0.5, "no instability found", transform=axes.transAxes, ha="center", va="center", fontsize=TEXT,
             color=INK, bbox={"facecolor": "white", "edgecolor": "none", "pad": 3}, zorder=6,
         )  # fmt: skip
-    _key(axes, bool(ends.all()), bool(operating and operating.speed), shown)
+    _key(axes, limit, bool(operating and operating.speed), shown)
     return axes
 
 
@@ -85,6 +90,21 @@ def _unstable(axes: Axes, limit: StableLimit, edges: Array, factor: float) -> No
         for a, b in (ranges * factor).tolist()
     ]
     axes.add_collection(PolyCollection(corners, facecolor=UNSTABLE, edgecolor=UNSTABLE, lw=0.3, zorder=1))
+
+
+def _regions(axes: Axes, limit: StableLimit, factor: float, speed: float) -> None:
+    """Every unstable region between the lowest and the highest speed, and the ends of what is stable at all of them."""
+    from matplotlib.collections import PolyCollection
+
+    assert limit.whole is not None
+    shapes = [
+        np.column_stack([np.concatenate([t.low, t.high[::-1]]) * speed, np.concatenate([t.y, t.y[::-1]]) * factor])
+        for t in limit.whole.tongues
+    ]
+    axes.add_collection(PolyCollection(shapes, facecolor=UNSTABLE, edgecolor=EDGE, lw=0.8, zorder=1))
+    for end in np.unique(limit.whole.windows):
+        if limit.low < end < limit.high:
+            axes.axhline(end * factor, color=EDGE, lw=1.4, ls=(0, (4, 2)), zorder=3)
 
 
 def _others(axes: Axes, limit: StableLimit, x: Array, factor: float) -> list[Line2D]:
@@ -118,16 +138,22 @@ def _values(axes: Axes, values: dict[str, float], factor: float, limit: StableLi
         )  # fmt: skip
 
 
-def _key(axes: Axes, all_stable: bool, operating: bool, others: list[Line2D]) -> None:
+def _key(axes: Axes, limit: StableLimit, operating: bool, others: list[Line2D]) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     handles: list[Line2D | Patch] = [Patch(facecolor="white", edgecolor=INK, label="stable")]
-    if all_stable:
+    whole = limit.whole
+    if np.all(limit.kind == LimitKind.BEYOND) and not (whole and len(whole.tongues)):
         handles[0].set_label("stable up to the end of the range")
     else:
         handles.append(Patch(facecolor=UNSTABLE, edgecolor=INK, label="unstable"))
-        handles.append(Line2D([], [], color=EDGE, lw=1.4, label="largest stable value"))
+        look: dict[str, Any] = {"lw": 1.4} if whole is None else {"marker": ".", "ls": ""}
+        handles.append(Line2D([], [], color=EDGE, label=f"largest stable value at {len(limit.speed)} speeds", **look))
+    if whole is not None and len(whole.tongues):
+        handles.append(
+            Line2D([], [], color=EDGE, lw=1.4, ls=(0, (4, 2)), label="ends of what is stable at every speed")
+        )
     handles += others
     if operating:
         handles.append(Line2D([], [], color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"))

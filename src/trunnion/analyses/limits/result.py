@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 STABILITY = "stability"
+UNSEARCHED = "; what lies between these speeds was not searched"
+"""Regions of instability may be narrower than the steps of the speed."""
 
 
 class LimitKind(IntEnum):
@@ -143,10 +145,12 @@ class StableLimit(Result):
         return self.sentence_in(self.speed_unit)
 
     def sentence_in(self, unit: str) -> str:
-        """The answer for all speeds in a sentence."""
+        """The answer for all speeds in a sentence, and before it the one for every speed between where it is known."""
         shown, factor = quantity_axis(self.parameter, self.unit, unit), speed_factor(unit)
         low, high = (float(end) * factor for end in (self.speed.min(), self.speed.max()))
         span = f"all {len(self.speed)} speeds from {low:.6g} to {high:.6g} {unit}"
+        if self.whole is not None:
+            span = f"the {len(self.speed)} speeds that were asked for"
         span = span if len(self.speed) > 1 else f"{high:.6g} {unit}"
         at = self.critical_speed
         if np.any(self.kind == LimitKind.UNKNOWN):
@@ -160,7 +164,10 @@ class StableLimit(Result):
             said = f"Unstable from {shown.value(self.low)} on, at {show_speed(at, unit)}"
         else:
             said = f"Stable at {span} up to {shown.value(self.smallest)}, set at {show_speed(at, unit)}"
-        return f"{said}{self._other_in_words(shown, unit)}{self._again_in_words(shown)}."
+        answer = f"{said}{self._other_in_words(shown, unit)}{self._again_in_words(shown)}"
+        if self.whole is not None:
+            return f"{self.whole.sentence_in(unit)} {answer}."
+        return f"{answer}{UNSEARCHED if len(self.speed) > 1 else ''}."
 
     def sentence_at(self, speed: float, unit: str | None = None) -> str:
         """The answer at the speed of the result that is nearest to ``speed`` [rad/s], in a sentence."""
@@ -248,7 +255,7 @@ class StableLimit(Result):
             lines.append(f"  at {many} the line is stable again above the limit, and unstable once more")
         lines += [f"  {text}" for text in self._others_in_lines(unit)]
         if self.whole is not None:
-            lines.append(f"  between the speeds too: {self.whole.sentence}")
+            lines.append(f"  between these speeds: {self.whole.search}")
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
     def _others_in_lines(self, unit: str) -> Iterator[str]:

@@ -98,11 +98,16 @@ def stable_limit(
     region = _region(task, len(speed), tolerance, workers, lambda s: tell(0.6 * s))
     found = _Stability.of(region, np.unique(np.clip(speed, task.y.values[0], task.y.values[-1])))
     tell(0.7)
+    end = 1.0 if margin is None else 0.8
     span = float(task.x.values[0]), float(task.x.values[-1])
-    others = other_limits(assembly, task.x.columns, found.speed, *span, int(scan), lambda s: tell(0.7 + 0.3 * s))
+    others = other_limits(
+        assembly, task.x.columns, found.speed, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s)
+    )
     whole = None
     if margin is not None:
-        whole = stable_windows(assembly, parameter, low, high, (ends[0], ends[1]), margin=margin)
+        whole = stable_windows(
+            assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
+        )
     tell(1.0)
     return _result(assembly, task, region, found, others, whole)
 

@@ -153,6 +153,25 @@ class Stability(Result):
         """Error estimate of the growth rate [1/s]."""
         return float(self.error_estimate / self.spectral_radius * self.speed / self.period)
 
+    def disturbance(self, size: float = 1e-3) -> Array:
+        """A small disturbance of the kind that grows fastest, or decays slowest.
+
+        Parameters
+        ----------
+        size : its largest rotation [rad] at the start.
+
+        Returns
+        -------
+        State (2n,): rotations [rad], then their rates [rad/s], to be added to a ``start`` of ``simulate``. Of two such
+        motions, with it and without, the difference is multiplied by the critical multiplier in every period.
+        """
+        n = len(self.names)
+        critical = int(np.abs(np.abs(self.multipliers) - self.spectral_radius).argmin())
+        mode = self.floquet_modes[:, critical]
+        largest = mode[np.abs(mode[:n]).argmax()]
+        state = np.real(mode * (size / largest))
+        return np.concatenate([state[:n], state[n:] * self.speed])
+
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What to read first, gravest first; speeds in the unit of the line's description."""

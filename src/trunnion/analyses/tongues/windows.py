@@ -82,25 +82,26 @@ class StableWindows(Result):
 
     @property
     def sentence(self) -> str:
-        """The answer in a sentence."""
-        span = f"from {show_speed(self.speeds[0], self.speed_unit)} to {show_speed(self.speeds[1], self.speed_unit)}"
+        """The answer in a sentence; speeds in the unit of the line's description."""
+        return self.sentence_in(self.speed_unit)
+
+    def sentence_in(self, unit: str) -> str:
+        """The answer in a sentence, speeds in ``unit``."""
+        span = f"from {show_speed(self.speeds[0], unit)} to {show_speed(self.speeds[1], unit)}"
         if not len(self.windows):
             asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
             known = "is known to keep" if self.tongues.unknown else "keeps"
             return f"No {asked} {known} every speed {span} stable."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
-            begin = f"{self._value(low)}{self._why(below)}"
-            parts.append(f"from {begin} to {self._value(high)}{self._why(above)}")
+            begin = f"{self._value(low)}{_why(below, unit)}"
+            parts.append(f"from {begin} to {self._value(high)}{_why(above, unit)}")
         return f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}."
 
     def _value(self, value: float) -> str:
         if self.unit == "rad":
             return f"{np.rad2deg(value):.6g}°"
         return f"{value:.6g}{'' if self.unit == '1' else ' ' + self.unit}"
-
-    def _why(self, end: End | None) -> str:
-        return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, self.speed_unit)})"
 
     def declared(self) -> Iterator[Held]:
         """Windows, and what ends them."""
@@ -218,6 +219,10 @@ def all_damping(assembly: Assembly) -> Parameter:
             remedy='name one to vary, damping="Shaft 1.damping"',
         )  # fmt: skip
     return Parameter("factor of all damping", "1", tuple(terms))
+
+
+def _why(end: End | None, unit: str) -> str:
+    return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, unit)})"
 
 
 def _require_speeds(speeds: object) -> None:

@@ -69,6 +69,9 @@ class Side(ABC):
     panel: Any
     variant = "now"
 
+    def narrow(self, narrow: bool) -> None:  # noqa: B027 - most pictures take any width
+        """Take half of the page, or all of it again."""
+
     @abstractmethod
     def show(self, name: str, data: Any) -> None:
         """Show what the step ``name`` gave."""
@@ -233,12 +236,12 @@ def bounded(value: Setting, least: int, most: int = MOST_POINTS) -> int:
 
 def select(label: str, **more: Any) -> Any:
     """A drop-down list with its label."""
-    return pn.widgets.Select(name=label, width=more.pop("width", 220), **more)
+    return pn.widgets.Select(label=label, width=more.pop("width", 220), **more)
 
 
 def number(label: str, value: float | None, **more: Any) -> Any:
     """A field for a number, with its label."""
-    return pn.widgets.FloatInput(name=label, value=value, width=more.pop("width", 130), **more)
+    return pn.widgets.FloatInput(label=label, value=value, width=more.pop("width", 130), **more)
 
 
 def optional(label: str, **more: Any) -> Any:
@@ -253,7 +256,7 @@ def tell_default(widget: Any, value: float, word: str = "auto") -> None:
 
 def count(label: str, value: int, start: int, end: int) -> Any:
     """A field for a whole number within bounds."""
-    return pn.widgets.IntInput(name=label, value=value, start=start, end=end, width=110)
+    return pn.widgets.IntInput(label=label, value=value, start=start, end=end, width=110)
 
 
 def unit_of(line: Driveline) -> tuple[str, float]:
@@ -284,6 +287,6 @@ def at_speed(line: Driveline, typed: float | None) -> float:
 def label_speed(widget: Any, line: Driveline) -> None:
     """The unit of a field for a speed, and the speed that stands for an empty one."""
     unit, factor = unit_of(line)
-    widget.name = f"Speed [{unit}]"
+    widget.label = f"Speed [{unit}]"
     operating = line.operation is not None and line.operation.speed is not None
     tell_default(widget, at_speed(line, None) * factor, "operating" if operating else "auto")

@@ -34,12 +34,12 @@ class DrivelineView(View):
 
     def make_controls(self) -> Any:
         """Where a line comes from, undo, and the whole file as text."""
-        self.begin = pn.widgets.Select(name="Begin with", options=_beginnings(), width=300)
-        load = pn.widgets.Button(name="Begin", width=70, align="end")
+        self.begin = pn.widgets.Select(label="Begin with", options=_beginnings(), width=300)
+        load = pn.widgets.Button(label="Begin", width=70, align="end")
         load.on_click(lambda event: self.session.edit(self._begin))
         self.upload = Upload(self._uploaded, LARGEST_FILE, label="Open a TOML file")
-        self.undo = pn.widgets.Button(name="Undo", width=70, align="end")
-        self.redo = pn.widgets.Button(name="Redo", width=70, align="end")
+        self.undo = pn.widgets.Button(label="Undo", width=70, align="end")
+        self.redo = pn.widgets.Button(label="Redo", width=70, align="end")
         self.undo.on_click(lambda event: self.session.edit(Document.undo))
         self.redo.on_click(lambda event: self.session.edit(Document.redo))
         return pn.FlexBox(self.begin, load, self.upload, self.undo, self.redo, gap="4px", align_items="end")

@@ -38,19 +38,19 @@ class JointsView(View):
         """Speed and torque; fork offset; compound angle."""
         self.speed = self.bind("speed", optional("Speed", start=0.0, width=150))
         torque = self.bind("torque", number("Torque at the output [N·m]", 100.0, width=190))
-        turn = pn.widgets.FloatSlider(name="Input turned by [deg]", start=0, end=360, step=5, value=0, width=260)
+        turn = pn.widgets.FloatSlider(label="Input turned by [deg]", start=0, end=360, step=5, value=0, width=260)
         self.bind("turn", turn)
         self.shaft = self.bind("shaft", select("Fork offset of", options=[]))
         self.shaft.param.watch(lambda event: self._show_offset(), "value")
-        self.offset = pn.widgets.FloatSlider(name="Fork offset [deg]", start=-90, end=90, step=1, value=0, width=260)
+        self.offset = pn.widgets.FloatSlider(label="Fork offset [deg]", start=-90, end=90, step=1, value=0, width=260)
         self.offset.param.watch(self._turned, "value")
-        self.best = pn.widgets.Button(name="Best fork offsets", width=150, align="end")
+        self.best = pn.widgets.Button(label="Best fork offsets", width=150, align="end")
         self.best.on_click(lambda event: self.session.beside(self._phase()))
         side = self.bind("side", number("Angle in side view [deg]", 0.0, width=170))
         top = self.bind("top", number("Angle in top view [deg]", 0.0, width=170))
         joint = self.bind("joint", select("Joint", options=[], width=180))
         self.compound = pn.pane.HTML("", margin=(18, 8))
-        use = pn.widgets.Button(name="Use this angle", width=130, align="end")
+        use = pn.widgets.Button(label="Use this angle", width=130, align="end")
         use.on_click(lambda event: self.session.edit(self._use))
         return pn.Column(
             pn.FlexBox(self.speed, torque, turn),

@@ -45,7 +45,8 @@ ASKS = {
 }
 """Which controls a question has."""
 SAYS = {
-    STABLE: "The largest value up to which the line is stable, speed by speed, and where limits come first.",
+    STABLE: "The largest value up to which the line is stable at every speed, at some of them one by one, and where "
+    "limits come first.",
     WINDOWS: "All ranges of the parameter that keep every speed stable, and the unstable regions between them.",
     TOLERANCES: "How probable stability at the operating speed is while stiffness, inertia, damping, angles scatter.",
     RANKED: "The numbers that move the check that binds most, ranked.",
@@ -58,6 +59,9 @@ DESIGNS = 40
 """Lines computed in the search for one best value."""
 SCATTER = (".stiffness", ".inertia", ".damping", ".angle")
 """What scatters in a study of tolerances, where it is not zero."""
+AT_SPEEDS = "largest stable value at single speeds"
+OTHERS = (figures.GREEN, figures.PINK, figures.SKY, figures.YELLOW)
+"""Colours of the limits beside stability."""
 SAMPLES = 4096
 """Lines of such a study: the probability to within 1.5 % in the middle, and better at its ends."""
 
@@ -84,7 +88,7 @@ class LimitsView(View):
         self.bind("error", number("Error of assembly [deg]", 1.0, start=0.01, width=170))
         self.bind("tolerance", number("Tolerance [±%]", 5.0, start=0.01, width=130))
         self.bind("aim", select("Best in", options=list(AIMS), width=260))
-        self.use = pn.widgets.Button(name="Use the best value", width=160, align="end", disabled=True)
+        self.use = pn.widgets.Button(label="Use the best value", width=160, align="end", disabled=True)
         self.use.on_click(lambda event: self._use())
         self.says = pn.pane.HTML("", sizing_mode="stretch_width", margin=(0, 5))
         row = pn.FlexBox(*self.widgets.values(), self.use)
@@ -98,7 +102,7 @@ class LimitsView(View):
         self.choose("parameter", paths)
         unit, size = self.unit(line)
         for key, word, value in zip(("low", "high"), ("from", "to"), self._own_ends(line), strict=True):
-            self.widgets[key].name = f"{word} [{unit}]"
+            self.widgets[key].label = f"{word} [{unit}]"
             tell_default(self.widgets[key], value / size)
         torques = [f"{kind} torque of {n}" for n in shaft_names(assemble(line)) for kind in ("vibratory", "peak")]
         self.choose("aim", [*AIMS, *torques])
@@ -152,7 +156,7 @@ class LimitsView(View):
             drawing = {"unit": unit_of(line)[0]}
             return [Step("windows", call, "windows", drawing=drawing, title="stable windows")]
         speeds = Call("np.linspace", (*speed_range(line), bounded(self.settings["speeds"], 2)))
-        call = Call("tn.stable_limit", (LINE, path, speeds), {"low": low, "high": high})
+        call = Call("tn.stable_limit", (LINE, path, speeds), {"low": low, "high": high, "margin": 0.0})
         columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
         return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit", columns=columns)]
 
@@ -201,6 +205,7 @@ class _Side(Side):
     def __init__(self, view: LimitsView) -> None:
         self.view = view
         self.curves = Curves("input speed", "limit")
+        self.curves.mark(AT_SPEEDS, "circle", figures.INK)
         self.bars = figures.plot("", "", height=200, y_range=[], tools="")
         self.rows = figures.source(name=[], value=[])
         bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
@@ -243,32 +248,28 @@ class _Side(Side):
         line = self.view.line_of(self)
         (unit, size), (speed, factor) = self.view.unit(line), unit_of(line)
         path = str(self.view.settings["parameter"])
-        if name == "windows":
-            self._windows(data, path, unit, size, speed, factor)
-            return
-        x = data["speed"] * factor
-        curves = [("stable below", x, data["limit"] / size)]
-        curves += [(f"{name} reached", x, reached / size) for name, reached in data["others"]]
-        curves.append(("the line now", x, np.full(len(x), pack(line).value(path) / size)))
-        self.curves.set(
-            curves,
-            dashes=["solid"] * (len(curves) - 1) + ["dashed"],
-            x=f"input speed [{speed}]",
-            y=f"{path} [{unit}]",
-            title=f"largest stable {path}",
-        )
+        now = pack(line).value(path) / size
+        self._over_speed(data, now, size, factor)
+        title = "regions of instability and stable windows of" if name == "windows" else "largest stable"
+        figure = self.curves.figure
+        figure.title.text = f"{title} {path}"
+        figure.xaxis.axis_label, figure.yaxis.axis_label = f"input speed [{speed}]", f"{path} [{unit}]"
 
-    def _windows(self, data: Any, path: str, unit: str, size: float, speed: str, factor: float) -> None:
-        """Outlines of the unstable regions, and the ends of the windows across."""
+    def _over_speed(self, data: Any, now: float, size: float, factor: float) -> None:
+        """The unstable regions, the ends of what is stable at every speed, and the limits at single speeds.
+
+        The limits at single speeds are marks: a line through them would claim what lies between."""
         span = np.array(data["speeds"]) * factor
         curves = [(name, x * factor, y / size) for name, x, y in data["regions"]]
-        ends = [("end of a window", span, np.full(2, value / size)) for value in data["ends"]]
-        now = ("the line now", span, np.full(2, pack(self.view.line_of(self)).value(path) / size))
+        ends = [("end of what is stable at every speed", span, np.full(2, value / size)) for value in data["ends"]]
+        others = [(f"{name} reached", data["speed"] * factor, v / size) for name, v in data.get("others", ())]
+        looks = [(figures.ORANGE, "solid")] * len(curves) + [(figures.INK, "dotted")] * len(ends)
+        looks += [(OTHERS[k % len(OTHERS)], figures.DASHES[k // len(OTHERS) % 4]) for k in range(len(others))]
+        looks.append((figures.BLUE, "dashed"))
         self.curves.set(
-            [*curves, *ends, now],
-            dashes=["solid"] * len(curves) + ["dotted"] * len(ends) + ["dashed"],
-            colours=[figures.ORANGE] * len(curves) + [figures.INK] * len(ends) + [figures.BLUE],
-            x=f"input speed [{speed}]",
-            y=f"{path} [{unit}]",
-            title=f"regions of instability and stable windows of {path}",
+            [*curves, *ends, *others, ("the line now", span, np.full(2, now))],
+            colours=[colour for colour, _ in looks],
+            dashes=[dash for _, dash in looks],
         )
+        self.curves.fill([(x, y) for _, x, y in curves])
+        self.curves.put_marks(AT_SPEEDS, data.get("speed", np.zeros(0)) * factor, data.get("limit", np.zeros(0)) / size)

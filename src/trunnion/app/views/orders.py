@@ -38,7 +38,7 @@ class OrdersView(View):
             self.bind("spring", select("Shaft", options=[])),
             self.bind("load", select("Load", options=[AS_STATED])),
             self.speed,
-            self.bind("mode", pn.widgets.IntInput(name="Mode", value=1, start=1, end=99, width=90)),
+            self.bind("mode", pn.widgets.IntInput(label="Mode", value=1, start=1, end=99, width=90)),
         )
 
     def adapt(self, line: Driveline) -> None:
@@ -188,7 +188,7 @@ class Mode:
         self.figure.scatter("x", "y", source=self.source, size=11, color=figures.BLUE)
         self.figure.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.figure.y_range.start, self.figure.y_range.end = -1.15, 1.15
-        move = pn.widgets.Toggle(name="Move the mode", width=140)
+        move = pn.widgets.Toggle(label="Move the mode", width=140)
         move.jscallback(
             args={"source": self.source},
             value="""

@@ -38,6 +38,11 @@ from trunnion.reporting.ranges import angle_range
 COARSE = (16, 12)
 TURNS = 30
 """Of the motion after a disturbance."""
+DISTURBANCE = 1e-3
+"""Its largest rotation at the start [rad], in the mode that grows fastest."""
+MOST_NAMED = 6
+"""Regions of instability that the page lists, those that grow fastest."""
+UNDISTURBED, DISTURBED = "undisturbed", "motion"
 GROWTH = 0.05
 """Growth per turn at the ends of the colours."""
 _STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
@@ -71,7 +76,7 @@ class StabilityView(View):
     title = "Stability"
     about = (
         "Where a small disturbance grows, over any two parameters. Click a point, or type it, for its multipliers, the "
-        "growing mode and the motion. Zooming in shows more points of the same chart."
+        "growing mode and what becomes of a small disturbance. Zooming in shows more points of the same chart."
     )
     defaults = {
         "x": SPEED, "x_low": None, "x_high": None, "y": "", "y_low": None, "y_high": None, "across": 60, "up": 60,
@@ -112,11 +117,11 @@ class StabilityView(View):
         self.choose("y", paths[1:])
         for key, end in (("x", "at_x"), ("y", "at_y")):
             axis = self.axis(line, key)
-            self.at[end].name = f"Look at {axis.label}"
+            self.at[end].label = f"Look at {axis.label}"
             low, high = self._own_ends(line, axis)
             for side, value in (("low", low), ("high", high)):
                 widget = self.widgets[f"{key}_{side}"]
-                widget.name = f"{_ENDS[f'{key}_{side}']} [{axis.unit}]"
+                widget.label = f"{_ENDS[f'{key}_{side}']} [{axis.unit}]"
                 tell_default(widget, value / axis.size)
             if not self.settings["look"]:
                 self.settings[end] = float(f"{_now(line, axis) / axis.size:.6g}")
@@ -168,7 +173,9 @@ class StabilityView(View):
         return tuple(_now(line, axis) for axis in (x, y))  # type: ignore[return-value]
 
     def steps(self, line: Driveline) -> list[Step]:
-        """A coarse chart, the point, the full chart, the motion, the names of what opens."""
+        """A coarse chart, the point, the full chart, the motion, the names of what opens, the regions themselves.
+
+        The regions are searched for beside the chart, since they may be narrower than its points lie apart."""
         x, y = self.axes(line)
         fixed = {} if SPEED in (x.path, y.path) else {"speed": _speed(line)}
         across, up = (bounded(self.settings[key], 2) for key in ("across", "up"))
@@ -181,32 +188,37 @@ class StabilityView(View):
         full = Step("chart", chart, "chart", drawing=unit, title="stability chart", soft=True, lasting=True)
         names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",),
                      title="resonance speeds", lasting=True)  # fmt: skip
-        point, motion = self._at(line, x, y)
-        return [*steps, point, full, motion, *([names] if x.path == SPEED else [])]
+        point, *motions = self._at(line, x, y)
+        ranges = (axis.request(0)[:3] for axis in (x, y))
+        regions = Step("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", drawing=unit, files=("nc",),
+                       title="regions of instability", soft=True, lasting=True)  # fmt: skip
+        return [*steps, point, full, *motions, *([names] if x.path == SPEED else []), regions]
 
-    def _at(self, line: Driveline, x: Axis, y: Axis) -> tuple[Step, Step]:
-        """Multipliers and motion at the point looked at."""
+    def _at(self, line: Driveline, x: Axis, y: Axis) -> tuple[Step, ...]:
+        """Multipliers at the point looked at, and the motion there without a disturbance and with one."""
         at = dict(zip((x.path, y.path), self.point(line), strict=True))
         speed = at.pop(SPEED, None) or _speed(line)
         there = line
         for path, value in at.items():
             there = with_number(there, path, value)
         multipliers = Call("tn.stability", (LINE,), {"speed": speed})
-        motion = Call("tn.simulate", (LINE,), {"turns": float(TURNS), "speed": speed})
+        run, brief = ({"turns": turns, "speed": speed} for turns in (float(TURNS), 1.0))
+        begin = Call("at", (0.0,), of=Call("tn.simulate", (LINE,), brief))
+        start = Call("np.add", (begin, Call("disturbance", (DISTURBANCE,), of=multipliers)))
+        shown = {"speed": speed}
         return (
             Step(
                 "point", multipliers, "point", picture="", files=("nc",), title="multipliers at the point", line=there
             ),
             Step(
-                "motion",
-                motion,
-                "motion",
-                {"speed": speed},
-                title="motion from untwisted shafts",
-                files=("nc",),
-                line=there,
+                UNDISTURBED, Call("tn.simulate", (LINE,), run), "motion", shown,
+                title="motion from untwisted shafts", files=("nc",), line=there, soft=True,
             ),
-        )
+            Step(
+                DISTURBED, Call("tn.simulate", (LINE,), {**run, "start": start}), "motion", shown,
+                title="the same with a small disturbance", files=("nc",), line=there, soft=True,
+            ),
+        )  # fmt: skip
 
     def side(self) -> Any:
         """Chart, multipliers, mode, motion."""
@@ -219,6 +231,10 @@ class StabilityView(View):
         self.session.setting_chosen()
 
 
+_ABOUT_MOTION = (
+    f"<p style='font-size:13px;margin:0'>The motion with a disturbance of {DISTURBANCE:g} rad in the mode that grows "
+    "fastest, less the motion without it: the forced vibration, which both have, is taken away.</p>"
+)
 _ENDS = {"x_low": "x from", "x_high": "x to", "y_low": "y from", "y_high": "y to"}
 _AT = {"at_x": "Look at x", "at_y": "Look at y"}
 
@@ -253,13 +269,19 @@ class _Side(Side):
         self.names = ColumnDataSource(data={"x0": [], "y0": [], "x1": [], "y1": [], "name": []})
         lines = self.figure.segment("x0", "y0", "x1", "y1", source=self.names, color=figures.INK, line_dash="dotted")
         figures.hover(self.figure, [lines], [("", "@name")], line_policy="interp")
+        self.outlines = ColumnDataSource(data={"xs": [], "ys": [], "name": []})
+        edges = self.figure.multi_line("xs", "ys", source=self.outlines, color=figures.INK, line_width=2)
+        figures.hover(self.figure, [edges], [("region of instability", "@name")], line_policy="interp")
         self.here = ColumnDataSource(data={"x": [], "y": []})
         self.figure.scatter("x", "y", source=self.here, marker="x", size=14, line_width=3, color=figures.INK)
         self.figure.on_event(Tap, lambda event: view.clicked(float(event.x), float(event.y)))
         self.figure.on_event(RangesUpdate, self._zoomed)
         self.point = Point()
-        self.motion = Curves("turns of the input", "twist [deg]", height=290)
+        self.motion = Curves("turns of the input", "change of the twist [deg]", height=290)
+        self.undisturbed: Any = None
         self.said = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.regions = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.about = pn.pane.HTML(_ABOUT_MOTION, sizing_mode="stretch_width")
         self.extent: tuple[Axis, Axis] | None = None
         self.whole: Any = None
         self.ends: list[tuple[float, float]] = []
@@ -267,12 +289,18 @@ class _Side(Side):
         self.picture = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
         self.panel = pn.Column(
             self.picture,
+            self.regions,
             self.said,
             self.point.panel,
             self.motion.panel,
+            self.about,
             sizing_mode="stretch_width",
             margin=0,
         )
+
+    def narrow(self, narrow: bool) -> None:
+        """The mode goes below the multipliers."""
+        self.point.narrow(narrow)
 
     def show(self, name: str, data: Any) -> None:
         """What a step gave."""
@@ -280,15 +308,24 @@ class _Side(Side):
             self._chart(name, data)
         elif name == "point":
             self.point.set(data, unit_of(self.view.line_of(self)))
-        elif name == "motion":
-            curves = [(n, data["turns"], np.rad2deg(v)) for n, v in zip(data["names"], data["twist"], strict=True)]
-            title = "twist of the shafts after a start from untwisted shafts"
-            self.motion.set(curves, title=title)
+        elif name == "tongues":
+            self._regions(data)
+        elif name == UNDISTURBED:
+            self.undisturbed = data
+        elif name == DISTURBED:
+            self._disturbed(data)
         else:
             self._named(data)
 
     def refused(self, name: str, sentence: str) -> None:
         """A line that has no chart may have multipliers and a motion at each point."""
+        if name in (UNDISTURBED, DISTURBED):
+            self.undisturbed = None
+            self.motion.set([], title=f"no motion: {sentence}")
+            return
+        if name == "tongues":
+            self._say_regions(f"Regions narrower than the points lie apart could not be searched for: {sentence}")
+            return
         self.whole, self.ends = None, []
         self.picture.visible = self.figure.visible = False
         self.said.object = f"<div style='font-size:13px' class='refusal'>no chart: {figures.text(sentence)}</div>"
@@ -300,6 +337,8 @@ class _Side(Side):
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
         if fresh:
             self._image(data, x, y)
+            figures.put(self.outlines, {"xs": [], "ys": [], "name": []})
+            self._say_regions("Regions narrower than the points lie apart are being searched for …")
         if self.extent != (x, y):
             self.extent, self.ends = (x, y), []
             self.figure.x_range.update(start=x.low / x.size, end=x.high / x.size)
@@ -318,6 +357,32 @@ class _Side(Side):
         text = "coarse, the full chart follows" if name == "coarse" else data["text"].replace("\n", "<br>")
         self.count += 1
         self.said.object = f"<div style='font-size:13px' data-chart='{name}' data-count='{self.count}'>{text}</div>"
+
+    def _disturbed(self, data: Any) -> None:
+        """What a disturbance becomes: the motion with it less the one without, which holds the forced vibration."""
+        if self.undisturbed is None:
+            return
+        pairs = zip(data["names"], data["twist"], self.undisturbed["twist"], strict=True)
+        curves = [(n, data["turns"], np.rad2deg(with_it - without)) for n, with_it, without in pairs]
+        self.motion.set(curves, title=f"after a disturbance of {DISTURBANCE:g} rad")
+
+    def _regions(self, data: Any) -> None:
+        """Outlines over the chart, however narrow."""
+        x, y = self.view.axes(self.view.line_of(self))
+        rows = [(name, xs / x.size, ys / y.size) for name, xs, ys in data["regions"]]
+        figures.put(
+            self.outlines, {"xs": [r[1] for r in rows], "ys": [r[2] for r in rows], "name": [r[0] for r in rows]}
+        )
+        parts = [
+            f"{name} from {ys.min():.4g} {y.unit} on, at {xs[ys.argmin()]:.5g} {x.unit}"
+            for name, xs, ys in rows[:MOST_NAMED]
+        ]
+        parts += [f"and {len(rows) - MOST_NAMED} more"] if len(rows) > MOST_NAMED else []
+        count = {0: "No region", 1: "One region"}.get(len(rows), f"{len(rows)} regions")
+        self._say_regions(f"{count} of instability found{': ' if rows else ''}{'; '.join(parts)}.\n{data['search']}")
+
+    def _say_regions(self, text: str) -> None:
+        self.regions.object = f"<div style='font-size:13px;white-space:pre-line'>{figures.text(text)}</div>"
 
     def _image(self, data: Any, x: Axis, y: Axis) -> None:
         step_x, step_y = (float(data[k][1] - data[k][0]) for k in ("x", "y"))
