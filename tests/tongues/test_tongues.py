@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 import two_shafts
+from long_lines import long_line
 
 import trunnion as tn
 from trunnion.analyses.tongues.boundaries import boundary_functions
@@ -138,17 +139,6 @@ def test_damping_as_the_second_axis() -> None:
     assert two_shafts.radius(one.tip[0], 0.3, zeta=0.001 * one.tip[1]) == pytest.approx(1.0, abs=1e-9)
 
 
-def long_line(seed: int, shafts: int, damping: float) -> tn.Driveline:
-    """A line of random shafts and disks with joints behind the first and the third; damping [s] times stiffness."""
-    rng, parts = np.random.default_rng(seed), [tn.ConstantSpeed()]
-    for i in range(shafts):
-        k, j = 1e4 * 10 ** rng.uniform(-0.3, 0.3), 0.1 * 10 ** rng.uniform(-0.3, 0.3)
-        parts += [tn.Shaft(stiffness=k, damping=damping * k), tn.Disk(inertia=j)]
-        if i in (0, 2):
-            parts.append(tn.HookeJoint(angle=0.02))
-    return tn.Driveline(parts)
-
-
 def row_of(line: tn.Driveline, low: float, high: float, angle: float) -> tuple[np.ndarray, np.ndarray]:
     """Unstable intervals of speed (intervals, 2) at one angle of all joints, and a point inside each."""
     task = task_of(line, ("speed", low, high), ("HookeJoint *.angle", 0.9 * angle, 1.1 * angle), None, True, "tongues")
@@ -215,6 +205,7 @@ def test_more_than_three_unknowns_are_sampled() -> None:
     line = tn.Driveline(parts[:-1])
     found = tn.tongues(line, ("speed", 250.0, 700.0), ("HookeJoint *.angle", 0.05, 0.4), rows=5)
     assert not found.complete and "sampled" in found.search and len(found) > 0
+    assert "came from both searches" in found.search
     chart = tn.stability_chart(line, ("speed", 250.0, 700.0, 400), ("HookeJoint *.angle", 0.05, 0.4, 5))
     for y, verdict in zip(chart.y, chart.verdict, strict=True):
         intervals = found.intervals_at(float(y))

@@ -73,3 +73,14 @@ def _discriminant(e: Array) -> Array:
         return np.asarray(e[0] ** 2 - 4 * (e[1] - 2))
     b, c, d = -e[0], e[1] - 3, -(e[2] - 2 * e[0])
     return np.asarray(18 * b * c * d - 4 * b**3 * d + b**2 * c**2 - 4 * c**3 - 27 * d**2)
+
+
+def parted(multipliers: NDArray[np.complex128]) -> Array:
+    """Of all multipliers (points, 2n) of undamped lines, a number (points,) that is positive where two have parted in
+    modulus, with a slope where they do: (ln ρ)² − (Δθ/2)² of the two whose phases are nearest, conjugates included.
+
+    Two that meet are e^{iθ ± √D} with D smooth through 0; all others stand on the circle and farther apart.
+    """
+    phase = np.sort(np.abs(np.angle(multipliers)), axis=1)[:, ::2]  # each stands there twice, as conjugates or real
+    half = np.concatenate([phase[:, :1], np.diff(phase, axis=1) / 2, np.pi - phase[:, -1:]], axis=1)
+    return np.asarray(np.log(np.abs(multipliers).max(axis=1)) ** 2 - half.min(axis=1) ** 2)

@@ -1,8 +1,8 @@
 """Tongues from the intervals of rows: which interval of one row continues which of the next.
 
 Two intervals belong together where each, moved on as its tongue moved so far, meets the other and nothing else. Where
-that is not clear a row is put between. What stays unclear between rows that cannot be told apart is a tongue that joins
-another or parts from it.
+that is not clear a row is put between. Two that hold the same followed resonance belong together wherever they lie.
+What stays unclear between rows that cannot be told apart is a tongue that joins another or parts from it.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.tongues.region import Region
-from trunnion.analyses.tongues.rows import Row, unstable_intervals
+from trunnion.analyses.tongues.rows import Row
 
 Array = NDArray[np.float64]
+Search = Callable[[Array], list[Row]]
+"""The unstable intervals of rows v."""
 
 HALVINGS = 6
 """Times that rows are put between two rows."""
@@ -32,7 +33,8 @@ class Strand:
     """One tongue as intervals of consecutive rows: v, low and high (u), a point inside, kind; rising in v.
 
     ``below`` and ``above`` are the rows next to its ends in which it is missing (None at the edge of the box);
-    ``joins`` and ``parts`` are the strands it runs into or comes out of.
+    ``joins`` and ``parts`` are the strands it runs into or comes out of; ``by``: which searches found any of its
+    intervals, as ``Row.by``; ``of``: resonances in the last one.
     """
 
     v: list[float] = field(default_factory=list)
@@ -41,6 +43,8 @@ class Strand:
     inside: list[float] = field(default_factory=list)
     kind: list[int] = field(default_factory=list)
     clipped: list[tuple[bool, bool]] = field(default_factory=list)
+    by: int = 0
+    of: frozenset[int] = frozenset()
     below: Row | None = None
     above: Row | None = None
     joins: Strand | None = None
@@ -54,6 +58,8 @@ class Strand:
         self.inside.append(float(row.inside[k]))
         self.kind.append(int(row.kind[k]))
         self.clipped.append((bool(row.clipped[k, 0]), bool(row.clipped[k, 1])))
+        self.by |= int(row.by[k])
+        self.of = row.of[k]
 
     def moved(self, v: float) -> tuple[float, float]:
         """Its interval as it would be at ``v`` if it went on as it came."""
@@ -65,16 +71,16 @@ class Strand:
         return self.low[-1] + shift, self.high[-1] + shift
 
 
-def joined(region: Region, v: Array, tell: Callable[[float], None]) -> tuple[list[Strand], list[Row]]:
+def joined(search: Search, v: Array, tell: Callable[[float], None]) -> tuple[list[Strand], list[Row]]:
     """All tongues that meet the rows ``v`` (rising) or rows put between them; and all these rows."""
-    rows = unstable_intervals(region, v)
+    rows = search(v)
     for depth in range(HALVINGS + 1):
         strands, unclear = _strung(rows, final=depth == HALVINGS)
         tell((depth + 1) / (HALVINGS + 2))
         if not unclear:
             break
         between = np.array([(rows[k].v + rows[k + 1].v) / 2 for k in unclear])
-        rows = sorted([*rows, *unstable_intervals(region, between)], key=lambda row: row.v)
+        rows = sorted([*rows, *search(between)], key=lambda row: row.v)
     return strands, rows
 
 
@@ -86,7 +92,9 @@ def _strung(rows: list[Row], *, final: bool) -> tuple[list[Strand], list[int]]:
     for k, row in enumerate(rows):
         before = rows[k - 1] if k else None
         pairs, doubtful = _matched(
-            [s.moved(row.v) for s in ends], list(zip(row.low.tolist(), row.high.tolist(), strict=True))
+            [s.moved(row.v) for s in ends],
+            list(zip(row.low.tolist(), row.high.tolist(), strict=True)),
+            [(a, b) for a, s in enumerate(ends) for b, of in enumerate(row.of) if s.of & of],
         )
         if doubtful and not final and before is not None:
             unclear.append(k - 1)
@@ -116,8 +124,16 @@ def _strung(rows: list[Row], *, final: bool) -> tuple[list[Strand], list[int]]:
 Interval = tuple[float, float]
 
 
-def _matched(before: list[Interval], after: list[Interval]) -> tuple[list[tuple[int, int]], bool]:
-    """Pairs (of ``before``, of ``after``) that belong together, and whether it is doubtful."""
+def _matched(
+    before: list[Interval], after: list[Interval], known: list[tuple[int, int]]
+) -> tuple[list[tuple[int, int]], bool]:
+    """Pairs (of ``before``, of ``after``) that belong together, ``known`` ones among them, and whether the others are
+    doubtful."""
+    if known:
+        left = [a for a in range(len(before)) if a not in {a for a, _ in known}]
+        right = [b for b in range(len(after)) if b not in {b for _, b in known}]
+        pairs, doubtful = _matched([before[a] for a in left], [after[b] for b in right], [])
+        return known + [(left[a], right[b]) for a, b in pairs], doubtful
     pairs = [(a, b) for a, x in enumerate(before) for b, y in enumerate(after) if x[0] <= y[1] and y[0] <= x[1]]
     met_before, met_after = [a for a, _ in pairs], [b for _, b in pairs]
     doubtful = len(set(met_before)) < len(pairs) or len(set(met_after)) < len(pairs)

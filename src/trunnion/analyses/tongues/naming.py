@@ -47,20 +47,35 @@ def resonances(
     if not len(x):
         return []
     share = np.linspace(0.0, 1.0, STEPS) ** 0.5  # angles act by their squares
-    table = np.repeat(_tables(task, assembly, x, y), STEPS, axis=0)
+    across, up, bends = np.repeat(x, STEPS), np.repeat(y, STEPS), np.tile(share, len(x))
+    every = partly_bent(task, assembly, across, up, bends, twisted, threads)
+    every = every.reshape(len(x), STEPS, -1)
+    modes, speed = straight_frequencies(task, assembly, x, y)
+    turns = require_period(assembly.line, assembly.topology)
+    return [_named(assembly, turns, float(speed[k]), modes[k], every[k], int(kinds[k])) for k in range(len(x))]
+
+
+def partly_bent(
+    task: Task, assembly: Assembly, x: Array, y: Array, share: Array, twisted: bool, threads: int
+) -> Complex:
+    """Multipliers (points, 2n) at points (x, y) of the line bent by a share of its angles and mesh variations."""
+    table = _tables(task, assembly, x, y)
     bent = [c for c, label in enumerate(assembly.packed.labels) if _bends(assembly, label)]
-    table[:, bent] *= np.tile(share, len(x))[:, None]
+    table[:, bent] *= share[:, None]
     topo = assembly.topology
     coefficients = assembly.coefficients(table, statically_twisted=twisted)
     by_speed = loaded_by_speed(topo, coefficients)
-    turns = require_period(assembly.line, topo)
-    window = Window(0.0, 2 * np.pi * float(turns), False)
+    window = Window(0.0, 2 * np.pi * float(require_period(assembly.line, topo)), False)
     lanes = chain_lanes(topo, coefficients, by_speed)
     matrix, _, _ = chain_monodromy(chain_program(topo, coefficients, by_speed), lanes, window, TOLERANCE, threads)
-    every = np.linalg.eigvals(matrix).reshape(len(x), STEPS, -1)
-    modes = frequencies(aligned_matrices(topo, assembly.coefficients(table[::STEPS])), free=topo.free)
-    speed = table[::STEPS, 0]
-    return [_named(assembly, turns, float(speed[k]), modes[k], every[k], int(kinds[k])) for k in range(len(x))]
+    return np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+
+
+def straight_frequencies(task: Task, assembly: Assembly, x: Array, y: Array) -> tuple[Array, Array]:
+    """Natural frequencies [rad/s] (points, n) of the straight line at points (x, y), and the speeds there."""
+    table = _tables(task, assembly, x, y)
+    modes = frequencies(aligned_matrices(assembly.topology, assembly.coefficients(table)), free=assembly.topology.free)
+    return modes, table[:, 0]
 
 
 def _tables(task: Task, assembly: Assembly, x: Array, y: Array) -> Array:
@@ -102,20 +117,35 @@ def _named(
 
 def _followed(start: Array, every: Complex) -> Array:
     """Phases (modes,) at the end of the way, from ``start``; ``every`` (steps, 2n) are the multipliers on it."""
-    from scipy.optimize import linear_sum_assignment  # here, as it loads much that a report does without
-
     phase, pace = start.copy(), np.zeros(len(start))
     for step, values in enumerate(every):
         ahead = phase + pace + np.where(pace < 0, -NUDGE, NUDGE) * (step > 0)
-        apart = np.abs(np.angle(values[None, :] * np.exp(-1j * ahead)[:, None]))
-        # Multipliers that have all but vanished have no phase worth following.
-        mode, place = linear_sum_assignment(apart + 10.0 * (np.abs(values) < 1e-9))
-        moved = ahead.copy()
-        moved[mode] = ahead[mode] + np.angle(values[place] * np.exp(-1j * ahead[mode]))
+        moved = nearest_phases(ahead, values)
         if step:
             still = np.abs(moved - phase) < 1e-12
             pace = np.where(still, 0.5 * pace, moved - phase)
         phase = moved
+    return phase
+
+
+def nearest_phases(ahead: Array, values: Complex) -> Array:
+    """Phases of the multipliers ``values`` (2n,) that suit the expected ones (modes,) best, one pair each.
+
+    Multipliers come in pairs of one |phase|: conjugates, or two on the real axis. No two modes share a pair, or a mode
+    would meet its own conjugate in the name of another.
+    """
+    from scipy.optimize import linear_sum_assignment  # here, as it loads much that a report does without
+
+    turned = np.abs(np.angle(values))
+    order = np.argsort(turned)[::2]
+    # Each may be the phase or its negative, whole turns aside: which lies nearer to what is expected.
+    signed = np.stack([turned[order], -turned[order]])
+    off = (signed[:, None, :] - ahead[:, None] + np.pi) % (2 * np.pi) - np.pi
+    off = np.where(np.abs(off[0]) <= np.abs(off[1]), off[0], off[1])
+    # Multipliers that have all but vanished have no phase worth following.
+    mode, place = linear_sum_assignment(np.abs(off) + 10.0 * (np.abs(values[order]) < 1e-9))
+    phase = ahead.copy()
+    phase[mode] += off[mode, place]
     return phase
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import ChartFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, put_better
-from trunnion.analyses.tongues.boundaries import MOST
+from trunnion.analyses.tongues.boundaries import MOST, parted
 from trunnion.numerics.chain.characteristic import without_ones
 from trunnion.numerics.patches import patches
 from trunnion.numerics.patches.patches import Box, Evaluate, Grid, Patch, PatchedFunction
@@ -20,8 +20,9 @@ Places = NDArray[np.intp]
 
 SHARPEST = 1e-13
 """Error asked of single integrations, which settle what patches suggest."""
-COARSE = 1e-10
-"""Errors of ρ above this are looked into where they leave the verdict open."""
+COARSE, UNDAMPED = 1e-10, 1e-6
+"""Errors of ρ above this are looked into where they leave the verdict open; without damping, where every stable point
+is open, only above the second."""
 NODES = 48
 """Samples of a piece of a row that no patch covers."""
 EASIER = (1.0, 30.0, 1000.0)
@@ -104,15 +105,38 @@ class Region:
             values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
             found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
         else:
-            found = judge_matrices(*self.family.matrices(x[order], y[order], SHARPEST, self.threads))
-            self._settle(found, x[order], y[order])
+            matrix, error, trace = self.family.matrices(x[order], y[order], SHARPEST, self.threads)
+            found = judge_matrices(matrix, error, trace)
+            self._settle(found, self._undamped(trace), x[order], y[order])
         return Pixels(found.radius[back], found.error[back], found.critical[back], found.verdict[back])
 
-    def _settle(self, found: Pixels, x: Array, y: Array) -> None:
+    def _undamped(self, trace: Array) -> NDArray[np.bool_]:
+        """Where nothing damps, by ∫ tr(M⁻¹C) dτ (points,)."""
+        return np.abs(trace) < 1e-12 * self.family.size
+
+    def _settle(self, found: Pixels, undamped: NDArray[np.bool_], x: Array, y: Array) -> None:
         """Once more, in place, what the matrix leaves open: fast modes make its error far larger than that of ρ."""
-        open_ = np.flatnonzero((np.abs(found.radius - 1) <= found.error) & (found.error > COARSE))
+        coarse = found.error > np.where(undamped, UNDAMPED, COARSE)
+        open_ = np.flatnonzero((np.abs(found.radius - 1) <= found.error) & coarse)
         if len(open_) and (better := self.family.settled(x[open_], y[open_])) is not None:
             put_better(better, found, open_)
+
+    def across(self, u: Array, v: Array) -> Array:
+        """A function (points,) with a slope at the edges of regions: positive where unstable.
+
+        Without damping that of ``boundaries.parted``, else ρ − 1, where what is 1 to within its error counts as stable.
+        """
+        over = np.full(len(u), np.nan)
+        damped = np.ones(len(u), dtype=bool)
+        if not self.family.set_aside and len(u):
+            matrix, _, trace = self.family.matrices(self.x(u), self.y(v), SHARPEST, self.threads)
+            damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
+            over[~damped] = parted(np.linalg.eigvals(matrix[~damped]))
+        found = self.judged(u[damped], v[damped])
+        own = found.radius - 1
+        stable = np.where(own == 0, -1e-300, own - 2 * found.error * (own > 0))
+        over[damped] = np.where(np.abs(own) > found.error, own, stable)
+        return over
 
     def above_one(self, u: Array, v: Array) -> Array:
         """Spectral radius less 1 (points,)."""

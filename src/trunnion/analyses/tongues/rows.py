@@ -11,7 +11,7 @@ radius comes near 1; and where two multipliers meet (``meetings``), however narr
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -37,6 +37,10 @@ LOOKS = 9
 ZOOMS = 4
 
 
+BY_ROWS, BY_RESONANCES = 1, 2
+"""Which search found an interval."""
+
+
 class Kind(IntEnum):
     """How the multipliers leave the unit circle; codes of arrays."""
 
@@ -60,7 +64,9 @@ class Row:
     there.
 
     ``clipped`` (intervals, 2): whether an end is the end of the box; ``unknown`` (stretches, 2): from where to where, u
-    rising, the motion could not be computed, or not closely enough to tell whether it grows.
+    rising, the motion could not be computed, or not closely enough to tell whether it grows; ``by``: which searches found
+    an interval, bits ``BY_ROWS`` and ``BY_RESONANCES``; ``of``: for each interval the numbers of the resonances that lie
+    in it, where resonances were followed.
     """
 
     v: float
@@ -70,6 +76,8 @@ class Row:
     kind: NDArray[np.int8]
     clipped: NDArray[np.bool_]
     unknown: Array
+    by: NDArray[np.int8]
+    of: tuple[frozenset[int], ...]
 
     def __len__(self) -> int:
         return len(self.low)
@@ -84,11 +92,28 @@ def unstable_intervals(region: Region, v: Array) -> list[Row]:
     return _settled(region, v, marks)
 
 
+def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
+    """Rows with what lies in ``stretches`` (stretches, 2) of each row added to what was known of it."""
+    known = [k for k, own in enumerate(stretches) if len(own)]
+    marks = _Marks.none(len(known))
+    for place, k in enumerate(known):
+        row = rows[k]
+        marks.at[place] += [*row.low[~row.clipped[:, 0]].tolist(), *row.high[~row.clipped[:, 1]].tolist()]
+        marks.peaks[place] += row.inside.tolist()
+        marks.close[place] += [(a, b) for a, b in stretches[k].tolist()]
+    found = (
+        dict(zip(known, _settled(region, np.array([rows[k].v for k in known]), marks), strict=True)) if known else {}
+    )
+    return [replace(found[k], unknown=row.unknown) if k in found else row for k, row in enumerate(rows)]
+
+
 class _Marks:
-    """Places on rows between which the verdict does not change, and stretches to be looked at closely."""
+    """Places on rows between which the verdict does not change, points inside regions, and stretches to be looked at
+    closely."""
 
     def __init__(self, rows: int) -> None:
         self.at: list[list[float]] = [[] for _ in range(rows)]
+        self.peaks: list[list[float]] = [[] for _ in range(rows)]
         self.close: list[list[tuple[float, float]]] = [[] for _ in range(rows)]
 
     @classmethod
@@ -127,6 +152,8 @@ ROUNDING = 1e-9
 """ρ − 1 of interpolated matrices below this may be rounding; regions that grow by less are found as meetings."""
 BESIDE = np.pi / SAMPLES / 4
 """Half of the stretch about a meeting of two multipliers that is looked at closely, in θ."""
+RISES = 0.02
+"""A stretch of a sampled row is left alone where ρ rises in it by less than this share of 1 − ρ."""
 NEAR = 0.5
 """A local maximum of the radius is looked at closely where 1 − ρ there is below this share of its mean."""
 
@@ -137,12 +164,11 @@ def _sampled(region: Region, piece: Piece, v: Array) -> tuple[Places, Array, Pla
     rows, places, touched_rows, touched = [], [], [], []
     u = piece.u(theta)
 
-    def multipliers(at: Array, own: Places) -> NDArray[np.complex128]:
-        basis = np.cos(np.arange(piece.series.shape[2]) * at[:, None])
-        return _multipliers(region, np.einsum("pqj,pj->pq", piece.series[own], basis))
+    def multipliers(at: Array, r: int) -> NDArray[np.complex128]:
+        return _multipliers(region, np.cos(np.arange(piece.series.shape[2]) * at[:, None]) @ piece.series[r].T)
 
     for r in range(len(piece.rows)):
-        values = multipliers(theta, np.full(len(theta), r))
+        values = multipliers(theta, r)
         over = np.abs(values).max(axis=1) - 1
         # Without damping ρ is 1 where stable: its rounding has either sign and would hide where regions begin.
         grows = over > ROUNDING
@@ -152,7 +178,7 @@ def _sampled(region: Region, piece: Piece, v: Array) -> tuple[Places, Array, Pla
         top = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:])) + 1
         top = top[~grows[top] & (-over[top] < NEAR * np.abs(over).mean()) & ~piece.undamped[r]]
         stretches = [(u[k - 1], u[k + 1]) for k in top]
-        _, met = meetings(lambda at, own, r=r: multipliers(at, own + r), theta, values[None])  # type: ignore[misc]
+        _, met = meetings(lambda at, own, r=r: multipliers(at, r), theta, values[None])  # type: ignore[misc]
         at, reach = (
             piece.u(met),
             np.abs(piece.u(np.maximum(met - BESIDE, 0)) - piece.u(np.minimum(met + BESIDE, np.pi))),
@@ -180,14 +206,13 @@ def _settled(region: Region, v: Array, marks: _Marks) -> list[Row]:
     """Verdicts of the gaps between marks, then edges where they change."""
     row, stretch = _flat(marks.close)
     best, top = _highest(region, v[row], stretch) if len(row) else (np.zeros(0), np.zeros(0))
-    peaks: list[list[float]] = [[] for _ in v]
     for r, place, ends, height in zip(row.tolist(), best.tolist(), stretch.tolist(), top.tolist(), strict=True):
         # A stretch whose highest point is unstable is a gap of its own with that point in it.
         if height > 0:
-            peaks[r].append(place)
+            marks.peaks[r].append(place)
             wide = ends[1] - ends[0]  # where the top is an end, the region goes on beyond it
             marks.at[r] += [ends[0] - wide * (place == ends[0]), ends[1] + wide * (place == ends[1])]
-    gaps = [_gaps(region, at, peak) for at, peak in zip(marks.at, peaks, strict=True)]
+    gaps = [_gaps(region, at, peak) for at, peak in zip(marks.at, marks.peaks, strict=True)]
     which = np.concatenate([np.full(len(g), r) for r, g in enumerate(gaps)]).astype(np.intp)
     probes = np.concatenate([g[:, 2] for g in gaps])
     found = region.judged(probes, v[which])
@@ -203,20 +228,26 @@ def _flat(close: Iterable[list[tuple[float, float]]]) -> tuple[Places, Array]:
 
 
 def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
-    """Where ρ is highest in stretches of rows ``v`` (stretches, 2), and ρ − 1 less its error there."""
-    low, high = stretch[:, 0], stretch[:, 1]
+    """Where ρ is highest in stretches of rows ``v`` (stretches, 2), or above 1, and ρ − 1 less its error there."""
+    low, high = stretch[:, 0].copy(), stretch[:, 1].copy()
     best, top = (low + high) / 2, np.full(len(low), -np.inf)
+    left = np.arange(len(low))
     for _ in range(ZOOMS):
         shares = np.linspace(0, 1, LOOKS)
-        u = low[:, None] + (high - low)[:, None] * shares
-        found = region.judged(u.ravel(), np.repeat(v, LOOKS))
+        u = low[left, None] + (high - low)[left, None] * shares
+        found = region.judged(u.ravel(), np.repeat(v[left], LOOKS))
         height = (found.radius - 1 - found.error).reshape(u.shape)
         here = np.nanargmax(np.where(np.isfinite(height), height, -np.inf), axis=1)
         reached = np.take_along_axis(height, here[:, None], 1)[:, 0]
-        better = reached > top
-        best, top = np.where(better, np.take_along_axis(u, here[:, None], 1)[:, 0], best), np.maximum(top, reached)
-        step = (high - low) / (LOOKS - 1)
-        low, high = np.maximum(low, best - step), np.minimum(high, best + step)
+        at = np.take_along_axis(u, here[:, None], 1)[:, 0]
+        best[left], top[left] = np.where(reached > top[left], at, best[left]), np.fmax(top[left], reached)
+        step = (high - low)[left] / (LOOKS - 1)
+        low[left], high[left] = np.maximum(low[left], best[left] - step), np.minimum(high[left], best[left] + step)
+        # Meetings lie in the middle of their stretches: where nothing rises there, no region hides.
+        flat = reached - np.nanmin(height, axis=1) < RISES * np.abs(reached)
+        left = left[~(top[left] > 0) & ~(flat & (not region.by_coefficients))]
+        if not len(left):
+            break
     return best, top
 
 
@@ -269,6 +300,7 @@ def _edges(
             Row(
                 float(v[r]), np.array(low), np.array(high), np.array(inside), np.array(kind, dtype=np.int8),
                 np.array(clipped, dtype=bool).reshape(-1, 2), every[own[np.isnan(radius[own])], :2],
+                np.full(len(low), BY_ROWS, dtype=np.int8), (frozenset(),) * len(low),
             )
         )  # fmt: skip
     return rows
@@ -286,12 +318,7 @@ def solved(region: Region, v: Array, gaps: Array, changes: Places, unstable: NDA
     rises = unstable[changes + 1]
 
     def signed(u: Array, pick: Places) -> Array:
-        """Positive where unstable; what is 1 to within its error counts as stable."""
-        found = region.judged(u, v[pick])
-        over = found.radius - 1
-        return np.where(
-            np.abs(over) > found.error, over, np.where(over == 0, -1e-300, over - 2 * found.error * (over > 0))
-        )
+        return region.across(u, v[pick])
 
     ends = signed(np.concatenate([low, high]), np.tile(np.arange(len(v)), 2)).reshape(2, -1)
     good = np.where(rises, (ends[0] < 0) & (ends[1] > 0), (ends[0] > 0) & (ends[1] < 0))

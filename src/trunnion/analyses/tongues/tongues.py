@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.stability_chart import Task, line_task, own_task
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.analyses.tongues.bracketing import bracketed
-from trunnion.analyses.tongues.joining import Strand, joined
+from trunnion.analyses.tongues.from_resonances import followed, in_words
+from trunnion.analyses.tongues.joining import Search, Strand, joined
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import Region, patched
 from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
@@ -36,6 +37,8 @@ Points = tuple[Array, Array, Array, Array]
 
 ROWS = 65
 PATCH_TOLERANCE = 1e-11
+FASTEST = 5
+"""Rows of a tongue that grow fastest in their middle, on which its largest growth rate is looked for."""
 NEAR_TIP = (1 / 64, 1 / 16, 1 / 4)
 """Shares of the way from a tip to the next row at which its edges are solved for: edges part there like a square
 root."""
@@ -76,12 +79,14 @@ def tongues(
     workers, tell = threads or os.cpu_count() or 1, progress or (lambda share: None)
     region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
     levels = np.sort(task.family.to_patch(np.linspace(task.y.values[0], task.y.values[-1], int(rows)), False))
-    strands, searched = joined(region, levels, lambda s: tell(0.3 + 0.5 * s))
+    search, words = _search(task, region, line, statically_twisted)
+    strands, searched = joined(search, levels, lambda s: tell(0.3 + 0.5 * s))
     shaped = _shapes(region, strands)
     tell(0.9)
     places = {id(s.strand): k for k, s in enumerate(shaped)}
     growths, names = _growths(task, region, shaped), _names(task, region, shaped, line, statically_twisted)
-    found = [_tongue(task, region, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
+    find = _finder(region, search)
+    found = [_tongue(task, region, find, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
     tell(1.0)
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
     unknown = _unknown(region, searched)
@@ -97,11 +102,13 @@ def tongues(
         len(searched),
         float(np.abs(steps).max()),
         region.by_coefficients and not region.uncovered,
-        _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit) + _unknown_words(unknown),
+        _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit)
+        + words(strands)
+        + _unknown_words(unknown),
         unknown,
         task.line,
         task.remarks,
-        _finder(region),
+        find,
     )
 
 
@@ -161,10 +168,26 @@ def _unknown_words(unknown: tuple[Unknown, ...]) -> str:
     )
 
 
-def _finder(region: Region) -> Callable[[float], Array]:
+def _search(
+    task: Task, region: Region, line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
+) -> tuple[Search, Callable[[list[Strand]], str]]:
+    """How rows are searched, and what there is to say of it when tongues are known."""
+    if not region.by_coefficients and not isinstance(line, PeriodicLinearFamily):
+        assembly = line if isinstance(line, Assembly) else assemble(line)
+        found = followed(task, assembly, region, twisted)
+        if found is not None:
+            return found.rows, lambda strands: "; " + in_words(found, [s.by for s in strands])
+    alone = ""
+    if not region.by_coefficients:
+        why = "a family of your own has no straight line" if isinstance(line, PeriodicLinearFamily) else "x is no speed"
+        alone = f"; resonances were not followed, as {why}"
+    return lambda v: unstable_intervals(region, v), lambda strands: alone
+
+
+def _finder(region: Region, search: Search) -> Callable[[float], Array]:
     def find(y: float) -> Array:
         v = float(region.family.to_patch(np.array(y), False))
-        row = unstable_intervals(region, np.array([v]))[0]
+        row = search(np.array([v]))[0]
         return region.in_x(row.low, row.high)
 
     return find
@@ -293,20 +316,28 @@ def _growths(task: Task, region: Region, shapes: list[_Shape]) -> list[tuple[flo
     v, low, high = (
         np.concatenate([getattr(s, part) for s in shapes] or [np.zeros(0)]) for part in ("v", "low", "high")
     )
-    u, top = ridge(region, low, high, v)
-    x, y = region.x(u), region.y(v)
-    rate = np.log1p(top) / region.family.period * _speed(task, x, y)
+    rough = _rate(task, region, (low + high) / 2, v, np.maximum(region.above_one((low + high) / 2, v), 0.0))
+    own = [np.flatnonzero(owner == k) for k in range(len(shapes))]
+    pick = np.concatenate([o[np.argsort(-rough[o])[:FASTEST]] for o in own] or [np.zeros(0, dtype=np.intp)])
+    u, top = ridge(region, low[pick], high[pick], v[pick])
+    rate, x, y = _rate(task, region, u, v[pick], top), region.x(u), region.y(v[pick])
     found = []
     for k in range(len(shapes)):
-        own = np.flatnonzero(owner == k)
-        best = own[int(np.argmax(rate[own]))]
+        mine = np.flatnonzero(owner[pick] == k)
+        best = mine[int(np.argmax(rate[mine]))]
         found.append((float(rate[best]), (float(x[best]), float(y[best]))))
     return found
+
+
+def _rate(task: Task, region: Region, u: Array, v: Array, over: Array) -> Array:
+    """Growth rates [1/s] at points where ρ − 1 is ``over``."""
+    return np.asarray(np.log1p(over) / region.family.period * _speed(task, region.x(u), region.y(v)))
 
 
 def _tongue(
     task: Task,
     region: Region,
+    find: Callable[[float], Array],
     shape: _Shape,
     growth: tuple[float, tuple[float, float]],
     named: Resonance | None,
@@ -332,7 +363,7 @@ def _tongue(
         None if strand.joins is None else places[id(strand.joins)],
         None if strand.parts is None else places[id(strand.parts)],
         _cut(task, region, strand),
-        _finder(region),
+        find,
     )
 
 
