@@ -110,3 +110,30 @@ def test_what_rows_miss_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
     for row, full in zip(found.rows(v), whole, strict=True):
         assert row.by[0] == BY_RESONANCES and len(row) == len(full)
         assert row.low == pytest.approx(full.low, rel=1e-9) and row.high == pytest.approx(full.high, rel=1e-9)
+
+
+def test_intervals_of_one_resonance_are_one_tongue() -> None:
+    """Undamped regions are far narrower than they move from row to row: no row is put between, and each has a name."""
+    line = long_line(0, 4, 0.0)
+    found = tn.tongues(line, ("speed", 200.0, 320.0), ("HookeJoint *.angle", 0.05, 0.25), rows=4)
+    assert found.rows == 4
+    named = [t.name for t in found if len(t.y) == 4]
+    assert len(named) == len(set(named)) >= 6 and None not in named
+    assert len(named) >= len(found) - 2
+    assert "followed up the box" in found.search and "from the resonances alone" in found.search
+
+
+def test_what_was_not_followed_is_said() -> None:
+    line = long_line(0, 4, 1e-5)
+    found = tn.tongues(
+        line, ("factor of Shaft *.stiffness", 0.99, 1.01), ("HookeJoint *.angle", 0.05, 0.1), speed=250.0, rows=3
+    )
+    assert "resonances were not followed, as x is no speed" in found.search and not found.complete
+
+    def coupled(tau, a, q):  # type: ignore[no-untyped-def]
+        stiffness = np.diag([a, 2.3, 3.1, 4.7]) + 0.0 * tau[:, None, None]
+        return np.eye(4), 1e-3 * np.eye(4), stiffness + (q * np.cos(2 * tau))[:, None, None] * np.ones((4, 4))
+
+    family = tn.PeriodicLinearFamily(np.pi, coupled, 4, {"a": 1.0, "q": 0.2})
+    own = tn.tongues(family, ("a", 0.8, 1.2), ("q", 0.1, 0.2), rows=3)
+    assert "a family of your own has no straight line" in own.search

@@ -131,7 +131,7 @@ class Region:
         if not self.family.set_aside and len(u):
             matrix, _, trace = self.family.matrices(self.x(u), self.y(v), SHARPEST, self.threads)
             damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
-            over[~damped] = parted(np.linalg.eigvals(matrix[~damped]))
+            over[~damped] = parted(np.asarray(np.linalg.eigvals(matrix[~damped]), dtype=complex))
         found = self.judged(u[damped], v[damped])
         own = found.radius - 1
         stable = np.where(own == 0, -1e-300, own - 2 * found.error * (own > 0))

@@ -64,9 +64,9 @@ class Row:
     there.
 
     ``clipped`` (intervals, 2): whether an end is the end of the box; ``unknown`` (stretches, 2): from where to where, u
-    rising, the motion could not be computed, or not closely enough to tell whether it grows; ``by``: which searches found
-    an interval, bits ``BY_ROWS`` and ``BY_RESONANCES``; ``of``: for each interval the numbers of the resonances that lie
-    in it, where resonances were followed.
+    rising, the motion could not be computed, or not closely enough to tell whether it grows; ``by``: which searches
+    found an interval, bits ``BY_ROWS`` and ``BY_RESONANCES``; ``of``: for each interval the numbers of the resonances
+    that lie in it, where resonances were followed.
     """
 
     v: float
