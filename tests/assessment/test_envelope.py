@@ -37,6 +37,7 @@ def test_a_line_at_a_point_of_a_schedule() -> None:
         one.at_schedule("axel", 0.0)
 
 
+@pytest.mark.slow
 def test_the_worst_is_what_assess_says_there() -> None:
     """Angles over travel, crossed with load cases: by hand, every place and case apart."""
     cases = (tn.LoadCase(name="hill", loads={"load": 90.0}),)

@@ -242,6 +242,7 @@ def bent_free(*limits):
     )
 
 
+@pytest.mark.slow
 def test_remedies_of_bent_free_lines_are_those_of_the_whole_judgement():
     """Found about rigid shafts, judged about own motions where checks bind: true of the changed line judged whole."""
     line, speeds = bent_free(tn.Limit(of="clutch", max_torque=150.0)), (60.0, 90.0)

@@ -41,6 +41,7 @@ def test_poincare_map(run) -> None:  # type: ignore[no-untyped-def]
     assert len(json.loads(out)["states"]["x"]) == 50
 
 
+@pytest.mark.slow
 def test_certify_chaos(run) -> None:  # type: ignore[no-untyped-def]
     code, out, _ = run(
         "certify-chaos", "ueda", "--periods", "400", "--sweep", "frequency:0.95:1.05:3", "-o", "c.png", "--json"

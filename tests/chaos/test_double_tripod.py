@@ -103,6 +103,7 @@ SLOW = pytest.mark.slow
 @pytest.mark.parametrize(
     "case", [pytest.param(c, marks=SLOW if c != ("output", "straight") else ()) for c in EXPONENTS]
 )
+@pytest.mark.slow
 def test_exponents_at_resonance(case: tuple[str, str]) -> None:
     which, inertia = case
     system = DoubleTripod(mean_inertia=inertia).system(which)

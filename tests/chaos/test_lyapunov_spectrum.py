@@ -90,6 +90,7 @@ def test_mathieu_inside_its_tongue() -> None:
     assert found.exponents == pytest.approx([rate, -rate], abs=1e-7)
 
 
+@pytest.mark.slow
 def test_traced_divergence_is_the_sum() -> None:
     """A system without a formula for its divergence: ∫ tr ∂f/∂x dt along the motion."""
 

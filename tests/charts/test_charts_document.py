@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
 from pages import run_page
 
 from trunnion.results.verdict import Verdict
 
 
+@pytest.mark.slow
 def test_examples_run_in_order(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
     text, names = run_page("charts")

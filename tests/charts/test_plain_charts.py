@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.analyses.charts import plain_chart
@@ -47,7 +48,7 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize("name", LINES)
+@pytest.mark.parametrize("name", quick_only([name for name in LINES if name != "truck"], LINES))
 def test_both_ways_agree(nothing_compiled, name):
     make, speeds, top, points, way = LINES[name]
     chart = family(make(), *speeds, top, points)
@@ -93,6 +94,7 @@ def test_what_is_compiled_already_is_used(monkeypatch):
     assert build_plainly(chart, chart.x.values, chart.y.values, 1e-7, lambda share: None) is None
 
 
+@pytest.mark.slow
 def test_the_chart_of_a_report_compiles_no_kernel_of_charts(tmp_path):
     """Only what integrates single points, for its check of itself."""
     script = """

@@ -78,6 +78,7 @@ def corrupt(monkeypatch: pytest.MonkeyPatch, way: str) -> None:
 
 
 @pytest.mark.parametrize("way", [way.name for way in building.LADDER])
+@pytest.mark.slow
 def test_each_way_holds_where_those_before_fail(way: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     with monkeypatch.context() as broken:
         corrupt(broken, way)

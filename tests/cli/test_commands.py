@@ -76,6 +76,7 @@ def test_a_load_case_changes_the_mean_torque(run):
     assert [round(s["torque_mean"]) for s in data["forced_response"]] == [-250, -250]
 
 
+@pytest.mark.slow
 def test_chart_in_every_format(run, here):
     names = ["c.png", "c.pdf", "c.svg", "c.nc", "c.csv"]
     options = [part for name in names for part in ("-o", name)]
@@ -145,6 +146,7 @@ def test_analyze_writes_one_file_where_one_is_named(run, here):
     assert sorted(p.name for p in here.iterdir()) == ["line.toml", "page.html"]
 
 
+@pytest.mark.slow
 def test_analyze_json_and_folder(run, here, mild):
     data = parsed(run("analyze", "line.toml", *SMALL, "--json", "--output", "deep/er"))
     assert data["stability"]["speed"] == pytest.approx(1500)

@@ -26,6 +26,7 @@ def test_text_and_files(run, here):
     }
 
 
+@pytest.mark.slow
 def test_a_joint_behind_gears_is_drawn(run, here):
     """The example, whose one joint stands behind a mesh."""
     text = (Path(__file__).parents[2] / "examples" / "gear-stage.toml").read_text(encoding="utf-8")

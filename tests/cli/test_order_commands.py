@@ -48,6 +48,7 @@ def parsed(result):
     return json.loads(result.stdout)
 
 
+@pytest.mark.slow
 def test_order_response_says_what_the_analysis_says(run, shaken):
     call = ("order-response", "shaken.toml", "--speed", "600:2400:91")
     expected = tn.order_response(shaken, tn.rpm(np.linspace(600, 2400, 91)))

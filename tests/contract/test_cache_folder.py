@@ -48,6 +48,7 @@ def test_the_cache_goes_where_it_is_told(tmp_path):
     assert kept == ["digest", "package"]
 
 
+@pytest.mark.slow
 def test_a_cache_that_cannot_be_written_is_said_once(tmp_path):
     (tmp_path / "file").write_text("")
     said = said_where(tmp_path, cache=tmp_path / "file")
@@ -55,6 +56,7 @@ def test_a_cache_that_cannot_be_written_is_said_once(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a home is always known there")
+@pytest.mark.slow
 def test_without_a_home_no_folder_named_after_the_tilde_appears(tmp_path):
     nobody = "import pwd\npwd.getpwuid = lambda uid: (_ for _ in ()).throw(KeyError(uid))"
     said = said_where(tmp_path, nobody, cache=None)
@@ -113,6 +115,7 @@ print(Heard.compiled)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks of this kind there: each compiles for itself")
+@pytest.mark.slow
 def test_two_processes_do_not_compile_the_same_function(tmp_path):
     script = tmp_path / "twins.py"
     script.write_text(TWINS, encoding="utf-8")

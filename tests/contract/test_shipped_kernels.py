@@ -54,6 +54,7 @@ def came(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "kernels"
 
 
+@pytest.mark.slow
 def test_what_came_along_is_not_compiled(came: Path, tmp_path: Path) -> None:
     assert run(tmp_path, str(came), "", "3", cache="a") == "12.0 0"
 

@@ -107,6 +107,7 @@ def test_den_hartogs_damper():
     assert best.aim[0] == pytest.approx(exact.fun, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_load_case_that_binds_only_where_the_search_ends_is_taken_in(monkeypatch):
     cases = [tn.LoadCase(name="light", loads={"main": 1.0}), tn.LoadCase(name="heavy", loads={"main": 30.0})]
     line = tn.Driveline(damped().elements, operation=tn.Operation(load_cases=cases))
@@ -140,6 +141,7 @@ def cost(line):
     return abs(line.elements[line.index("Shaft 2")].fork_offset - 0.5)
 
 
+@pytest.mark.slow
 def test_two_aims_over_phases():
     line = joints([0.35, 0.35], [1.0, 0.0])
     free = {"Shaft 2.fork_offset": (-1.0, 1.4)}

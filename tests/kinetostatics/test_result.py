@@ -237,6 +237,7 @@ def test_curves_of_many_forks_differ():
     assert len(set(in_grey)) == plots.STYLES >= 16
 
 
+@pytest.mark.slow
 def test_pictures_speak_the_unit_of_the_text(result):
     for draw in (plots.draw, plots.draw_polar):
         assert "input 94.2478 rad/s" in draw(result).get_suptitle()

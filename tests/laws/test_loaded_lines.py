@@ -54,6 +54,7 @@ FREQUENCIES = tn.natural_frequencies(chain(0.0, 0.1, 1.0).line()).frequency
 
 
 @pytest.mark.parametrize("modes", [(0, 1), pytest.param((1, 2), marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_agreement_inside_a_combination_tongue(modes: tuple[int, int]) -> None:
     """Relative error of the load's effect: per cent at β = 0.4, below 2e-4 at β = 0.2."""
     speed = float(FREQUENCIES[list(modes)].sum() / 2)

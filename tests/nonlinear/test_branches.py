@@ -31,6 +31,7 @@ def test_duffings_folds_and_branches() -> None:
     assert "fold at 1.26960196" in str(branch)
 
 
+@pytest.mark.slow
 def test_dead_zone_grazings_and_folds() -> None:
     """Grazing to eight digits, the smooth folds of the motion across the gap to those known."""
     system = tn.reference_system("dead-zone-oscillator")
@@ -84,6 +85,7 @@ def test_tori_of_the_forced_van_der_pol_oscillator() -> None:
     assert branch.stable[inside].all() and not branch.stable[branch.parameter < 0.92].any()
 
 
+@pytest.mark.slow
 def test_doubling_of_a_line_at_its_subharmonic_resonance() -> None:
     """The true motion of a lightly damped line turns unstable where a multiplier passes −1."""
     line = two_shafts(angle=20.0, load=100.0)

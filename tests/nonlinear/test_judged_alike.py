@@ -33,6 +33,7 @@ def van_der_pol(t, x, p):  # type: ignore[no-untyped-def]
     return x[1], (1 - x[0] ** 2) * x[1] - x[0]
 
 
+@pytest.mark.slow
 def test_a_limit_cycle_keeps_its_phase_aside() -> None:
     system = tn.System.from_function(van_der_pol, ("x", "v"), start=(2.0, 0.0), compiled=False)
     cycle = tn.periodic_response(system, period=6.66)
@@ -127,6 +128,7 @@ SERIES = [(method, harmonics) for method in ("states", "springs") for harmonics 
 
 
 @pytest.mark.parametrize(("method", "harmonics"), quick_only([("springs", 3)], SERIES))
+@pytest.mark.slow
 def test_a_series_knows_what_its_radius_is_off_by(method: str, harmonics: int) -> None:
     """Radii of a Duffing oscillator's series near 1 against those of the motions that shooting finds there."""
     system = tn.reference_system("duffing")

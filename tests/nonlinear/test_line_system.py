@@ -261,7 +261,7 @@ def test_excitations_survive_the_file() -> None:
     line = loaded_lines()["geared and excited"]
     text = tn.dumps(line)
     assert tn.loads(text) == line and tn.dumps(tn.loads(text)) == text
-    jsonschema.validate(tomllib.loads(text), json_schema())
+    jsonschema.Draft202012Validator(json_schema()).validate(tomllib.loads(text))
     packed = tn.pack(line)
     assert packed.value("Disk 1.excitation 2 frequency") == 50.0
     assert packed.units[packed.labels.index("Disk 1.excitation 1 phase")] == "rad"

@@ -57,6 +57,7 @@ def test_the_time_of_an_autonomous_map_is_a_value_of_it() -> None:
     np.testing.assert_allclose(found.by_values[:, 0], (ahead - behind) / 2e-5, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_phase_condition_finds_the_period_of_a_limit_cycle() -> None:
     system, scale = van_der_pol(), np.ones(2)
     place = TimedMap.over(system, 6.5, tolerance=1e-12)

@@ -59,6 +59,7 @@ def test_dead_zone_orbits() -> None:
     assert np.abs(orbit.multipliers - DEAD_ZONE_MULTIPLIER).min() < 6e-6
 
 
+@pytest.mark.slow
 def test_autonomous_orbit() -> None:
     """Van der Pol at μ = 1: the period of the literature and the trivial multiplier, set aside."""
     system = tn.System.from_function(

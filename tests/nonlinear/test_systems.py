@@ -74,7 +74,7 @@ def jacobian(t, x, p):
     [
         pytest.param(array_style, False, marks=pytest.mark.slow),
         (tuple_style, True),
-        (interpreted_style, False),
+        pytest.param(interpreted_style, False, marks=pytest.mark.slow),
         (interpreted_style, True),
         pytest.param(list_style, False, marks=pytest.mark.slow),
         pytest.param(tuple_style, False, marks=pytest.mark.slow),

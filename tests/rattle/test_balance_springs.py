@@ -42,6 +42,7 @@ def at(oscillator: tn.PiecewiseOscillator, start: Any, harmonics: int) -> Spring
     )
 
 
+@pytest.mark.slow
 def test_duffing() -> None:
     found = balance_springs(duffing(), 0.8, 1.6)
     for fold, (frequency, amplitude) in zip(found.branch.folds, DUFFING_FOLDS, strict=True):

@@ -18,6 +18,7 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 @pytest.mark.parametrize("mean_force", [0.0, pytest.param(0.05, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_exact_balance_and_sweeps_agree(mean_force: float) -> None:
     """On folds, on both motions at 0.8, on where a sweep of 0.01 rad/s jumps."""
     o = gear_pair(mean_force)

@@ -493,6 +493,7 @@ load_torque = "1.5 N*m"
 """
 
 
+@pytest.mark.slow
 def test_commands_take_a_file(tmp_path: Path) -> None:
     file, picture = tmp_path / "pair.toml", tmp_path / "r.png"
     file.write_text(PAIR, encoding="utf-8")

@@ -44,6 +44,7 @@ def walled() -> tn.System:
     [pytest.param("shooting", {}, marks=pytest.mark.slow), ("harmonic balance", {"harmonics": 3})],
     ids=["shooting", "series"],
 )
+@pytest.mark.slow
 def test_a_continuation_that_stalls_keeps_its_last_point(method: str, options: dict[str, Any]) -> None:
     found = frequency_response(walled(), 1.1, 1.5, method=method, start=[0.0, 0.0], longest_step=0.05, **options)
     assert not found.outcome.ok and found.outcome.kind == "lost"

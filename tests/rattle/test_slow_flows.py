@@ -28,6 +28,7 @@ def weak(frequency: float = 1.0) -> PiecewiseOscillator:
 
 
 @pytest.mark.parametrize("gaps", quick_every(4, [2.0, 1.5, 3.0, 5.0]))
+@pytest.mark.slow
 def test_two_derivations_one_slow_flow(gaps: float) -> None:
     one = multiple_scales(gear_pair(), fit_range=gaps * HALF_GAP)
     two = averaging(gear_pair(), fit_range=gaps * HALF_GAP)

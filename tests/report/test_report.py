@@ -183,6 +183,7 @@ def test_provenance(made: Report, file: Path) -> None:
         ("unloaded", "62.83 to 314.2 rad/s"),
     ],
 )
+@pytest.mark.slow
 def test_speed_unit(of: str, shown: str, request: pytest.FixtureRequest) -> None:
     text = Page(request.getfixturevalue(of).html).text
     assert shown in text and "rpm" not in text

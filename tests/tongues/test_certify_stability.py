@@ -340,6 +340,7 @@ def test_what_stays_open_stands_beside_what_is_unstable() -> None:
     assert np.all(ManyLines(assembly, True, 2).judged(rows, 1e-9).verdict == Verdict.STABLE)
 
 
+@pytest.mark.slow
 def test_a_line_too_stiff_for_its_samples_stays_undecided() -> None:
     """Its fastest mode makes 8000 cycles a turn: integration leaves the numbers' range, which proves nothing."""
     line = tn.Driveline([*LINE.elements, tn.Shaft(stiffness=1e6, damping=1.0), tn.Disk(inertia=1e-2)])

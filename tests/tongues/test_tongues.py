@@ -102,6 +102,7 @@ def mathieu(tau, a, q):
     return np.eye(1), np.zeros((1, 1)), (a - 2 * q * np.cos(2 * tau))[..., None, None]
 
 
+@pytest.mark.slow
 def test_mathieu() -> None:
     """Undamped: edges are the characteristic values (Abramowitz and Stegun, table 20.1)."""
     family = tn.PeriodicLinearFamily(np.pi, mathieu, 1, {"a": 1.0, "q": 0.5})
