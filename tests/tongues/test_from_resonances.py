@@ -124,15 +124,18 @@ def test_intervals_of_one_resonance_are_one_tongue() -> None:
 
 
 def test_what_was_not_followed_is_said() -> None:
-    line = long_line(0, 4, 1e-5)
+    line = long_line(0, 4, 0.0)
     found = tn.tongues(
         line, ("factor of Shaft *.stiffness", 0.99, 1.01), ("HookeJoint *.angle", 0.05, 0.1), speed=250.0, rows=3
     )
     assert "resonances were not followed, as x is no speed" in found.search and not found.complete
 
+
+@pytest.mark.slow
+def test_families_of_ones_own_have_no_resonances_to_follow() -> None:
     def coupled(tau, a, q):  # type: ignore[no-untyped-def]
-        stiffness = np.diag([a, 2.3, 3.1, 4.7]) + 0.0 * tau[:, None, None]
-        return np.eye(4), 1e-3 * np.eye(4), stiffness + (q * np.cos(2 * tau))[:, None, None] * np.ones((4, 4))
+        own = np.asarray(a)[..., None, None] * np.diag([1.0, 0.0, 0.0, 0.0]) + np.diag([0.0, 2.3, 3.1, 4.7])
+        return np.eye(4), 1e-3 * np.eye(4), own + (q * np.cos(2 * tau))[..., None, None] * np.ones((4, 4))
 
     family = tn.PeriodicLinearFamily(np.pi, coupled, 4, {"a": 1.0, "q": 0.2})
     own = tn.tongues(family, ("a", 0.8, 1.2), ("q", 0.1, 0.2), rows=3)
