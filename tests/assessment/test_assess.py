@@ -271,6 +271,35 @@ def test_gear_hammer_goes_by_the_mean_torque():
     assert tn.assess(two_mass(), (90.0, 90.0)).check("gear hammer").status is Status.NOT_APPLICABLE
 
 
+def test_a_mesh_that_carries_nothing_without_a_load_case_is_judged_under_it():
+    """A mill runs idle between two slabs: what losses leave of a mean torque there is none."""
+    name, rolling = "gear hammer in gears", (tn.LoadCase(name="rolling", loads={"wheel": 400.0}),)
+    loaded = tn.assess(geared(400.0)).check(name)
+    for idle in (0.0, 1e-9):
+        found = tn.assess(geared(idle, rolling)).check(name)
+        assert (found.status, found.load_case) == (Status.SATISFIED, "rolling")
+        assert found.margin == pytest.approx(loaded.margin, rel=1e-9)
+        assert tn.assess(geared(idle)).check(name).status is Status.NOT_JUDGED
+
+
+def test_a_limit_that_nothing_here_can_judge_is_never_satisfied():
+    """A roll on a joint without a shaft between turns otherwise than the inertia that the equations know."""
+    motion = tn.Limit(of="roll", max_speed_fluctuation=5.0)
+    line = tn.Driveline(
+        [
+            tn.Disk(name="motor", inertia=0.4, drive_share=1),
+            tn.Shaft(name="spindle", stiffness=1e4, damping=5.0),
+            tn.HookeJoint(angle="4 deg"),
+            tn.Disk(name="roll", inertia=0.3, load_torque=20.0),
+        ],
+        limits=[motion, tn.Limit(of="spindle", max_torque=1e4)],
+    )
+    found = tn.assess(line, (30.0, 40.0))
+    check = found.check("max speed fluctuation of roll")
+    assert check.status is Status.NOT_JUDGED and "put a Shaft there" in check.because
+    assert found.verdict is not Status.SATISFIED
+
+
 def test_parametric_stability_as_stability_finds_it():
     line = tn.catalogue("two-shaft-cardan")
     unstable = line.replace("HookeJoint 1", angle="35 deg")

@@ -131,6 +131,33 @@ def test_a_change_that_breaks_another_check_is_no_remedy(found):
         assert path in ("shaft.stiffness", "engine.inertia", "load.inertia", "shaft.damping")
 
 
+def test_slopes_that_nobody_can_see_are_not_printed(found):
+    """The angle of a joint alone follows that angle alone: rounding of other numbers is no sensitivity."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=5e4, damping=8.0, name="input"),
+            tn.Disk(inertia=0.3, name="flange"),
+            tn.HookeJoint(angle="9 deg", name="joint"),
+            tn.Shaft(stiffness=2e4, damping=5.0, name="tube"),
+            tn.Disk(inertia=0.02, name="fork"),
+        ]
+    )
+    check = "uniformity"
+    helped = tn.remedies(line, (100.0, 100.0), checks=[check])
+    assert [v.path for v, _ in helped.strongest(check, 16)] == ["joint.angle"]
+    for name in found.checks:
+        sizes = [abs(size) for _, size in found.strongest(name, 16)]
+        assert sizes == sorted(sizes, reverse=True) and min(sizes) >= 0.01 * max(sizes)
+
+
+def test_a_bored_tube_keeps_half_of_its_wall():
+    tube = tn.Shaft(outer_diameter=0.076, inner_diameter=0.072, length=1.0, material="steel", name="tube")
+    design = Design(tn.Driveline([tn.Disk(inertia=1.0), tube, tn.Disk(inertia=2.0)]))
+    diameter = next(v for v in design.variables if v.path == "tube.outer_diameter")
+    assert design.changed(diameter, 0.0741) is not None and design.changed(diameter, 0.0739) is None
+
+
 def test_nearly_binding_checks_are_given_room():
     exact = torque(HIGH)
     room = tn.remedies(two_mass(tn.Limit(of="shaft", max_torque=1.05 * exact)), (LOW, HIGH), most=1)
@@ -244,11 +271,12 @@ def bent_free(*limits):
 
 @pytest.mark.slow
 def test_remedies_of_bent_free_lines_are_those_of_the_whole_judgement():
-    """Found about rigid shafts, judged about own motions where checks bind: true of the changed line judged whole."""
+    """Found about rigid shafts, judged about own motions over the range: true of the changed line judged whole."""
     line, speeds = bent_free(tn.Limit(of="clutch", max_torque=150.0)), (60.0, 90.0)
     found = tn.remedies(line, speeds, checks=["max torque of clutch"])
     before = found.assessment.check("max torque of clutch")
     assert before.status is Status.EXCEEDED and found.remedies
+    assert found.verified == "all checks from 60 rad/s to 90 rad/s, at 41 speeds evenly and those about the peaks"
     for remedy in found.remedies:
         element, key = remedy.variable.rsplit(".", 1)
         after = tn.assess(line.replace(element, **{key: remedy.after}), speeds)

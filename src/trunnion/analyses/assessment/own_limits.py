@@ -27,6 +27,7 @@ from trunnion.results.counts import counted
 Array = NDArray[np.float64]
 WHOLE = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
 SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
+HELD = "a ConstantSpeed holds its rotation"
 JUDGED = {
     "max_torque": WHOLE,
     "vibratory_torque": SWING,
@@ -83,7 +84,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
         return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
     found = limited_values(case.assembly, case.answer, limit, case.assembly.table(1))
     if isinstance(found, str):
-        return Check(name, Status.NOT_APPLICABLE, rule, found)
+        return Check(name, Status.NOT_APPLICABLE if found == HELD else Status.NOT_JUDGED, rule, found)
     values, by_order = found
     kind = LIMIT_KINDS[limit.key]
     at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
@@ -189,7 +190,7 @@ def _of_disk(assembly: Assembly, response: OrderResponse, limit: OneLimit) -> tu
     group = topo.group_of(station)
     i = topo.coordinate[group]
     if i < 0:
-        return "a ConstantSpeed holds its rotation"
+        return HELD
     if any(topo.group_of(j) == group for j in topo.joints) and station != topo.reference[group]:
         return "it hangs on a joint without a shaft between; put a Shaft there to see its own motion"
     ratio = abs(relative_ratio(topo, station))

@@ -133,7 +133,7 @@ class Case:
         return stability_along(self.assembly, np.union1d(self.speeds, named), motions=self.motions)
 
     def _judged(self) -> NDArray[np.int8]:
-        if self.assembly.coefficients(self.assembly.table(1), any_frequency=True).loss.any():
+        if lossy(self.assembly):
             return np.full(len(self.speeds), Verdict.FAILED, dtype=np.int8)  # no equations in time
         return self.along.verdict[np.searchsorted(self.along.speed, self.speeds)]
 
@@ -158,6 +158,11 @@ class Case:
         return f", load case {self.name}" if self.name else ""
 
 
+def lossy(assembly: Assembly) -> bool:
+    """Whether anything damps all frequencies alike, which has no equations in time."""
+    return bool(assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())
+
+
 def cases_of(line: Driveline, low: float, high: float, points: int = POINTS) -> tuple[Case, ...]:
     """The line as stated and under each of its load cases."""
     named = [case.name for case in line.operation.load_cases] if line.operation else []
@@ -167,9 +172,10 @@ def cases_of(line: Driveline, low: float, high: float, points: int = POINTS) -> 
 
 
 def cause(case: Case, at: int, size: Array) -> Cause | None:
-    """Which order leads at speed number ``at``, of amplitudes ``size`` (order,), and the mode that it is nearest to."""
+    """Which order leads at speed number ``at``, of amplitudes ``size`` (order,), and the mode that it is nearest to; no
+    such question where one only looks around."""
     response = case.response
-    if response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
+    if case.rough or response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
         return None
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -56,6 +56,15 @@ class OrderSpectrum:
     channels: Channels
     damping: Array
     loss: Array
+
+    def at(self, i: int) -> OrderSpectrum:
+        """At speed number ``i`` alone."""
+        one = slice(i, i + 1)
+        damping, loss = (part[one] if len(part) > 1 else part for part in (self.damping, self.loss))
+        return replace(
+            self, speed=self.speed[one], amplitude=self.amplitude[one], base=self.base[one], mean=self.mean[one],
+            cut_off=self.cut_off[one], damping=damping, loss=loss,
+        )  # fmt: skip
 
     @property
     def order_numbers(self) -> Array:

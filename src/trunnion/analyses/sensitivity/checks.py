@@ -18,7 +18,10 @@ from numpy.typing import NDArray
 from trunnion.analyses.assessment.assess import by_case, of_line, of_response
 from trunnion.analyses.assessment.check import Check
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
+from trunnion.analyses.assessment.parametric import parametric_stability
+from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.orders.response import response_of_spectrum
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.growth import radius_slope
@@ -59,10 +62,11 @@ def check_slopes(
     slopes, errors = np.full(shape, np.nan), np.full(shape, np.nan)
     speeds, here = np.full(len(checks), np.nan), np.full((len(checks), 2), np.nan)
     exact, refused = [False] * len(checks), [""] * len(checks)
-    values = _Values(subject, near, directions)
+    cases = [next((one for one in subject.cases if one.name == c.load_case), subject.cases[0]) for c in checks]
     for c, check in enumerate(checks):
-        case = next((one for one in subject.cases if one.name == check.load_case), subject.cases[0])
-        speeds[c] = _peak(subject, case, check)
+        speeds[c] = _peak(subject, cases[c], check)
+    values = _Values(subject, near, directions, checks, cases, speeds)
+    for c, (check, case) in enumerate(zip(checks, cases, strict=True)):
         if check.name == GROWTH and not (case.assembly.topology.free and bent(case.assembly)):
             slopes[c, 0], errors[c, 0], refused[c] = _growth(case, float(speeds[c]), directions)
             here[c], exact[c] = (check.value, check.margin), True
@@ -79,10 +83,24 @@ def check_slopes(
 
 
 class _Values:
-    """Values and margins of checks of changed lines, every line judged once for all checks that bind at one speed."""
+    """Values and margins of checks of changed lines, every line judged once at all the speeds where checks bind."""
 
-    def __init__(self, subject: Subject, near: Neighbours, directions: Sequence[Direction]) -> None:
+    def __init__(
+        self,
+        subject: Subject,
+        near: Neighbours,
+        directions: Sequence[Direction],
+        checks: Sequence[Check],
+        cases: Sequence[Case],
+        speeds: Array,
+    ) -> None:
+        """``checks``, each of its load case (check,), bind at ``speeds`` (check,)."""
         self.subject, self.near, self.directions = subject, near, directions
+        self.separation = any(check.name.startswith("separation") for check in checks)
+        self.speeds = {
+            case.name: np.unique([s for s, one in zip(speeds, cases, strict=True) if one is case and np.isfinite(s)])
+            for case in cases
+        }
         self.of_line = {check.name for check in of_line(subject)}
         self.of_response = {
             case.name: {check.name for check in of_response(subject, case)} if solved_exactly(case.assembly) else set()
@@ -144,9 +162,35 @@ class _Values:
         key = ("", 0.0, *moved) if whole else (case.name, speed, *moved)
         if key not in self._seen or check.name not in self._seen[key]:
             subject, own = _of(self.subject, case, line)
-            found = of_line(subject) if whole else _at_speed(subject, own, check, speed)
-            self._seen[key] = {check.name: np.full(2, np.nan)} | self._seen.get(key, {}) | _read(found)
-        return self._seen[key][check.name]
+            if whole:
+                self._keep(key, _read(of_line(subject)))
+            elif check.name == GROWTH and np.isfinite(speed):
+                one = at_speed(subject, own, speed)
+                self._keep(key, _read(parametric_stability(one, one.cases[0])))
+            elif np.isfinite(speed):
+                for at, one in _speed_by_speed(subject, own, self.speeds[case.name]):
+                    self._keep((case.name, at, *moved), _read(self._by_case(one)))
+        return self._seen.setdefault(key, {}).setdefault(check.name, np.full(2, np.nan))
+
+    def _keep(self, key: tuple[str, float, str, float], found: dict[str, Array]) -> None:
+        self._seen[key] = self._seen.get(key, {}) | found
+
+    def _by_case(self, one: Subject) -> Iterator[Check]:
+        yield from of_response(one, one.cases[0])
+        if self.separation:
+            yield from separation(one, one.cases[0])
+
+
+def _speed_by_speed(subject: Subject, case: Case, speeds: Array) -> Iterator[tuple[float, Subject]]:
+    """The same question at each of ``speeds`` (speed,) alone, of one load case, its response solved for all of them
+    together."""
+    answer = replace(case, low=float(speeds[0]), high=float(speeds[-1]), given=tuple(speeds.tolist())).answer
+    for i, speed in enumerate(speeds.tolist()):
+        one = at_speed(subject, case, speed)
+        if not isinstance(answer, str):
+            known = response_of_spectrum(case.assembly, answer.spectrum.at(i))
+            one = replace(one, cases=(replace(one.cases[0], known=known),))
+        yield speed, one
 
 
 def _read(found: Iterable[Check]) -> dict[str, Array]:
@@ -176,13 +220,6 @@ def _under_load(case: Case, one: Direction) -> Direction:
 def _of(subject: Subject, case: Case, line: Driveline) -> tuple[Subject, Case]:
     changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high))
     return changed, replace(next(c for c in changed.cases if c.name == case.name), rough=case.rough)
-
-
-def _at_speed(subject: Subject, case: Case, check: Check, speed: float) -> Iterator[Check]:
-    """The checks of one load case at one speed; none where there is no speed."""
-    if np.isfinite(speed):
-        one = at_speed(subject, case, speed)
-        yield from by_case(one, one.cases[0], growth=check.name == GROWTH)
 
 
 def at_speed(subject: Subject, case: Case, speed: float) -> Subject:

@@ -43,9 +43,9 @@ def remedies(
 
     Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase,
     and verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
-    worse. Of a bent line that starts free each is judged about its own periodic motion at the speeds where its checks
-    bind and those beside them, and sensitivities are those about the motion of rigid shafts. A range of values narrower
-    than a step (3 to 10 %, of bent free lines 5 to 20 %) can be missed. What is zero is not varied.
+    worse; ``verified`` of the result says at which speeds. Of bent lines that start free sensitivities are those about
+    the motion of rigid shafts. A range of values narrower than a step (3 to 10 %, of bent free lines 5 to 20 %) can be
+    missed. What is zero is not varied.
 
     Parameters
     ----------
@@ -91,10 +91,11 @@ def remedies_of(
     targets = [by_name[name] for name in goals]
     slopes = sensitivities(subject, design, targets)
     found: list[Found] = []
+    verified = ""
     lines = 4 * len(targets) * len(design.variables)
     if goals:
         trials = Trials(subject, base, design, targets)
-        found = Search(trials, goals, most, progress).run()
+        found, verified = Search(trials, goals, most, progress).run(), trials.verified
         lines += trials.count
     return Remedies(
         assessment=judged,
@@ -105,6 +106,7 @@ def remedies_of(
         sensitivity_speed=slopes.speed,
         remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
         lines=lines,
+        verified=verified,
     )
 
 

@@ -18,6 +18,8 @@ from trunnion.results.declared import Held, Result, axis, over, remark
 Array = NDArray[np.float64]
 STRONGEST = 3
 """Sensitivities printed of each check."""
+LEAST, SHARE = 1e-5, 0.01
+"""Changes of a value that no reader can see, and shares of the strongest, below which sensitivities are not printed."""
 STEPS = {
     Scale.FACTOR: (0.01, "+1 %"),
     Scale.BEND: (DEGREE, "+1 deg"),
@@ -58,7 +60,8 @@ class Remedies(Result):
 
     checks: names of those checks; remedies: smallest change first for each of them; sensitivity (check, variable):
     d ln(value)/d ln p, of angles d ln(value)/dφ [1/rad], with sensitivity_error; sensitivity_speed (check,) [rad/s]:
-    where it was taken; assessment: of the line as it is; lines: how many were judged.
+    where it was taken; assessment: of the line as it is; lines: how many were judged; verified: which checks of the
+    changed lines were judged anew, and where.
     """
 
     assessment: Assessment
@@ -69,6 +72,7 @@ class Remedies(Result):
     sensitivity_speed: Array
     remedies: tuple[Remedy, ...]
     lines: int
+    verified: str
 
     def of(self, check: str) -> tuple[Remedy, ...]:
         """What helps one check, smallest change first."""
@@ -76,11 +80,14 @@ class Remedies(Result):
 
     def strongest(self, check: str, most: int = STRONGEST) -> list[tuple[DesignVariable, float]]:
         """Variables that a check's value follows most, with its change [1] for +1 % of a factor, +1 deg of a joint's
-        angle, +10 deg of a phase."""
-        row = self.sensitivity[self.checks.index(check)]
-        scaled = np.array([s * STEPS[v.scale][0] for v, s in zip(self.variables, row, strict=True)])
-        order = np.argsort(-np.abs(np.nan_to_num(scaled)))[:most]
-        return [(self.variables[i], float(scaled[i])) for i in order if np.isfinite(scaled[i]) and scaled[i]]
+        angle, +10 deg of a phase; none that is within its error, or too small to matter."""
+        at = self.checks.index(check)
+        step = np.array([STEPS[v.scale][0] for v in self.variables])
+        scaled, error = self.sensitivity[at] * step, self.sensitivity_error[at] * step
+        size = np.abs(np.nan_to_num(scaled))
+        matters = (size >= max(LEAST, SHARE * size.max(initial=0.0))) & ~(size <= error)
+        order = np.argsort(-size)[:most]
+        return [(self.variables[i], float(scaled[i])) for i in order if matters[i]]
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -115,12 +122,14 @@ class Remedies(Result):
         yield over("remedy", "sentence", [r.sentence for r in self.remedies])
         yield remark("verdict", str(self.assessment.verdict))
         yield remark("lines", self.lines)
+        yield remark("verified", self.verified)
 
     def __str__(self) -> str:
         rows = [
             f"remedies: {counted(len(self.remedies), 'single change')} for {counted(len(self.checks), 'check')}, "
             f"{counted(self.lines, 'line')} judged"
         ]
+        rows += [f"  each verified by judging the changed line: {self.verified}"] if self.remedies else []
         rows += [f"  {sentence}" for sentence in self.sentences]
         for check in self.checks:
             rows += [f"  {sentence}" for sentence in self.sensitivity_sentences(check)]

@@ -1,8 +1,8 @@
 """Judging a line with one number changed, quickly to search and wholly to be sure.
 
 Of a bent line that starts free every speed takes a motion of its own. There the search looks at the response about the
-motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's own motion
-at the speeds where a check binds and those beside them.
+motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's own motions,
+over the whole range on a coarser grid.
 """
 
 from __future__ import annotations
@@ -10,16 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import numpy as np
-
-from trunnion.analyses.assessment.assess import by_case, checks_of, of_line, of_response, prepare
-from trunnion.analyses.assessment.check import Check, Status, in_order, worst
+from trunnion.analyses.assessment.assess import by_case, checks_of, of_line
+from trunnion.analyses.assessment.check import Check, Status, worst
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
-from trunnion.analyses.assessment.parametric import parametric_stability
 from trunnion.analyses.assessment.remedies.variables import Design, DesignVariable, Scale
 from trunnion.analyses.assessment.result import verdict_of
-from trunnion.analyses.assessment.separation import separation
-from trunnion.analyses.assessment.subject import Case, Subject, cases_of
+from trunnion.analyses.assessment.subject import Subject, cases_of, lossy
 from trunnion.driveline.driveline import Driveline
 
 QUICK_POINTS = 41
@@ -35,7 +31,8 @@ Checks = dict[str, Check]
 class Trials:
     """Changed lines, each judged once.
 
-    quick: the checks of the load cases that bind, on a coarser grid of speeds; whole: all of them as ``assess`` does.
+    quick: the checks of the load cases that bind, on a coarser grid of speeds; whole: all of them as ``assess`` does,
+    of lines that have motions of their own on the coarser grid.
     """
 
     def __init__(self, subject: Subject, base: tuple[Check, ...], design: Design, targets: Iterable[Check]) -> None:
@@ -43,6 +40,7 @@ class Trials:
         self.base: Checks = {check.name: check for check in base}
         self.verdict = verdict_of(base, subject.speed)[0]
         self.costly = subject.cases[0].costly
+        self.points = QUICK_POINTS if self.costly and not lossy(subject.cases[0].assembly) else None
         targets = tuple(targets)
         self.growth = any(check.name == GROWTH for check in targets)
         self.of_line = {check.name for check in targets} & {check.name for check in of_line(subject)}
@@ -52,6 +50,16 @@ class Trials:
         self._quick: dict[tuple[str, float], Checks | None] = {}
         self._whole: dict[tuple[str, float], Checks | None] = {}
         self.unchanged = self._judge(subject.line, None)
+
+    @property
+    def verified(self) -> str:
+        """At which speeds ``whole`` judges."""
+        subject = self.subject
+        even = self.points or subject.cases[0].points
+        if subject.low == subject.high or subject.cases[0].given:
+            return f"all checks at {subject.shown(subject.high)}"
+        span = f"{subject.shown(subject.low)} to {subject.shown(subject.high)}"
+        return f"all checks from {span}, at {even} speeds evenly and those about the peaks"
 
     @property
     def count(self) -> int:
@@ -71,8 +79,7 @@ class Trials:
         key = variable.path, value
         if key not in self._whole:
             line = self.design.changed(variable, value)
-            judge = self._where_it_binds if self.costly else checks_of
-            found = None if line is None else judge(self.of(line))
+            found = None if line is None else checks_of(self.of(line, self.points))
             self._whole[key] = None if found is None else {check.name: check for check in found}
         return self._whole[key]
 
@@ -80,35 +87,15 @@ class Trials:
         """The same question about another line."""
         subject = self.subject
         cases = cases_of(line, subject.low, subject.high, *((points,) if points else ()))[: len(subject.cases)]
-        if self.costly:
-            cases = tuple(replace(case, rough=True) for case in cases)
         return replace(subject, line=line, cases=cases, naming=False)
-
-    def _where_it_binds(self, rough: Subject) -> tuple[Check, ...]:
-        """All checks, about the line's own motion at the speeds where the rough response has each of them bind."""
-        exact = tuple(replace(case, rough=False, given=self._binding(rough, case)) for case in rough.cases)
-        subject = replace(rough, cases=exact)
-        prepare(exact)
-        found = [
-            check
-            for case, apart in zip(exact, rough.cases, strict=True)
-            for check in (*of_response(subject, case), *separation(rough, apart), *parametric_stability(subject, case))
-        ]
-        return in_order([*worst(found), *of_line(subject)])
-
-    def _binding(self, rough: Subject, case: Case) -> tuple[float, ...]:
-        grid = case.speeds
-        at = [check.speed for check in of_response(rough, case) if np.isfinite(check.speed)]
-        at += [check.speed for check in self.base.values() if check.load_case == case.name and np.isfinite(check.speed)]
-        places = np.searchsorted(grid, np.clip(at, grid[0], grid[-1]))
-        beside = np.unique(np.clip(np.add.outer(places, (-1, 0, 1)), 0, len(grid) - 1))
-        return tuple(np.unique([grid[0], *grid[beside], grid[-1]]).tolist())
 
     def _judge(self, line: Driveline, variable: DesignVariable | None) -> Checks:
         subject = self.of(line, QUICK_POINTS)
         cases = [case for case in subject.cases if case.name in self.cases]
         if self.costly:
-            cases = [replace(case, given=(*case.speeds[:-1:THINNED].tolist(), case.speeds[-1])) for case in cases]
+            cases = [
+                replace(case, rough=True, given=(*case.speeds[:-1:THINNED].tolist(), case.speeds[-1])) for case in cases
+            ]
         found = list(worst(check for case in cases for check in by_case(subject, case, growth=self.growth)))
         if self.of_line or variable is None or variable.scale is not Scale.FACTOR:
             found += of_line(subject)

@@ -118,15 +118,23 @@ class Design:
         return tuple(self._variables())
 
     def changed(self, variable: DesignVariable, value: float) -> Driveline | None:
-        """The line with one number changed; None where it, or the line with it, is refused."""
+        """The line with one number changed; None where it, or the line with it, is refused, or is no tube any more."""
         numbers = self.packed.values.copy()
         numbers[variable.column] = value
-        if not isfinite(value):
+        if not isfinite(value) or self._worn(variable, value):
             return None
         try:
             return self.packed.line_at(numbers)
         except InputError:
             return None
+
+    def _worn(self, variable: DesignVariable, value: float) -> bool:
+        """Whether a smaller outer diameter leaves a bored shaft less than half of its wall."""
+        bore = f"{variable.element}.inner_diameter"
+        if variable.key != "outer_diameter" or bore not in self.packed.labels:
+            return False
+        inner = float(self.packed.values[self.packed.labels.index(bore)])
+        return inner > 0 and value - inner < (variable.value - inner) / 2
 
     def _variables(self) -> Iterator[DesignVariable]:
         joints = hooke_joints(self.line)
