@@ -20,6 +20,7 @@ import scipy
 
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.jit import Kept, NotKept, caches_of
+from trunnion.numerics.linked import link_inner_ones
 from trunnion.numerics.sources import VERSIONS
 
 
@@ -54,6 +55,7 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
     sys.modules[full] = module
     with caches_of(NotKept):
         exec(compile(source, f"<{name}>", "exec"), vars(module))
+    link_inner_ones(module)
     return module
 
 
@@ -66,6 +68,7 @@ def _kept(path: Path, source: str, full: str) -> ModuleType:
     sys.modules[full] = module
     with caches_of(Kept):
         spec.loader.exec_module(module)
+    link_inner_ones(module)
     return module
 
 

@@ -19,6 +19,7 @@ from numba.core import caching, ccallback, dispatcher
 from trunnion.numerics import shipped
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.compile_lock import CompileLock
+from trunnion.numerics.linked import INNER, link_only
 from trunnion.numerics.sources import SOURCES, digest_of
 
 # numba states no types of these.
@@ -38,15 +39,16 @@ def njit(
 ) -> Callable[[Callable[..., Any]], Any]:
     """As numba's decorator of that name; ``cache`` is a wish.
 
-    ``inner``: only compiled code calls it; the entrance for Python takes half the time to compile of a small function.
+    ``inner``: only compiled code calls it; see ``linked``.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        folder = cache_folder(f"package-{digest_of(SOURCES)}") if cache else None
-        options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} if inner else {}
+        options: dict[str, Any] = INNER if inner else {}
         made: Any = numba.njit(nogil=nogil, fastmath=fastmath, error_model=error_model, **options)(function)
-        if cache:
-            made._cache = _kept_in(folder, function)
+        if inner:
+            link_only(made)
+        elif cache:
+            made._cache = _kept_in(cache_folder(f"package-{digest_of(SOURCES)}"), function)
         return made
 
     return decorate
