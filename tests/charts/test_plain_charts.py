@@ -12,12 +12,14 @@ import pytest
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.charts import plain_chart
+from trunnion.analyses.charts import chart_families, prices
 from trunnion.analyses.charts.building import build
 from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.charts.plain_chart import build_plainly
 from trunnion.analyses.charts.plain_pixels import plain_radii
-from trunnion.analyses.charts.stability_chart import line_task
+from trunnion.analyses.charts.stability_chart import line_task, stability_chart
+from trunnion.analyses.limits.result import LimitKind
+from trunnion.analyses.limits.stable_limit import limit_of_chart
 from trunnion.equations.coefficients import assemble
 from trunnion.numerics.chain.characteristic import radii
 from trunnion.results.verdict import Verdict
@@ -29,7 +31,7 @@ ANGLES = "HookeJoint *.angle"
 
 @pytest.fixture
 def nothing_compiled(monkeypatch):
-    monkeypatch.setattr(plain_chart, "at_hand", lambda *functions: False)
+    monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
 
 
 def family(line, low, high, top, points) -> LineFamily:
@@ -86,22 +88,51 @@ def test_radii_of_coefficients_as_the_kernel_finds_them(m):
     assert np.all(plain[1][there] <= 4 * kernel[1][there] + 1e-12)
 
 
+@pytest.mark.parametrize(
+    ("name", "low", "high", "angle"),
+    [("two-shaft-cardan", 1.2, 1.7, 0.5), pytest.param("three-shaft-cardan", 0.6, 2.0, 1.1, marks=pytest.mark.slow)],
+)
+def test_limits_without_a_compiler_are_those_of_the_kernels(name, low, high, angle, monkeypatch):
+    """Edges are solved for by steps in NumPy, as closely as those settle."""
+    speeds = np.linspace(low, high, 7)[1:-1]
+    axes = ("speed", low, high, 60), (ANGLES, 0.0, angle, 40)
+    chart = stability_chart(catalogue(name), *axes, tolerance=1e-9)
+    by_kernels = limit_of_chart(chart, speeds)
+    monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
+    monkeypatch.setattr(chart_families, "compiling_pays", lambda: False)
+    monkeypatch.delattr(LineFamily, "matrices")
+    plainly = limit_of_chart(chart, speeds)
+    assert np.array_equal(plainly.kind, by_kernels.kind) and np.any(plainly.kind == LimitKind.CROSSING)
+    assert np.allclose(plainly.limit, by_kernels.limit, rtol=0, atol=1e-7)
+
+
+def test_what_numpy_has_cost_is_counted_until_compiling_pays(monkeypatch):
+    chart = family(catalogue("two-shaft-cardan"), 0.5, 2.0, 0.5, (8, 6))
+    x, y = np.array([1.0]), np.array([0.3])
+    monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
+    monkeypatch.setattr(prices, "_in_numpy", 0.0)
+    assert chart.in_numpy(x, y) is not None and prices._in_numpy > 0
+    monkeypatch.setattr(prices, "COMPILING", 0.0)
+    assert chart.in_numpy(x, y) is None
+
+
 def test_what_is_compiled_already_is_used(monkeypatch):
     """And a line that starts free is left to the kernels."""
     chart = family(catalogue("two-shaft-cardan"), 0.5, 2.0, 0.5, (8, 6))
-    monkeypatch.setattr(plain_chart, "at_hand", lambda *functions: True)
-    assert not plain_chart.suits(chart)
+    monkeypatch.setattr(chart_families, "at_hand", lambda *functions: True)
+    assert not chart.uncompiled
     assert build_plainly(chart, chart.x.values, chart.y.values, 1e-7, lambda share: None) is None
 
 
 @pytest.mark.slow
-def test_the_chart_of_a_report_compiles_no_kernel_of_charts(tmp_path):
+def test_the_chart_of_a_report_and_its_limit_compile_no_kernel_of_charts(tmp_path):
     """Only what integrates single points, for its check of itself."""
     script = """
 import sys
 import trunnion as tn
 from numba.core import event
 from trunnion.analyses.charts.stability_chart import chart_of_report
+from trunnion.analyses.limits.stable_limit import limit_of_chart
 from trunnion.equations.coefficients import assemble
 
 class Heard(event.Listener):
@@ -114,10 +145,12 @@ class Heard(event.Listener):
 with event.install_listener("numba:compile", Heard()):
     axes = ("speed", 31.4, 251.3, 20), ("HookeJoint *.angle", 0.0, 0.26, 12)
     chart = chart_of_report(assemble(tn.load(sys.argv[1])), *axes, 1e-7)
-print(chart.way, sorted({name for name in Heard.names if name.startswith("trunnion")}))
+    limit = limit_of_chart(chart, own=True)
+own = sorted({name for name in Heard.names if name.startswith("trunnion")})
+print(chart.way, float(limit.smallest) == chart.y[-1], own)
 """
     environment = os.environ | {"TRUNNION_CACHE": str(tmp_path)}
     call = [sys.executable, "-c", script, str(EXAMPLES / "truck.toml")]
     run = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=300)
     assert run.returncode == 0, run.stderr
-    assert run.stdout.strip() == "patches ['trunnion.numerics.chain.dense_monodromy']"
+    assert run.stdout.strip() == "patches True ['trunnion.numerics.chain.dense_monodromy']"

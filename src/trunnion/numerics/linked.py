@@ -1,6 +1,6 @@
 """Compiled functions that only compiled code calls: part of their callers, and nothing by themselves.
 
-numba optimises a function with all that it calls, and makes machine code of the whole, for that function and once more in
+numba optimises a function with all that it calls, and makes machine code of the whole, for that function and again in
 every caller, level by level. Of what Python never calls, that is work for nothing: it is handed to its callers as it
 is, and optimised and made machine code where it is used. Nothing of it is kept: what is kept is the caller.
 """
@@ -15,6 +15,7 @@ from numba.core import caching, codegen, compiler, compiler_machinery, dispatche
 # numba states no types of these.
 LIBRARY: Any = codegen.JITCodeLibrary
 COMPILER: Any = compiler.CompilerBase
+PASSES: Any = compiler.DefaultPassBuilder
 LOWERING: Any = typed_passes.NativeLowering
 DISPATCHER: Any = dispatcher.Dispatcher
 registered: Any = compiler_machinery.register_pass
@@ -60,7 +61,7 @@ class LinkedCompiler(COMPILER):  # type: ignore[misc]
 
     def define_pipelines(self) -> list[Any]:
         """See numba."""
-        passes = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes = PASSES.define_nopython_pipeline(self.state)
         passes.passes = [
             (LinkedLowering, said) if kind is typed_passes.NativeLowering else (kind, said)
             for kind, said in passes.passes
@@ -83,8 +84,8 @@ def link_inner_ones(module: ModuleType) -> None:
 
 
 def _no_entrance(name: str) -> Any:
-    """What stands for machine code: numba knows a compiled function by it, and takes built-in ones alone.
+    """What stands for machine code: numba knows a compiled function by it, and calls it where Python does.
 
-    Each is of its own, and raises TypeError when it is called with anything.
+    It takes built-in functions of arguments and keywords alone. This one is of its own for each, and raises KeyError.
     """
-    return [name].sort
+    return "".join(("{compiled code alone calls ", name.replace(".", " "), "}")).format

@@ -19,7 +19,7 @@ from trunnion.analyses.charts.axes import Axis
 from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.analyses.charts.few_nodes import leading_patches
 from trunnion.analyses.charts.leading_group import told_apart
-from trunnion.analyses.charts.prices import without_groups
+from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling, without_groups
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion, ratio_values
@@ -31,11 +31,16 @@ from trunnion.numerics.chain.chain_monodromy import (
     chain_monodromy,
     chain_propagator,
     complete,
+    has_extra,
     symmetry_phase,
 )
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
-from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices
+from trunnion.numerics.chain.characteristic import LARGEST, RADII, coefficients_from_matrices
+from trunnion.numerics.chain.exponential_lanes import integrate_exponentials
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
+from trunnion.numerics.chain.series_driver import integrate_series
+from trunnion.numerics.chain.stages_driver import integrate_stages
+from trunnion.numerics.jit import at_hand
 from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
 from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
 from trunnion.results.verdict import verdicts
@@ -79,6 +84,9 @@ class ChartFamily(Protocol):
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """Pixels at points (x, y) from steps that are halved until the multipliers stay; None where there is no way."""
+
+    def in_numpy(self, x: Array, y: Array) -> Pixels | None:
+        """The same where kernels would have to be compiled and that takes longer; else None."""
 
     def over_whole_periods(self) -> ChartFamily:
         """The same family integrated over whole periods, whatever symmetry it may have."""
@@ -246,8 +254,27 @@ class LineFamily:
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
-        if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE:
+        return None if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE else self._by_halving(x, y)
+
+    def in_numpy(self, x: Array, y: Array) -> Pixels | None:
+        """See ``ChartFamily``."""
+        if len(x) > MOST_IN_NUMPY or compiling_pays() or not self.uncompiled:
             return None
+        with instead_of_compiling():
+            found = self._by_halving(x, y)
+        return found if np.isfinite(found.radius).all() else None
+
+    @property
+    def uncompiled(self) -> bool:
+        """Whether its matrices may be stepped in NumPy, and its kernels would have to be compiled."""
+        if self.set_aside or self.size > LARGEST_DENSE:
+            return False
+        ends = self.lanes(self.x.values[[0, -1]], self.y.values[[0, -1]])
+        integrator = integrate_stages if has_extra(self.program, ends) else integrate_series
+        by_steps = (integrate_exponentials,) if 2 * self.size > LARGEST else ()
+        return not at_hand(integrator, *by_steps, *RADII)
+
+    def _by_halving(self, x: Array, y: Array) -> Pixels:
         rates = self.rates(x, y)
         found = exponential_monodromies(
             rates, len(x), 2 * self.size, self.period, tolerance=1e-10, least_steps=rates.steps
@@ -322,6 +349,8 @@ FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 
 
+MOST_IN_NUMPY = 1_000
+"""Points that may be stepped at once in NumPy, lest a kernel be compiled."""
 FEWEST_PIXELS = 20_000
 """Below this, pixels are integrated in less time than slabs are patched."""
 

@@ -44,6 +44,10 @@ class PointByPoint:
         """There is no other way than ``matrices``."""
         return None
 
+    def in_numpy(self, x: Array, y: Array) -> Pixels | None:
+        """There is no other way than ``matrices``."""
+        return None
+
     def over_whole_periods(self) -> Self:
         """Own families are always integrated over whole periods."""
         return self

@@ -31,16 +31,10 @@ from trunnion.analyses.charts.leading_group import symmetric_functions, told_apa
 from trunnion.analyses.charts.plain_pixels import plain_pixels
 from trunnion.analyses.charts.prices import pixel_price, step_price
 from trunnion.analyses.linear.carried_modes import propagated
-from trunnion.equations.first_order import LARGEST_DENSE, LineRates
+from trunnion.equations.first_order import LineRates
 from trunnion.equations.linear import periodic_linear_system
 from trunnion.errors import ComputationError
-from trunnion.numerics.chain.chain_monodromy import has_extra
-from trunnion.numerics.chain.characteristic import LARGEST, RADII
-from trunnion.numerics.chain.exponential_lanes import integrate_exponentials
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies, marched
-from trunnion.numerics.chain.series_driver import integrate_series
-from trunnion.numerics.chain.stages_driver import integrate_stages
-from trunnion.numerics.jit import at_hand
 from trunnion.numerics.patches.patches import Box, PatchedFunction
 from trunnion.results.verdict import Verdict, verdicts
 
@@ -130,23 +124,13 @@ class Plain:
         return matrices, np.array([run.error for run in runs]), np.array([run.damping_trace for run in runs])
 
 
-def suits(family: LineFamily) -> bool:
-    """Whether a line may be charted so, and its kernels would have to be compiled."""
-    if family.set_aside or family.size > LARGEST_DENSE:
-        return False
-    ends = family.lanes(family.x.values[[0, -1]], family.y.values[[0, -1]])
-    integrator = integrate_stages if has_extra(family.program, ends) else integrate_series
-    by_steps = (integrate_exponentials,) if 2 * family.size > LARGEST else ()
-    return not at_hand(integrator, *by_steps, *RADII)
-
-
 def build_plainly(
     family: LineFamily, x: Array, y: Array, tolerance: float, tell: Callable[[float], None]
 ) -> Built | None:
     """The chart, or None where it takes long, does not hold its own check, or leaves too much undecided."""
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box, size = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max())), len(u) * len(v)
-    if not suits(family) or size > MOST_PIXELS or box.u0 == box.u1 or box.v0 == box.v1:
+    if not family.uncompiled or size > MOST_PIXELS or box.u0 == box.u1 or box.v0 == box.v1:
         return None
     plain, way = Plain(family), LADDER[0]
     affordable = MOST_WORK * step_price(12) / SHARE + size * pixel_price(6)

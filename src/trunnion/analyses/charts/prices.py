@@ -6,6 +6,10 @@ accuracy.
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from trunnion.numerics.chain.chain_tables import LANES
 
 SLAB_NODES = 4000
@@ -35,3 +39,24 @@ def without_groups(size: int, pixels: int, mean_phase: float, longest_phase: flo
     direct = pixels * kernel_price(size, mean_phase)
     slabs = SLAB_NODES * kernel_price(size, longest_phase)
     return shown + (min(direct, slabs) if pixels >= fewest_for_slabs else direct)
+
+
+COMPILING = 12.0
+"""Seconds that compiling a line's kernels takes."""
+_in_numpy = 0.0
+
+
+@contextmanager
+def instead_of_compiling() -> Iterator[None]:
+    """Count the time spent within it, in NumPy, towards what compiling would have taken."""
+    global _in_numpy
+    begin = time.thread_time()
+    try:
+        yield
+    finally:
+        _in_numpy += time.thread_time() - begin
+
+
+def compiling_pays() -> bool:
+    """Whether this process has spent as much in NumPy as compiling takes: never more than twice the cheaper way."""
+    return _in_numpy > COMPILING

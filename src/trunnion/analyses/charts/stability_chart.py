@@ -20,7 +20,7 @@ from trunnion.analyses.charts.building import Built, build, decide, family_for, 
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
-from trunnion.analyses.charts.plain_chart import Plain, build_plainly, suits
+from trunnion.analyses.charts.plain_chart import Plain, build_plainly
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -211,7 +211,7 @@ def _idle(family: ChartFamily, x: Axis, y: Axis, what: str, plain: bool = False)
         return family.evaluate(x, y, 1e-12, 1)[0]
 
     differ = family.differ
-    if plain and isinstance(family, LineFamily) and suits(family):
+    if plain and isinstance(family, LineFamily) and family.uncompiled:
         decisive, differ = Plain(family).decisive, Plain(family).differ
     return [
         f"{own.label} changes nothing in this {what}"

@@ -101,7 +101,9 @@ class Region:
         # Points with the same angles share the joints' laws where they stand together.
         order = np.argsort(v, kind="stable")
         back = np.argsort(order)
-        if self.family.set_aside:
+        if (stepped := self.family.in_numpy(x[order], y[order])) is not None:
+            found = stepped
+        elif self.family.set_aside:
             values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
             found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
         else:

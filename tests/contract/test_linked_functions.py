@@ -1,0 +1,82 @@
+"""Functions that only compiled code calls: part of their callers, whose values and cache they share."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.numerics.jit import njit
+from trunnion.numerics.linked import LinkedLibrary
+
+SCRIPT = """
+import numpy as np
+from compile_counter_text import Heard, event, njit
+
+@njit(inner=True)
+def half(x):
+    return x / 2
+
+@njit(inner=True)
+def quarter(x):
+    return half(half(x))
+
+@njit()
+def summed(x):
+    total = 0.0
+    for value in x:
+        total += quarter(value)
+    return total
+
+with event.install_listener("numba:compile", Heard()):
+    assert summed(np.array([1.0, 2.0, 5.0])) == 2.0
+print(Heard.compiled)
+"""
+
+
+@njit(cache=False, inner=True)
+def _shifted(x, by):  # type: ignore[no-untyped-def]
+    return x + by if x > 0 else x - by
+
+
+@njit(cache=False)
+def _twice_shifted(x, by):  # type: ignore[no-untyped-def]
+    return _shifted(_shifted(x, by), by)
+
+
+def test_a_caller_computes_with_what_has_no_machine_code_of_its_own():
+    assert (_twice_shifted(1.0, 0.25), _twice_shifted(-1.0, 0.25)) == (1.5, -1.5)
+    (made,) = _shifted.overloads.values()
+    assert isinstance(made.library, LinkedLibrary)
+    (caller,) = _twice_shifted.overloads.values()
+    assert not isinstance(caller.library, LinkedLibrary)
+    assert not any("_shifted" in f.name and "twice" not in f.name for f in caller.library.get_defined_functions())
+
+
+def test_called_from_python_it_is_an_error_and_no_crash():
+    _twice_shifted(1.0, 0.25)
+    with pytest.raises(KeyError, match="compiled code alone calls"):
+        _shifted(1.0, 0.25)
+
+
+def test_the_caller_alone_is_kept_and_stands_without_it(tmp_path):
+    """The second process compiles nothing."""
+    from compile_counter import COUNTER
+
+    (tmp_path / "compile_counter_text.py").write_text(COUNTER, encoding="utf-8")
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
+    paths = os.pathsep.join((str(Path(trunnion.__file__).parents[1]), str(tmp_path)))
+    environment = os.environ | {"TRUNNION_CACHE": str(tmp_path / "cache"), "PYTHONPATH": paths}
+    compiled = []
+    for _ in range(2):
+        call = [sys.executable, str(tmp_path / "script.py")]
+        run = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=300, check=False)
+        assert run.returncode == 0, run.stderr
+        compiled.append(int(run.stdout))
+    assert compiled[0] >= 3 and compiled[1] == 0
+    kept = [path.name for path in (tmp_path / "cache").rglob("*.nbc")]
+    assert len(kept) == 1 and "summed" in kept[0]
