@@ -86,7 +86,7 @@ class ChartFamily(Protocol):
         """Pixels at points (x, y) from steps that are halved until the multipliers stay; None where there is no way."""
 
     def in_numpy(self, x: Array, y: Array) -> Pixels | None:
-        """The same where kernels would have to be compiled and that takes longer; else None."""
+        """The same of damped lines whose kernels would have to be compiled, which takes longer; else None."""
 
     def over_whole_periods(self) -> ChartFamily:
         """The same family integrated over whole periods, whatever symmetry it may have."""
@@ -254,14 +254,19 @@ class LineFamily:
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
-        return None if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE else self._by_halving(x, y)
+        if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE:
+            return None
+        return self._by_halving(self.rates(x, y), len(x))
 
     def in_numpy(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
         if len(x) > MOST_IN_NUMPY or compiling_pays() or not self.uncompiled:
             return None
         with instead_of_compiling():
-            found = self._by_halving(x, y)
+            rates = self.rates(x, y)
+            if np.any(np.abs(rates.trace) < 1e-12 * self.size):
+                return None
+            found = self._by_halving(rates, len(x))
         return found if np.isfinite(found.radius).all() else None
 
     @property
@@ -274,10 +279,9 @@ class LineFamily:
         by_steps = (integrate_exponentials,) if 2 * self.size > LARGEST else ()
         return not at_hand(integrator, *by_steps, *RADII)
 
-    def _by_halving(self, x: Array, y: Array) -> Pixels:
-        rates = self.rates(x, y)
+    def _by_halving(self, rates: LineRates, points: int) -> Pixels:
         found = exponential_monodromies(
-            rates, len(x), 2 * self.size, self.period, tolerance=1e-10, least_steps=rates.steps
+            rates, points, 2 * self.size, self.period, tolerance=1e-10, least_steps=rates.steps
         )
         code = verdicts(found.radius, found.error, np.abs(rates.trace) < 1e-12 * self.size)
         return Pixels(found.radius, found.error, found.critical, code)

@@ -128,16 +128,15 @@ class Region:
 
         Without damping that of ``boundaries.parted``, else ρ − 1, where what is 1 to within its error counts as stable.
         """
+        if len(u) and (stepped := self.family.in_numpy(self.x(u), self.y(v))) is not None:
+            return _signed(stepped)
         over = np.full(len(u), np.nan)
         damped = np.ones(len(u), dtype=bool)
         if not self.family.set_aside and len(u):
             matrix, _, trace = self.family.matrices(self.x(u), self.y(v), SHARPEST, self.threads)
             damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
             over[~damped] = parted(np.asarray(np.linalg.eigvals(matrix[~damped]), dtype=complex))
-        found = self.judged(u[damped], v[damped])
-        own = found.radius - 1
-        stable = np.where(own == 0, -1e-300, own - 2 * found.error * (own > 0))
-        over[damped] = np.where(np.abs(own) > found.error, own, stable)
+        over[damped] = _signed(self.judged(u[damped], v[damped]))
         return over
 
     def above_one(self, u: Array, v: Array) -> Array:
@@ -192,6 +191,13 @@ class Region:
             # e₀ = 1 stands in the constant term alone.
             series, errors = _set_aside(series, errors, aside)
         return Piece(rows, u0, u1, series, errors, undamped)
+
+
+def _signed(found: Pixels) -> Array:
+    """ρ − 1, below zero where it is 1 to within its error."""
+    over = found.radius - 1
+    stable = np.where(over == 0, -1e-300, over - 2 * found.error * (over > 0))
+    return np.where(np.abs(over) > found.error, over, stable)
 
 
 def _set_aside(series: Array, errors: Array, aside: int) -> tuple[Array, Array]:
