@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 from playwright.sync_api import sync_playwright
-from served import Server, browser_path, start_server
+from served import browser_path, start_server
 from test_views import laborious
 
 from trunnion.app.address import pack
@@ -70,7 +70,7 @@ def first_page(file: str) -> float:
             taken = time.perf_counter() - begin
             browser.close()
     finally:
-        stop(server)
+        server.stop()
     return taken
 
 
@@ -102,16 +102,7 @@ def measure(name: str, file: str, repeats: int) -> None:
             report("a chart of minutes, Cancel pressed to the page saying so", cancels(page, max(3, repeats // 4)))
             browser.close()
     finally:
-        stop(server)
-
-
-def stop(server: Server) -> None:
-    """End the server and its workers, whatever ended the measurement: politely, and after a minute not."""
-    server.process.send_signal(signal.SIGINT)
-    try:
-        server.process.wait(60)
-    except subprocess.TimeoutExpired:
-        os.killpg(server.process.pid, signal.SIGKILL)
+        server.stop()
 
 
 def slide(page: Any, repeats: int) -> list[float]:
@@ -127,10 +118,12 @@ def slide(page: Any, repeats: int) -> list[float]:
 def charts(page: Any, repeats: int) -> list[tuple[float, float]]:
     """Seconds from a new stiffness to the coarse chart and to the full one."""
     path = page.get_by_label("Parameter to move", exact=True)
-    if path.input_value() != "Shaft 1.stiffness":
-        path.select_option("Shaft 1.stiffness")
-        page.get_by_label("Value [kN*m/rad]", exact=True).wait_for()
-    box = page.get_by_label("Value [kN*m/rad]", exact=True)
+    names = path.locator("option").all_inner_texts()
+    stiffness = next(name for name in names if name.endswith(".stiffness"))
+    if path.input_value() != stiffness:
+        path.select_option(stiffness)
+        page.get_by_label(re.compile(r"^Value \[.*N\*m/rad\]")).wait_for()
+    box = page.get_by_label(re.compile(r"^Value \[.*N\*m/rad\]"))
     now, times = float(box.input_value()), []
     for k in range(repeats):
         count = int(page.locator("[data-count]").get_attribute("data-count"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,8 +15,7 @@ def server() -> Iterator[Server]:
     pytest.importorskip("panel")
     running = start_server()
     yield running
-    running.process.send_signal(signal.SIGINT)
-    running.process.wait(60)
+    running.stop()  # an ERROR here would stand against whichever test is the last
 
 
 @pytest.fixture(scope="session")

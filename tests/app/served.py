@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -28,6 +29,15 @@ class Server:
 
     address: str
     process: subprocess.Popen[str]
+
+    def stop(self) -> None:
+        """End it and its workers: politely, and where a busy machine takes too long over that, not."""
+        self.process.send_signal(signal.SIGINT)
+        try:
+            self.process.wait(60)
+        except subprocess.TimeoutExpired:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait(60)
 
     @property
     def host(self) -> str:
@@ -64,6 +74,17 @@ class Look:
     def settled(self) -> None:
         """Wait until nothing is being computed."""
         self.page.wait_for_selector("[data-state=idle]", timeout=WAIT)
+
+    def settled_anew(self) -> None:
+        """Wait until the page has rested for a while: what was just pressed may not have begun yet."""
+        self.page.wait_for_timeout(300)
+        self.settled()
+        done = "e => e.dataset.done"
+        before = None
+        while (now := self.page.locator("[data-state=idle]").evaluate(done)) != before:
+            before = now
+            self.page.wait_for_timeout(300)
+            self.settled()
 
     def view(self, title: str) -> None:
         """Choose a view by its button."""

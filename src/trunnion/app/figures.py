@@ -13,12 +13,12 @@ BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 SKY, YELLOW, INK, FAINT = "#56b4e9", "#b58900", "#1a1a1a", "#6b6b6b"
 COLOURS = (BLUE, ORANGE, GREEN, PINK, SKY, YELLOW, INK)
 DASHES = ("solid", "dashed", "dotdash", "dotted")
-"""Colours repeat with another dash."""
+"""Of neighbouring lines they differ as their colours do."""
 
 
 def look(k: int) -> dict[str, Any]:
     """Colour and dash of the k-th line."""
-    return {"line_color": COLOURS[k % len(COLOURS)], "line_dash": DASHES[(k // len(COLOURS)) % len(DASHES)]}
+    return {"line_color": COLOURS[k % len(COLOURS)], "line_dash": DASHES[k % len(DASHES)]}
 
 
 def plot(x: str, y: str, *, height: int = 340, title: str = "", about: str = "", **more: Any) -> Any:

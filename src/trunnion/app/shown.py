@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Callable
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
@@ -63,8 +64,11 @@ def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[s
     if ending == "csv":
         if hasattr(result, "to_csv"):
             return _written(result.to_csv, "data.csv")
-        data = result.data[list(columns)] if columns else result.data
-        return data.to_dataframe().to_csv().encode()  # type: ignore[no-any-return]
+        from trunnion.results.tables import write_table
+
+        stream = StringIO()
+        write_table(stream, result.data[list(columns)] if columns else result.data)
+        return stream.getvalue().encode()
     if hasattr(result, "save"):
         return _written(result.save, "data.nc")
     from trunnion.results.files import dataset_bytes
@@ -85,8 +89,6 @@ def report(result: Any) -> bytes:
 
 
 def _picture(figure: Any, ending: str) -> bytes:
-    from io import BytesIO
-
     figure = getattr(figure, "figure", figure)
     stream = BytesIO()
     figure.savefig(stream, format=ending, dpi=150)
