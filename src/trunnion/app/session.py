@@ -47,6 +47,7 @@ class Session:
         self.kept: str | None = None
         self.said_from = 0.0
         self.task: asyncio.Task[None] | None = None
+        self.resting = False
         self.side_tasks: set[asyncio.Task[None]] = set()
         self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
         self.took: dict[tuple[str, str], float] = {}
@@ -173,7 +174,7 @@ class Session:
         sides = [NOW] if self.kept is None else [KEPT, NOW]
         self.page.show(self.view, [(side, self.view.of(side)) for side in sides])
         self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
-        under_way = self.task is not None and not self.task.done()
+        under_way = self.task is not None and not self.task.done() and not self.resting
         self.start(self._compute(sides, QUIET if under_way else 0.0))
 
     # -- computations ---------------------------------------------------------------------------------------------
@@ -230,6 +231,7 @@ class Session:
                 step, begin = steps[side][place], asyncio.get_running_loop().time()
                 job = step.job(lines[side])
                 try:
+                    await self._rest(step.rest)
                     answer = await self.pool.run(job, self, partial(self._progress, done, total))
                 except TrunnionError as error:
                     if not step.soft:
@@ -245,6 +247,15 @@ class Session:
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
         self.pool.warm(WARMING, self)
 
+    async def _rest(self, seconds: float) -> None:
+        """Let a further change come before a step that takes long is begun."""
+        if seconds:
+            self.resting = True
+            try:
+                await asyncio.sleep(seconds)
+            finally:
+                self.resting = False
+
     def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[Step]:
         """The steps of a side that are to be computed; what is known is shown at once, its remarks are added."""
         left, known = [], []
@@ -258,7 +269,10 @@ class Session:
         if known:
             self.locked(lambda: [view.of(side).show(*one) for one in known])
         names = {step.name for step in left}
-        return [s for s in left if not s.preview_of or (s.preview_of in names and self._is_slow(view, s.preview_of))]
+        slow = {s.preview_of for s in left if s.preview_of in names and self._is_slow(view, s.preview_of)}
+        quick = {s.preview_of for s in left if s.preview_of} - slow  # shown without a preview, and before all else
+        wanted = [s for s in left if not s.preview_of or s.preview_of in slow]
+        return sorted(wanted, key=lambda s: s.name not in quick)
 
     def _is_slow(self, view: View, name: str) -> bool:
         """Whether a step took long when it was last computed, or never was."""

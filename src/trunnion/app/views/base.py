@@ -37,7 +37,8 @@ class Step:
     files: endings of its data; picture: method that draws it ("" for none); drawing: its arguments; columns: variables
     that a CSV holds, for results of many axes; line: a changed line that the step is about; soft: a refusal
     leaves the other steps standing and is shown in its place; lasting: its answer is kept, and shown again at once
-    while the job is the same; preview_of: a step that shows the same better, and is waited for where it was quick.
+    while the job is the same; preview_of: a step that shows the same better, and is waited for where it was quick;
+    rest: seconds without a further change before it begins, so that a slider under way does not wait for its end.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Step:
     soft: bool = False
     lasting: bool = False
     preview_of: str = ""
+    rest: float = 0.0
 
     def job(self, toml: str) -> Job:
         """The computation for a line, or for the changed one that the step has of its own."""

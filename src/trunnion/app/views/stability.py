@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from bokeh.events import RangesUpdate, Tap
 from bokeh.models import BoxAnnotation, ColorBar, ColumnDataSource, CustomJSTickFormatter, HoverTool, LinearColorMapper
 
 from trunnion.app import figures
+from trunnion.app.axis import Axis
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
 from trunnion.app.point import Point
@@ -40,6 +41,8 @@ TURNS = 30
 """Of the motion after a disturbance."""
 DISTURBANCE = 1e-3
 """Its largest rotation at the start [rad], in the mode that grows fastest."""
+REST = 0.3
+"""Seconds that the line must stay before its regions are searched for."""
 MOST_NAMED = 6
 """Regions of instability that the page lists, those that grow fastest."""
 UNDISTURBED, DISTURBED = "undisturbed", "motion"
@@ -47,26 +50,6 @@ GROWTH = 0.05
 """Growth per turn at the ends of the colours."""
 _STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
 _UNSTABLE = ("#f6c49a", "#e8935a", "#d55e00", "#9c4300", "#5c2700")
-
-
-@dataclass(frozen=True)
-class Axis:
-    """A parameter along an axis: its ends in SI, and the unit it is shown in with its size in SI."""
-
-    path: str
-    low: float
-    high: float
-    unit: str
-    size: float
-
-    def request(self, points: int) -> tuple[str, float, float, int]:
-        """As ``stability_chart`` takes it."""
-        return (self.path, self.low, self.high, points)
-
-    @property
-    def label(self) -> str:
-        """With its unit."""
-        return f"{'input speed' if self.path == SPEED else self.path} [{self.unit}]"
 
 
 class StabilityView(View):
@@ -191,7 +174,7 @@ class StabilityView(View):
         point, *motions = self._at(line, x, y)
         ranges = (axis.request(0)[:3] for axis in (x, y))
         regions = Step("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", drawing=unit, files=("nc",),
-                       title="regions of instability", soft=True, lasting=True)  # fmt: skip
+                       title="regions of instability", soft=True, lasting=True, rest=REST)  # fmt: skip
         return [*steps, point, full, *motions, *([names] if x.path == SPEED else []), regions]
 
     def _at(self, line: Driveline, x: Axis, y: Axis) -> tuple[Step, ...]:
