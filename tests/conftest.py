@@ -15,6 +15,7 @@ import typer.testing
 from typer.testing import CliRunner, Result
 
 import trunnion as tn
+from trunnion.analyses.charts import prices
 from trunnion.cli import app
 from trunnion.studies.result import Reproduction
 
@@ -88,6 +89,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("study")
     # Two workers take whole files in this order; a long one taken last would be waited for by the other worker.
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def compiling_pays():
+    """Charts take the kernels, compiled already or not: which way is tested does not depend on what ran before."""
+    patch = pytest.MonkeyPatch()
+    patch.setattr(prices, "COMPILING", -1.0)
+    yield
+    patch.undo()
 
 
 @pytest.fixture(scope="session")

@@ -13,6 +13,7 @@ from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.analyses.charts import chart_families, prices
+from trunnion.analyses.charts import stability_chart as stability_chart_module
 from trunnion.analyses.charts.building import build
 from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.charts.plain_chart import build_plainly
@@ -111,9 +112,32 @@ def test_what_numpy_has_cost_is_counted_until_compiling_pays(monkeypatch):
     x, y = np.array([1.0]), np.array([0.3])
     monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
     monkeypatch.setattr(prices, "_in_numpy", 0.0)
+    monkeypatch.setattr(prices, "COMPILING", 10.0)
     assert chart.in_numpy(x, y) is not None and prices._in_numpy > 0
     monkeypatch.setattr(prices, "COMPILING", 0.0)
     assert chart.in_numpy(x, y) is None
+
+
+def test_the_first_charts_of_an_installation_take_numpy_and_later_ones_the_kernels(monkeypatch):
+    axes = ("speed", 0.8, 2.0, 30), (ANGLES, 0.0, 0.3, 20)
+    built = []
+    monkeypatch.setattr(
+        stability_chart_module, "build_plainly", lambda *of: built.append(build_plainly(*of)) or built[-1]
+    )
+    by_kernels = stability_chart(catalogue("two-shaft-cardan"), *axes)
+    assert not built  # see conftest: compiling pays in tests
+    monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
+    monkeypatch.setattr(prices, "_in_numpy", 0.0)
+    monkeypatch.setattr(prices, "COMPILING", 10.0)
+    first = stability_chart(catalogue("two-shaft-cardan"), *axes)
+    assert built[0] is not None and prices._in_numpy > 0
+    assert np.all(
+        np.abs(first.spectral_radius - by_kernels.spectral_radius) <= first.error_estimate + by_kernels.error_estimate
+    )
+    assert np.array_equal(first.verdict, by_kernels.verdict)
+    monkeypatch.setattr(prices, "_in_numpy", 11.0)
+    stability_chart(catalogue("two-shaft-cardan"), *axes)
+    assert len(built) == 1
 
 
 def test_what_is_compiled_already_is_used(monkeypatch):

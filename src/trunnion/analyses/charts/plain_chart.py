@@ -41,7 +41,7 @@ from trunnion.results.verdict import Verdict, verdicts
 Array = NDArray[np.float64]
 MOST_WORK = 60_000
 """Exponential steps of twelve states: about two seconds."""
-MOST_PIXELS, MOST_ALONE = 40_000, 2_000
+MOST_PIXELS, MOST_ALONE = 100_000, 2_000
 """Of a picture; of one that is integrated pixel by pixel."""
 FEW = 64
 """Pixels that are judged one by one."""

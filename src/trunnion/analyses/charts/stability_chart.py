@@ -3,7 +3,7 @@
 The chart samples analytic quantities at the nodes of adaptive Chebyshev patches, interpolates them to the
 pixels and finds multipliers there; small regions are evaluated pixel by pixel. At the end it checks itself
 at random pixels by direct integration at a much smaller tolerance, and is built in another way where that
-check fails (see ``building``).
+check fails (see ``building``). Where its kernels would have to be compiled and NumPy takes less time, NumPy builds it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
 from trunnion.analyses.charts.plain_chart import Plain, build_plainly
+from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
@@ -77,7 +78,7 @@ def stability_chart(
     task = (
         own_task(line, x, y)
         if isinstance(line, PeriodicLinearFamily)
-        else line_task(line, x, y, speed, statically_twisted)
+        else line_task(line, x, y, speed, statically_twisted, plain=not compiling_pays())
     )
     if isinstance(line, PeriodicLinearFamily) and speed is not None:
         raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
@@ -85,7 +86,12 @@ def stability_chart(
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
     workers = threads or os.cpu_count() or 1
     tell = progress or (lambda share: None)
-    built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
+    built = None
+    if isinstance(task.family, LineFamily) and not compiling_pays():
+        with instead_of_compiling():
+            built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
+    if built is None:
+        built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
     tell(1.0)
     return _chart(task, built, tolerance, statically_twisted, workers)
 
