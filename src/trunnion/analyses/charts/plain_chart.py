@@ -39,8 +39,8 @@ from trunnion.numerics.patches.patches import Box, PatchedFunction
 from trunnion.results.verdict import Verdict, verdicts
 
 Array = NDArray[np.float64]
-MOST_WORK = 60_000
-"""Exponential steps of twelve states: about two seconds."""
+MOST_WORK, MOST_FIRST = 60_000, 240_000
+"""Exponential steps of twelve states: about two seconds for a report, and eight for a chart that would be compiled."""
 MOST_PIXELS, MOST_ALONE = 100_000, 2_000
 """Of a picture; of one that is integrated pixel by pixel."""
 FEW = 64
@@ -125,15 +125,20 @@ class Plain:
 
 
 def build_plainly(
-    family: LineFamily, x: Array, y: Array, tolerance: float, tell: Callable[[float], None]
+    family: LineFamily,
+    x: Array,
+    y: Array,
+    tolerance: float,
+    tell: Callable[[float], None],
+    most_work: int = MOST_WORK,
 ) -> Built | None:
-    """The chart, or None where it takes long, does not hold its own check, or leaves too much undecided."""
+    """The chart, or None where it takes more than ``most_work`` steps or so, does not hold its own check, or leaves too much undecided."""
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box, size = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max())), len(u) * len(v)
     if not family.uncompiled or size > MOST_PIXELS or box.u0 == box.u1 or box.v0 == box.v1:
         return None
     plain, way = Plain(family), LADDER[0]
-    affordable = MOST_WORK * step_price(12) / SHARE + size * pixel_price(6)
+    affordable = most_work * step_price(12) / SHARE + size * pixel_price(6)
     function = leading_patches(plain, box, size, tolerance / 4, 1, affordable, tell, even_all=True)
     if function is not None:
         pixels = _pixels(function, u, v, family.size)

@@ -20,7 +20,7 @@ from trunnion.analyses.charts.building import Built, build, decide, family_for, 
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
-from trunnion.analyses.charts.plain_chart import Plain, build_plainly
+from trunnion.analyses.charts.plain_chart import MOST_FIRST, Plain, build_plainly
 from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling
 from trunnion.analyses.features import left_out
 from trunnion.driveline.driveline import Driveline
@@ -36,6 +36,8 @@ from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
+IN_NUMPY, SHARPEST = 0.01, 1e-12
+"""Share of the tolerance that is asked for in NumPy: the kernels, too, know their samples that much better."""
 
 
 def stability_chart(
@@ -89,7 +91,8 @@ def stability_chart(
     built = None
     if isinstance(task.family, LineFamily) and not compiling_pays():
         with instead_of_compiling():
-            built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
+            asked = max(tolerance * IN_NUMPY, SHARPEST)
+            built = build_plainly(task.family, task.x.values, task.y.values, asked, tell, MOST_FIRST)
     if built is None:
         built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
     tell(1.0)
