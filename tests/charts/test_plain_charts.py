@@ -135,7 +135,7 @@ def test_the_first_charts_of_an_installation_take_numpy_and_later_ones_the_kerne
         np.abs(first.spectral_radius - by_kernels.spectral_radius) <= first.error_estimate + by_kernels.error_estimate
     )
     assert np.array_equal(first.verdict, by_kernels.verdict)
-    monkeypatch.setattr(prices, "_in_numpy", 11.0)
+    prices.compile_at_once()
     stability_chart(catalogue("two-shaft-cardan"), *axes)
     assert len(built) == 1
 

@@ -28,6 +28,9 @@ def warm_up(
 ) -> None:
     """Compile ahead of time, so that no first chart or report waits for it; what is there already is kept."""
     if part is not None:
+        from trunnion.analyses.charts.prices import compile_at_once
+
+        compile_at_once()
         PARTS[part]()
         return
     folder = _folder()

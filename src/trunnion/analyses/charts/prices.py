@@ -60,3 +60,9 @@ def instead_of_compiling() -> Iterator[None]:
 def compiling_pays() -> bool:
     """Whether this process has spent as much in NumPy as compiling takes: never more than twice the cheaper way."""
     return _in_numpy > COMPILING
+
+
+def compile_at_once() -> None:
+    """From now on kernels are compiled, as if enough had been spent."""
+    global _in_numpy
+    _in_numpy = float("inf")
