@@ -132,7 +132,7 @@ def build_plainly(
     tell: Callable[[float], None],
     most_work: int = MOST_WORK,
 ) -> Built | None:
-    """The chart, or None where it takes more than some ``most_work`` steps, fails its check, or leaves much undecided."""
+    """The chart, or None where it takes more than ``most_work`` steps, fails its check, or leaves much undecided."""
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box, size = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max())), len(u) * len(v)
     if not family.uncompiled or size > MOST_PIXELS or box.u0 == box.u1 or box.v0 == box.v1:
