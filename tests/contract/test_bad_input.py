@@ -6,6 +6,7 @@ import re
 import pytest
 
 import trunnion as tn
+from trunnion import assess
 from trunnion.driveline import (
     ConstantSpeed,
     Coupling,
@@ -941,6 +942,98 @@ def test_file(content, start, also, tmp_path, monkeypatch):
     check(lambda: load("bad.toml"), start, also)
     assert path.read_bytes() == before
     assert os.listdir(tmp_path) == ["bad.toml"]
+
+
+MILL = """
+[[element]]
+type = "Disk"
+name = "motor"
+inertia = "1 kg*m^2"
+drive_share = 1
+{motor}
+[[element]]
+type = "Shaft"
+name = "spindle"
+stiffness = "1 kN*m/rad"
+damping = "2 N*m*s/rad"
+
+[[element]]
+type = "Disk"
+name = "roll"
+inertia = "1 kg*m^2"
+"""
+HELD = """
+[[element]]
+type = "ConstantSpeed"
+
+[[element]]
+type = "Disk"
+name = "flywheel"
+inertia = "1 kg*m^2"
+excitation = [{ order = 2, amplitude = "40 N*m" }]
+
+[[element]]
+type = "HookeJoint"
+angle = "5 deg"
+""" + MILL.split("drive_share = 1\n{motor}")[1]
+TORQUES = 'excitation = [{ order = 2, speeds = ["600 rpm", "900 rpm"], amplitudes = ["3 N*m", "4 N*m"] }]'
+RANGE = """
+[operation]
+speed = "800 rpm"
+speed_range = ["600 rpm", "1500 rpm"]
+"""
+
+# What an engineer leaves out or mistakes of excitations and limits: the file, and what `assess` answers. What is wrong
+# is refused where the file is read; what makes an answer empty is said in it.
+ENGINEER = [
+    (
+        MILL.format(motor="excitation = [{ order = 2 }]"),
+        "refused",
+        "motor (element 1).excitation 1 amplitude: is missing",
+    ),
+    (
+        '[[limit]]\nof = "spindle"\nmax_torque = "400"\n' + MILL.format(motor=""),
+        "refused",
+        "has no unit; write a torque",
+    ),
+    (
+        '[[limit]]\nof = "roll"\nmax_torque = "400 N*m"\n' + MILL.format(motor=""),
+        "refused",
+        "does not belong to a Disk; it limits Shaft",
+    ),
+    (
+        '[[limit]]\nof = "spindle"\nmax_acceleration = "400 rad/s^2"\n' + MILL.format(motor=""),
+        "refused",
+        "does not belong to a Shaft; it limits Disk",
+    ),
+    (
+        '[[limit]]\nof = "spindle"\nmax_torque = "400 N*m"\n' + MILL.format(motor=TORQUES),
+        "not judged",
+        "is a table from 600 rpm to 900 rpm, which does not cover 1500 rpm of its disk; extend the table",
+    ),
+    (MILL.format(motor=""), "said", "Nothing excites this line."),
+    (HELD.replace("excitation", "# excitation"), "said", "Nothing excites this line but its joints."),
+    (
+        HELD,
+        "said",
+        "flywheel.excitation: does nothing, a ConstantSpeed holds its rotation; leave out the ConstantSpeed",
+    ),
+]
+
+
+@pytest.mark.parametrize(("content", "how", "words"), ENGINEER, ids=[row[2] for row in ENGINEER])
+@pytest.mark.filterwarnings("ignore::trunnion.InputRemark")
+def test_what_an_engineer_leaves_out(content, how, words):
+    text = HEAD + RANGE + content
+    if how == "refused":
+        check(lambda: loads(text), "", words)
+        return
+    judged = assess(loads(text))
+    if how == "said":
+        assert any(words in finding.sentence for finding in judged.findings), judged.findings
+        return
+    assert str(judged.verdict) == "not judged"
+    assert words in judged.check("max torque of spindle").because
 
 
 def test_text_without_a_file_has_no_prefix():

@@ -64,7 +64,8 @@ def _shape(harmonic: Excitation, name: str, number: int, where: Array) -> Comple
     slack = BEYOND * np.abs(points).max()
     outside = ~((where >= points[0] - slack) & (where <= points[-1] + slack))
     if np.any(outside):
-        beyond = where[outside][0]
+        apart = np.maximum(points[0] - where, where - points[-1])
+        beyond = where[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
         asked = f"{beyond * 30 / np.pi:.5g} rpm of its disk" if harmonic.speeds else f"{beyond:.5g} N*m"
         raise InputError(
             f"is a table from {harmonic.covers}, which does not cover {asked}",
