@@ -12,7 +12,7 @@ from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.equations.coefficients import assemble
 from trunnion.reporting.answer import answer
 from trunnion.reporting.contents import gather
-from trunnion.reporting.overview import at_speed
+from trunnion.reporting.overview import at_speed, charted
 from trunnion.reporting.overview_findings import remark_findings, response_findings
 from trunnion.results.finding import Gravity
 
@@ -85,3 +85,38 @@ def test_the_report_of_a_bent_line_that_starts_free_says_what_would_help() -> No
     assert contents.helped is not None and contents.helped.remedies
     assert any(s.startswith("max torque of clutch: ") for s in contents.helped.sentences)
     assert not any("What would help" in words for words in contents.left_out)
+
+
+def coupled(*ends: tn.Disk | tn.ConstantSpeed) -> tn.Driveline:
+    """A coupling that damps all frequencies alike, before a bent joint: no equations in time."""
+    rubber = tn.Coupling(name="coupling", stiffness="8 kN*m/rad", relative_damping=0.8)
+    return tn.Driveline(
+        [
+            *ends,
+            rubber,
+            tn.Disk(name="flange", inertia=0.4),
+            tn.HookeJoint(name="joint", angle="8 deg"),
+            tn.Shaft(name="tube", stiffness="20 kN*m/rad", damping=5.0),
+            tn.Disk(name="pump", inertia=0.6, load_torque=50.0),
+        ],
+        limits=[tn.Limit(of="tube", max_torque="2 kN*m")],
+        operation=tn.Operation(speed=tn.rpm(900), speed_range=[tn.rpm(600), tn.rpm(1500)], speed_unit="rpm"),
+    )
+
+
+@pytest.mark.parametrize("ends", [(tn.ConstantSpeed(),), (tn.Disk(inertia=1.0, drive_share=1.0),)])
+def test_lines_that_damp_all_frequencies_alike_have_a_first_page(ends: tuple[tn.Disk | tn.ConstantSpeed, ...]) -> None:
+    """Torques are judged, stability is not, and what has no equations in time is left out."""
+    seen = at_speed(answer(coupled(*ends)))
+    assert seen.assessment.check("max torque of tube").status.value in ("satisfied", "exceeded")
+    assert seen.stability is None and not seen.chartable and charted(seen).chart is None
+    (said,) = [f.sentence for f in seen.findings if f.sentence.startswith("Parametric stability is not judged")]
+    assert "coupling.relative_damping = 0.8" in said and "loss_factor_frequency" in said
+
+
+def test_modes_that_need_the_same_check_are_said_together() -> None:
+    """One caution for all modes that limits would judge, however many they are."""
+    line = tn.load(LINES / "4x4-free.toml")
+    cautions = [f.sentence for f in answer(line).findings if f.sentence.startswith("Separation of mode")]
+    assert len(cautions) == 1 and cautions[0].startswith("Separation of modes 6, 7 and 8 is not judged: order 2 meets")
+    assert cautions[0].count("state limits for") == 1

@@ -12,7 +12,8 @@ import numpy as np
 from trunnion.analyses.assessment.assess import by_case, checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.assessment.result import Assessment
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
+from trunnion.analyses.assessment.separation import NEEDS as MODES_NEED
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, lossy
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong
 from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies, natural_frequencies
@@ -92,9 +93,9 @@ def answer(line: Driveline, *, speed: float | None = None, unit: str | None = No
         *(along_findings(assembly, along, unit) if along else ()),
         *line_findings(line, speed),
         *resonance_findings(here, (low, high), speed, unit),
-        *response_findings(assembly, every, (low, high), unit),
+        *(() if lossy(assembly) else response_findings(assembly, every, (low, high), unit)),
         *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
-        *(free_findings(assembly, along, unit) if joints and assembly.topology.free else ()),
+        *(free_findings(assembly, along, unit) if joints and assembly.topology.free and not lossy(assembly) else ()),
         *remark_findings(line),
     ]
     return Answer(
@@ -139,11 +140,30 @@ def check_findings(assessment: Assessment) -> list[Finding]:
         elif check.status is Status.NOT_JUDGED:
             gravity = Gravity.CAUTION if np.isfinite(check.margin) else Gravity.NOTE
             unjudged.setdefault((gravity, check.because.removeprefix(NO_RESPONSE)), []).append(check.name)
+    needs: dict[str, list[tuple[Gravity, str, list[str]]]] = {}
     for (gravity, because), names in unjudged.items():
+        said, _, need = because.partition(MODES_NEED)
+        if need:
+            needs.setdefault(need, []).append((gravity, said, names))
+            continue
         found.append(
             Finding(gravity, f"{_capital(few(names))} {'is' if len(names) == 1 else 'are'} not judged: {because}.")
         )
-    return found
+    return [*found, *(_modes(need, group) for need, group in needs.items())]
+
+
+def _modes(need: str, group: list[tuple[Gravity, str, list[str]]]) -> Finding:
+    """Modes that need the same checks, in one sentence."""
+    names = [name for _, _, names in group for name in names]
+    numbers = [name.removeprefix("separation of mode ") for name in names]
+    listed = f"separation of {'mode' if len(names) == 1 else 'modes'} {_and(numbers)}"
+    said = "; ".join(said for _, said, _ in group)
+    that = "that needs" if len(names) == 1 else "these need"
+    return Finding(group[0][0], f"{_capital(listed)} is not judged: {said}; {that} {need}.")
+
+
+def _and(words: list[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else words[0]
 
 
 def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:

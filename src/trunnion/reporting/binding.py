@@ -18,6 +18,8 @@ OF_TORQUE = {
     "max torque of": "max_torque",
 }
 """How checks are called whose value is a torque, and the limit that they compare with."""
+OF_SPRING = (*OF_TORQUE, "rating:", "gear hammer in", "IACS UR M68 of", "max stress of", "max twist of")
+"""How checks are called that the torque of their element decides."""
 
 
 def binding_picture(seen: Overview) -> dict[str, Picture]:
@@ -59,8 +61,8 @@ def _case(seen: Overview, check: Check | None) -> Case:
     return next((case for case in cases if check is not None and case.name == check.load_case), cases[0])
 
 
-def _limited(check: Check) -> str:
-    return next((key for words, key in OF_TORQUE.items() if check.name.startswith(words)), "")
+def _limited(check: Check) -> bool:
+    return check.name.startswith(OF_SPRING)
 
 
 def _spring(seen: Overview, check: Check | None, response: OrderResponse) -> tuple[str | None, dict[str, float]]:
@@ -68,8 +70,8 @@ def _spring(seen: Overview, check: Check | None, response: OrderResponse) -> tup
     case = _case(seen, check)
     stated = [one for one in seen.line.limits_by_element if one.key in OF_TORQUE.values()]
     places = {one.element: spring_of(case.assembly, one.element) for one in stated}
-    if check is not None and check.element in places:
-        column = places[check.element]
+    if check is not None and _limited(check):
+        column = spring_of(case.assembly, check.element)
     else:
         column = int(np.argmax(np.nan_to_num(response.vibratory_torque).max(axis=0)))
     mine = {one.key.replace("_", " "): one.value for one in stated if places[one.element] == column}

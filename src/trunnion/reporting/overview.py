@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.analyses.assessment.result import Assessment
+from trunnion.analyses.assessment.subject import lossy
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.charts.stability_chart import chart_of_report
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
@@ -43,8 +44,9 @@ class Overview:
 
     answer: the verdict and what belongs to it; angle_range [rad]: of the description, or guessed from the line; turn:
     the joints over a turn at the operating speed (1 rad/s without one), None where the output is prescribed; stability:
-    at the operating speed, None without one; chart: over the range and one angle common to all joints, None for a line
-    without Hooke's joints, for one that starts free, and until it is computed.
+    at the operating speed, None without one and where all frequencies are damped alike; chart: over the range and one
+    angle of all joints, None for a line without Hooke's joints, for one that starts free or damps all frequencies
+    alike, and until it is computed.
     """
 
     answer: Answer
@@ -99,7 +101,7 @@ class Overview:
         """Whether a chart belongs to this line."""
         assembly = self.answer.assembly
         slow = self.speed_range[1] <= lowest_speed(assembly)
-        return bool(hooke_joints(self.line)) and not slow and not assembly.topology.free
+        return bool(hooke_joints(self.line)) and not (slow or assembly.topology.free or lossy(assembly))
 
 
 def overview(
@@ -130,7 +132,8 @@ def overview(
 
 def at_speed(given: Answer) -> Overview:
     """An answer with what belongs to the operating speed, without the chart."""
-    here = None if given.speed is None else stability(given.assembly, given.speed)
+    judged = given.speed is not None and not lossy(given.assembly)  # which the findings say
+    here = stability(given.assembly, given.speed) if judged and given.speed is not None else None
     said = here.findings_in(given.unit) if here else ()
     findings = by_gravity([*_new(said, given.findings), *given.findings])
     return Overview(given, angle_range(given.line), _turn(given.line, given.speed), here, None, findings)

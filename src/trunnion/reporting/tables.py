@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -88,6 +89,11 @@ def _listed(values: tuple[object, ...], kind: Kind | None) -> str:
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
     return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))
+
+
+def with_signs(sentence: str) -> str:
+    """A sentence with the signs of units, "N·m" and "kg·m²"; stars in names stay."""
+    return re.sub(r"(?<=[ms])\^2\b", "²", re.sub(r"(?<=[Ngtm])\*(?=[ms](?:\b|\^))", "·", sentence))
 
 
 def _signs(text: str) -> str:

@@ -25,6 +25,10 @@ WORTH = 0.01
 RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical")
 
 
+NEEDS = "; that needs "
+"""Between where a mode meets an order and what would judge it."""
+
+
 def separation(subject: Subject, case: Case) -> Iterator[Check]:
     """One check a mode that an order meets, one for all the others together."""
     if case.response is None:
@@ -52,7 +56,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         without = few(unlimited(subject, case))
         status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
         needs = (
-            f"; that needs a check of torque or stress: state limits for {without}"
+            f"{NEEDS}a check of torque or stress: state limits for {without}"
             if without
             else "; the limits of torque and stress judge it"
         )
