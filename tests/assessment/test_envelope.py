@@ -74,6 +74,24 @@ def test_the_stable_limit_of_every_place() -> None:
     assert found.limit.shape == (len(found.places),) and found.parameter_unit == "rad"
     direct = tn.stable_limit(line([]), "joint.angle", np.linspace(55.0, 60.0, 60), high=1.2).limit
     assert found.limit[0] == pytest.approx(np.nanmin(direct), rel=1e-9)
+    assert f"stable up to {np.degrees(found.limit.min()):.4g}" in str(found) and "°, least" in str(found)
+
+
+def test_a_limit_that_is_unknown_at_one_speed_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is no smaller value than the others, which alone would be printed as the limit."""
+    from dataclasses import replace
+
+    from trunnion.analyses.assessment import envelope as module
+
+    def untold(*args, **options):  # type: ignore[no-untyped-def]
+        found = tn.stable_limit(*args, **options)
+        found.limit[3] = np.nan
+        return replace(found)
+
+    monkeypatch.setattr(module, "stable_limit", untold)
+    found = tn.envelope(line([]), (55.0, 60.0), points=2, parameter="joint.angle", high=1.2)
+    assert np.isnan(found.limit).all()
+    assert "is not known as stated" in str(found) and "stable up to" not in str(found)
 
 
 def test_without_anything_to_go_over_it_is_assess() -> None:

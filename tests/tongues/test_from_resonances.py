@@ -8,6 +8,7 @@ from long_lines import Small, long_line
 
 import trunnion as tn
 from trunnion.analyses.tongues.from_resonances import Followed, followed
+from trunnion.analyses.tongues.naming import eigenvalues
 from trunnion.analyses.tongues.region import patched, unpatched
 from trunnion.analyses.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
@@ -140,3 +141,15 @@ def test_families_of_ones_own_have_no_resonances_to_follow() -> None:
     family = tn.PeriodicLinearFamily(np.pi, coupled, 4, {"a": 1.0, "q": 0.2})
     own = tn.tongues(family, ("a", 0.8, 1.2), ("q", 0.1, 0.2), rows=3)
     assert "a family of your own has no straight line" in own.search
+
+
+def test_matrices_that_cannot_be_computed_stop_nothing() -> None:
+    """As of very heavy damping: the modes of such a point are lost, those of its neighbours are not."""
+    good = np.diag([2.0, 0.5])
+    assert eigenvalues(np.stack([good, np.full((2, 2), np.nan)])) == pytest.approx(np.array([[2.0, 0.5], [1.0, 1.0]]))
+
+
+def test_damping_up_to_where_nothing_can_be_integrated() -> None:
+    line = bent(long_line(0, 4, 1e-5), 0.5)
+    damping = tn.minimum_damping(line, speeds=(200.0, 220.0), maximum=2000.0, rows=3)
+    assert damping.windows[-1][1] == 2000.0

@@ -23,6 +23,7 @@ from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class Envelope(Result):
 
     places: points of schedules, the line as stated first; checks: the worst of each, the binding one first, load case
     within; where: the place of each; margin (places, checks); limit (places,): largest stable value of ``parameter``,
-    NaN where none was asked for; verdict, low, high, unit: as of ``Assessment``.
+    NaN where none was asked for or it is unknown at one of the speeds; verdict, low, high, unit: as of ``Assessment``.
     """
 
     verdict: Status
@@ -109,7 +110,8 @@ class Envelope(Result):
             rows.append(f"  {check.status}: {check.name}{where}: {check.because}")
         if self.parameter and np.isfinite(self.limit).any():
             k = int(np.nanargmin(self.limit))
-            rows.append(f"  stable up to {self.parameter} = {self.limit[k]:.6g}, least {self.places[k].label}")
+            shown = quantity_axis(self.parameter, self.parameter_unit, self.unit)
+            rows.append(f"  stable up to {shown.value(self.limit[k])}, least {self.places[k].label}")
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 
 
@@ -191,7 +193,7 @@ def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[
     speeds = np.unique(np.linspace(*span, LIMIT_SPEEDS))
     speeds = speeds[speeds > 0]
     found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1]).limit for case in cases]
-    return float(np.nanmin(np.concatenate(found)))
+    return float(np.min(np.concatenate(found)))  # unknown at one of them is unknown
 
 
 def _together(
@@ -216,8 +218,14 @@ def _together(
         if not place.schedule or finding not in judged[0].findings
     ]
     if len(places) > 1:
-        said = f"schedules are judged at {len(places) - 1} points; between them nothing is looked at"
+        count = f"{len(places) - 1} points" if len(places) > 2 else "one point"
+        said = f"schedules are judged at {count}; between them nothing is looked at"
         findings.append(Finding(Gravity.NOTE, said))
+    unknown = [place.label for place, value in zip(places, limits, strict=True) if parameter and np.isnan(value)]
+    if unknown:
+        said = f"Up to which {parameter} the line is stable is not known {', '.join(unknown)}"
+        said += ": it could not be told at some speed"
+        findings.append(Finding(Gravity.CAUTION, said))
     operation = places[0].line.operation
     if len(places) == 1 and not (operation and operation.load_cases):
         said = "the description has no load cases and no schedules: judged as stated alone"

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.charts.stability_chart import Task
 from trunnion.analyses.linear.resonance_speeds import sources
-from trunnion.analyses.tongues.naming import nearest_phases, partly_bent, straight_frequencies
+from trunnion.analyses.tongues.naming import eigenvalues, nearest_phases, partly_bent, straight_frequencies
 from trunnion.analyses.tongues.region import Region
 from trunnion.analyses.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
 from trunnion.equations.coefficients import Assembly
@@ -153,7 +153,7 @@ def _of(region: Region, v: float, tolerance: float) -> Multipliers:
     def at(speed: Array) -> Complex:
         y = np.full(len(speed), float(region.y(np.array(v))))
         matrix, _, _ = region.family.matrices(speed, y, tolerance, region.threads)
-        return np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+        return eigenvalues(matrix)
 
     return at
 

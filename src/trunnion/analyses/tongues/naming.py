@@ -68,7 +68,15 @@ def partly_bent(
     window = Window(0.0, 2 * np.pi * float(require_period(assembly.line, topo)), False)
     lanes = chain_lanes(topo, coefficients, by_speed)
     matrix, _, _ = chain_monodromy(chain_program(topo, coefficients, by_speed), lanes, window, TOLERANCE, threads)
-    return np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+    return eigenvalues(matrix)
+
+
+def eigenvalues(matrix: Array) -> Complex:
+    """Eigenvalues (points, m) of matrices (points, m, m); all 1, where no mode stays, of those that failed."""
+    failed = np.asarray(~np.isfinite(matrix).all(axis=(1, 2)))
+    return np.asarray(
+        np.linalg.eigvals(np.where(failed[:, None, None], np.eye(matrix.shape[1]), matrix)), dtype=complex
+    )
 
 
 def straight_frequencies(task: Task, assembly: Assembly, x: Array, y: Array) -> tuple[Array, Array]:

@@ -98,19 +98,24 @@ class Region:
         if not len(x):
             none = np.zeros(0)
             return Pixels(none, none, none.astype(complex), none.astype(np.int8))
-        # Points with the same angles share the joints' laws where they stand together.
-        order = np.argsort(v, kind="stable")
-        back = np.argsort(order)
-        if (stepped := self.family.in_numpy(x[order], y[order])) is not None:
-            found = stepped
-        elif self.family.set_aside:
-            values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
-            found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
-        else:
-            matrix, error, trace = self.family.matrices(x[order], y[order], SHARPEST, self.threads)
-            found = judge_matrices(matrix, error, trace)
-            self._settle(found, self._undamped(trace), x[order], y[order])
+        if (stepped := self.family.in_numpy(x, y)) is not None:
+            return stepped
+        if not self.family.set_aside:
+            return self._judged(*self._matrices(x, y), x, y)
+        order, back = _by_rows(v)
+        values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
+        found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
         return Pixels(found.radius[back], found.error[back], found.critical[back], found.verdict[back])
+
+    def _matrices(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
+        order, back = _by_rows(y)
+        matrix, error, trace = self.family.matrices(x[order], y[order], SHARPEST, self.threads)
+        return matrix[back], error[back], trace[back]
+
+    def _judged(self, matrix: Array, error: Array, trace: Array, x: Array, y: Array) -> Pixels:
+        found = judge_matrices(matrix, error, trace)
+        self._settle(found, self._undamped(trace), x, y)
+        return found
 
     def _undamped(self, trace: Array) -> NDArray[np.bool_]:
         """Where nothing damps, by ∫ tr(M⁻¹C) dτ (points,)."""
@@ -128,16 +133,21 @@ class Region:
 
         Without damping that of ``boundaries.parted``, else ρ − 1, where what is 1 to within its error counts as stable.
         """
-        if len(u) and (stepped := self.family.in_numpy(self.x(u), self.y(v))) is not None:
-            return _signed(stepped)
-        over = np.full(len(u), np.nan)
-        damped = np.ones(len(u), dtype=bool)
-        if not self.family.set_aside and len(u):
-            matrix, _, trace = self.family.matrices(self.x(u), self.y(v), SHARPEST, self.threads)
-            damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
-            over[~damped] = parted(np.asarray(np.linalg.eigvals(matrix[~damped]), dtype=complex))
-        over[damped] = _signed(self.judged(u[damped], v[damped]))
-        return over
+        if not len(u):
+            return np.zeros(0)
+        x, y = self.x(u), self.y(v)
+        if (stepped := self.family.in_numpy(x, y)) is not None:
+            return _over(stepped)
+        if self.family.set_aside:
+            return _over(self.judged(u, v))
+        matrix, error, trace = self._matrices(x, y)
+        damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
+        across = np.empty(len(u))
+        across[~damped] = parted(np.asarray(np.linalg.eigvals(matrix[~damped]), dtype=complex))
+        if damped.any():
+            own = (part[damped] for part in (matrix, error, trace, x, y))
+            across[damped] = _over(self._judged(*own))
+        return across
 
     def above_one(self, u: Array, v: Array) -> Array:
         """Spectral radius less 1 (points,)."""
@@ -193,11 +203,18 @@ class Region:
         return Piece(rows, u0, u1, series, errors, undamped)
 
 
-def _signed(found: Pixels) -> Array:
+def _by_rows(v: Array) -> tuple[Places, Places]:
+    """An order of points, and the way back: those with the same angles share the joints' laws where they stand
+    together."""
+    order = np.argsort(v, kind="stable")
+    return order, np.argsort(order)
+
+
+def _over(found: Pixels) -> Array:
     """ρ − 1, below zero where it is 1 to within its error."""
     over = found.radius - 1
     stable = np.where(over == 0, -1e-300, over - 2 * found.error * (over > 0))
-    return np.where(np.abs(over) > found.error, over, stable)
+    return np.asarray(np.where(np.abs(over) > found.error, over, stable))
 
 
 def _set_aside(series: Array, errors: Array, aside: int) -> tuple[Array, Array]:
