@@ -246,6 +246,9 @@ def check_corners(assembly: Assembly, x: Axis, y: Axis) -> None:
     ------
     InputError : names both values and what the element says to them.
     """
+    owner = [element for element, _ in assembly.packed.place]
+    if not {owner[c] for c in x.columns.index} & {owner[c] for c in y.columns.index}:
+        return  # each axis was tried by itself, and no element has numbers of both
     table = assembly.packed.table(4)
     across, up = x.values[[0, 0, -1, -1]], y.values[[0, -1, 0, -1]]
     x.columns.put(table, across)

@@ -294,7 +294,15 @@ class LineFamily:
     def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
         """Input angles over a stretch, and the speed of the swiftest station over the input's at each."""
         topo = self.assembly.topology
-        coefficients = self._coefficients(self.from_patch(points[0], True), self.from_patch(points[1], False))
+        x, y = self.from_patch(points[0], True), self.from_patch(points[1], False)
+        coefficients = self._coefficients(x, y)
+        # Many points differ in numbers that move no joint, such as the speed.
+        moving = [
+            coefficients.shift,
+            *(np.reshape(part, (len(x), -1)) for law in coefficients.joints for part in law.numbers),
+        ]
+        unlike = np.unique(np.concatenate(moving, axis=1), axis=0, return_index=True)[1]
+        coefficients = self._coefficients(x[unlike], y[unlike])
         tau = np.linspace(begin, begin + length, 801)
         speeds = np.abs(base_motion(topo, coefficients, tau, ratio_values(topo)).speed)
         return tau, np.maximum(speeds.max(axis=(0, 2)), 1.0)

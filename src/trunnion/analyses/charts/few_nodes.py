@@ -28,6 +28,8 @@ LIKELY_STEPS = 64
 """Steps of a period that most lines need."""
 SHARE = 0.7
 """Of what the other ways cost, what may be spent before this one is given up."""
+REFINED = 2
+"""Nodes of a grid whose series has faded, over those that the forecast asks for."""
 PROBES = 16
 """Input angles at which A is averaged for a forecast."""
 
@@ -60,15 +62,16 @@ def leading_patches(
     None where that costs more than ``price_elsewhere`` [µs], no group of multipliers stands apart, or it holds them
     all and ``even_all`` is not asked for: elsewhere, then nothing is spared.
     """
-    corners = _at_nodes(family, *_corners(box))
-    price, spared = step_price(corners.states), price_elsewhere - pixels * pixel_price(6)
-    group, nodes_expected = _forecast(family.rates(*_from_patch(family, *_corners(box))))
+    rates = family.rates(*_from_patch(family, *_corners(box)))
+    states = 2 * rates.root.shape[1]
+    price, spared = step_price(states), price_elsewhere - pixels * pixel_price(6)
+    group, nodes_expected = _forecast(rates)
     dearest = spared / (nodes_expected * HALVINGS * price)
-    if group == corners.states and not even_all:
+    if (group == states and not even_all) or not LIKELY_STEPS < dearest:
         return None
-    if not LIKELY_STEPS < dearest or not _settles(corners, group, tolerance, dearest):
+    each, most_work = _work_at(_at_nodes(family, *_corners(box)), group, tolerance, dearest), SHARE * spared / price
+    if not REFINED * nodes_expected * each < most_work:
         return None
-    most_work = SHARE * spared / price
     todo, patches = [(box, 0)], list[Patch]()
     nodes, work, whole = 0, 0.0, 0.0
     while todo:
@@ -116,19 +119,25 @@ def _forecast(corners: LineRates) -> tuple[int, float]:
     d = sizes[0]
     phase = np.abs(exponents.imag[:, :d]).sum(axis=1)
     along_u, along_v = (
-        first + 1 + float(np.abs(phase[list(one)] - phase[list(other)]).max()) / 2
+        _grid_over(first, float(np.abs(phase[list(one)] - phase[list(other)]).max()) / 2)
         for first, one, other in ((FIRST_DEGREES[0], (1, 3), (0, 2)), (FIRST_DEGREES[1], (2, 3), (0, 1)))
     )
     return d, along_u * along_v
 
 
-def _settles(corners: Points, d: int, tolerance: float, dearest: float) -> bool:
-    """Whether the corners of a box, its slowest and steepest among them, are known from fewer steps than ``dearest``.
+def _grid_over(first: int, degree: float) -> int:
+    """Nodes of a direction: its degree begins with ``first`` and is doubled."""
+    return (first << max(0, int(np.ceil(np.log2((first + degree) / first))))) + 1
+
+
+def _work_at(corners: Points, d: int, tolerance: float, dearest: float) -> float:
+    """Work at each corner of a box, its slowest and steepest among them; infinite from ``dearest`` steps on.
 
     A few points tell what hundreds would cost, before those are begun.
     """
     found = Settling(corners, 1)
-    return settle(found, d, tolerance, HALVINGS * dearest * corners.count) and bool(found.steps.mean() <= dearest)
+    known = settle(found, d, tolerance, HALVINGS * dearest * corners.count) and bool(found.steps.mean() <= dearest)
+    return found.work / corners.count if known else np.inf
 
 
 class _OneBox:

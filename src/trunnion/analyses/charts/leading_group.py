@@ -13,6 +13,7 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.analyses.charts.prices import pixel_price, step_price
 from trunnion.numerics.chain.chain_tables import LANES
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
@@ -55,13 +56,15 @@ class Points(Protocol):
 
 
 class Settling:
-    """Multipliers (point, m) at a growing number of points, of N/2, N and 2N ``steps``; ``work``: steps taken so far.
+    """Multipliers (point, m) at a growing number of points, of N/2, N and 2N ``steps``; ``work``: what was done so far,
+    in steps, eigenvalues counted as the steps that they cost.
 
     Those of N/2 steps are NaN until a point is sharpened. trace (point,): ∫ tr(M⁻¹C) dτ over the period.
     """
 
     def __init__(self, points: Points, threads: int) -> None:
-        self.points, self.threads, self.work = points, threads, 0
+        self.points, self.threads, self.work = points, threads, 0.0
+        self.eigenvalues = pixel_price(points.states) / step_price(points.states)
         self.fine, self.coarse, self.coarser = (np.empty((0, points.states), complex) for _ in range(3))
         self.norm, self.trace, self.steps = np.empty(0), np.empty(0), np.empty(0, dtype=np.intp)
         self._add(points.count)
@@ -96,7 +99,7 @@ class Settling:
             self.steps[some] = 2 * steps
 
     def _multipliers(self, which: NDArray[np.intp], steps: int) -> tuple[Complex, Array, Array]:
-        self.work += len(which) * steps
+        self.work += len(which) * (steps + self.eigenvalues)
 
         def run(some: NDArray[np.intp]) -> tuple[Complex, Array, Array]:
             # Steps that are far too long overflow, and are halved.
