@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -75,10 +76,19 @@ class PackedLine:
     """The numbers of a line: ``values[column]`` in SI, with ``labels`` and ``units`` by column."""
 
     line: Driveline
-    labels: tuple[str, ...]
-    units: tuple[str, ...]
     values: NDArray[np.float64]
     place: dict[tuple[int, str], int] = field(repr=False)
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Path of every column."""
+        names = self.line.names
+        return tuple(f"{names[i]}.{key}" if i >= 0 else key for i, key in self.place)
+
+    @cached_property
+    def units(self) -> tuple[str, ...]:
+        """Unit of every column."""
+        return tuple(_unit(key) for _, key in self.place)
 
     def column(self, element: int, key: str) -> int:
         """Column of an element's number; −1 where the description does not give it."""
@@ -192,20 +202,17 @@ class PackedLine:
 
 def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
     """List every number of ``line`` as a column; column 0 is ``speed`` [rad/s]."""
-    labels, values, place = [SPEED], [speed], {(-1, SPEED): 0}
+    values, places = [speed], [(-1, SPEED)]
     for i, element in enumerate(line.elements):
-        for key, number in _numbers(element):
-            place[i, key] = len(labels)
-            labels.append(f"{line.names[i]}.{key}")
-            values.append(number)
+        numbers = _numbers(element)
+        places += [(i, key) for key, _ in numbers]
+        values += [number for _, number in numbers]
     for key in ("damping_ratio", "damping_ratio_frequency"):
         number = getattr(line, key)
         if number is not None:
-            place[-1, key] = len(labels)
-            labels.append(key)
+            places.append((-1, key))
             values.append(float(number))
-    units = tuple(_unit(label.rpartition(".")[2]) for label in labels)
-    return PackedLine(line, tuple(labels), units, np.array(values), place)
+    return PackedLine(line, np.array(values), {place: column for column, place in enumerate(places)})
 
 
 _HARMONICS = {
@@ -225,6 +232,9 @@ _LISTS = {"breakpoints": ("breakpoint", "rad"), "stiffnesses": ("stiffness", "N*
 """Lists of numbers: what one of them is called, and its unit."""
 
 
+_NUMBERS = (float, int)
+
+
 def _unit(key: str) -> str:
     """Unit of "stiffness", "excitation 2 amplitude", "breakpoint 1"."""
     if key in UNITS:
@@ -235,32 +245,36 @@ def _unit(key: str) -> str:
     return next(unit for name, unit in _LISTS.values() if name == owner)
 
 
-def _numbers(element: Element) -> Iterator[tuple[str, float]]:
+def _numbers(element: Element) -> list[tuple[str, float]]:
     """Every number of an element by its key."""
-    idle = getattr(element, "idle", ())
-    plain, harmonics, lists = _keys_of(type(element))
-    for key in plain:
-        number = None if key in idle else getattr(element, key)
-        if isinstance(number, float | int) and not isinstance(number, bool):
-            yield key, float(number)
+    (plain, harmonics, lists), read, has_idle = _reading(type(element))
+    idle = getattr(element, "idle", ()) if has_idle else ()
+    found = [
+        (key, float(number))
+        for key, number in zip(plain, read(element), strict=False)
+        if number is not None and key not in idle and isinstance(number, _NUMBERS) and not isinstance(number, bool)
+    ]
     for name in harmonics:
         for i, harmonic in enumerate(getattr(element, name), start=1):
             for key in _HARMONICS[name]:
                 if (number := _number(harmonic, key)) is not None:
-                    yield f"{name} {i} {key}", float(number)
+                    found.append((f"{name} {i} {key}", float(number)))
     for name in lists:
-        for i, number in enumerate(getattr(element, name), start=1):
-            yield f"{_LISTS[name][0]} {i}", float(number)
+        found += [(f"{_LISTS[name][0]} {i}", float(n)) for i, n in enumerate(getattr(element, name), start=1)]
+    return found
 
 
 @cache
-def _keys_of(kind: type[Element]) -> tuple[tuple[str, ...], ...]:
-    """Of single numbers, lists of harmonics and lists of numbers, those that a kind of element has."""
+def _reading(kind: type[Element]) -> tuple[tuple[tuple[str, ...], ...], Callable[[Element], tuple[Any, ...]], bool]:
+    """Of single numbers, lists of harmonics and lists of numbers, those that a kind of element has; what reads all
+    single ones in one call; whether some may be idle (pydantic is slow to miss an attribute)."""
 
     def has(key: str) -> bool:
         return key in kind.model_fields or hasattr(kind, key)
 
-    return tuple(tuple(filter(has, keys)) for keys in (UNITS, _HARMONICS, _LISTS))
+    keys = tuple(tuple(filter(has, every)) for every in (UNITS, _HARMONICS, _LISTS))
+    # And the kind twice, so that it is a tuple where there is one number or none.
+    return keys, attrgetter(*keys[0], "kind", "kind"), hasattr(kind, "idle")
 
 
 def _number(harmonic: Any, key: str) -> float | None:

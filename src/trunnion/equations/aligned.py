@@ -33,39 +33,31 @@ class AlignedMatrices:
 def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedMatrices:
     """Mass, damping and stiffness of the aligned line, one per case."""
     cases, n = len(coefficients.inertia), topo.size
-    mass = np.zeros((cases, n))
-    for s in range(len(topo.stations)):
-        c = topo.coordinate[topo.group_of(s)]
-        if c >= 0:
-            mass[:, c] += coefficients.inertia[:, s] * relative_ratio(topo, s) ** 2
-    directions = np.array([elongation(topo, e) for e in range(len(topo.compliances))]).reshape(-1, n)
-    outer = (directions[:, :, None] * directions[:, None, :]).reshape(-1, n * n)
+    mass = np.zeros((n, cases))
+    moves = topo.unknown_of >= 0
+    turned = coefficients.inertia * topo.relative_ratios**2
+    np.add.at(mass, topo.unknown_of[moves], turned.T[moves])
+    elongations = topo.elongations
     damping, stiffness, loss = (
-        (part @ outer).reshape(cases, n, n) if part.any() else np.zeros((cases, n, n))
+        (elongations.T * part[:, None, :]) @ elongations if part.any() else np.zeros((cases, n, n))
         for part in (coefficients.damping, coefficients.stiffness, coefficients.loss)
     )
-    return AlignedMatrices(mass, damping, stiffness, loss)
+    return AlignedMatrices(np.ascontiguousarray(mass.T), damping, stiffness, loss)
 
 
 def elongation(topo: Topology, compliance: int) -> Array:
     """Twist of one compliance per rotation of every unknown (n,)."""
-    ends, direction = topo.compliances[compliance], np.zeros(topo.size)
-    far, near = topo.coordinate[ends.far_group], topo.coordinate[topo.group_of(ends.near)]
-    if far >= 0:
-        direction[far] = 1.0
-    if near >= 0:
-        direction[near] = -relative_ratio(topo, ends.near)
-    return direction
+    return np.asarray(topo.elongations[compliance])
 
 
 def relative_ratio(topo: Topology, station: int) -> float:
     """Mean speed of a station over that of its group's first station."""
-    return float(topo.speed_ratio[station] / topo.speed_ratio[topo.reference[topo.group_of(station)]])
+    return float(topo.relative_ratios[station])
 
 
 def rigid_rotation(topo: Topology) -> Array:
     """The unknowns (n,) of an aligned line that turns as a whole, by one at its input."""
-    return np.array([float(topo.speed_ratio[s]) for s in topo.firsts])
+    return np.asarray(topo.mean_speeds[topo.firsts])
 
 
 def frequencies(matrices: AlignedMatrices, *, free: bool) -> Array:

@@ -22,7 +22,7 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.equations.linear_clutches import mean_clutch, states_a_motion
-from trunnion.equations.loads import mean_load, static_torque, station_loads
+from trunnion.equations.loads import by_station, mean_load, static_torque, station_loads
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.equations.topology import Link, Mesh, Topology, topology
@@ -90,6 +90,18 @@ class LineCoefficients:
 
 
 @dataclass(frozen=True)
+class PlainSprings:
+    """The compliances of one spring each that states its stiffness and, of damping, a coefficient: what is most of a
+    line, taken all at once. ``compliances``, the ``stations`` behind them, and the columns of their numbers."""
+
+    compliances: dict[int, None]
+    stations: list[int]
+    stiffness: list[int]
+    damping: list[int]
+    forks: list[int]
+
+
+@dataclass(frozen=True)
 class Assembly:
     """A line with its topology and packed numbers: what every analysis starts from."""
 
@@ -139,6 +151,28 @@ class Assembly:
         given = column(-1, "damping_ratio_frequency")
         reference = table[:, given] if given >= 0 else self.damping_reference
         return np.asarray(2 * table[:, column(-1, "damping_ratio")] * stiffness / reference)
+
+    @cached_property
+    def plain_springs(self) -> PlainSprings:
+        """Those that need no law of their own."""
+        column, elements = self.packed.column, self.line.elements
+        springs = PlainSprings({}, [], [], [], [])
+        if self.line.damping_ratio is not None:
+            return springs
+        behind = {here.element: s for s, here in enumerate(self.topology.stations) if here.link is Link.SHAFT}
+        for e, compliance in enumerate(self.topology.compliances):
+            i = compliance.shafts[0]
+            stiffness = column(i, "stiffness")
+            if len(compliance.shafts) > 1 or stiffness < 0 or has_stages(elements[i]):
+                continue
+            if column(i, "loss_factor") >= 0 or column(i, "relative_damping") >= 0:
+                continue
+            springs.compliances[e] = None
+            springs.stations.append(behind[i])
+            springs.stiffness.append(stiffness)
+            springs.damping.append(column(i, "damping"))
+            springs.forks.append(column(i, "fork_offset"))
+        return springs
 
     @cached_property
     def aligned(self) -> AlignedMatrices:
@@ -253,11 +287,13 @@ def _series(stiffness: list[Array], damping: list[Array]) -> tuple[Array, Array]
 
 def _station_inertia(assembly: Assembly, table: Array) -> Array:
     topo, column = assembly.topology, assembly.packed.column
-    inertia = np.zeros((len(table), len(topo.stations)))
+    given = {e: c for _, e in topo.disks if (c := column(e, "inertia")) >= 0}
+    at = [station for station, element in topo.disks if element in given]
+    inertia = by_station(topo, at, table, list(given.values()))
     for station, element in topo.disks:
-        if column(element, "inertia") >= 0:
-            inertia[:, station] += table[:, column(element, "inertia")]
-        elif column(element, "mass") >= 0:
+        if element in given:
+            continue
+        if column(element, "mass") >= 0:
             inertia[:, station] += table[:, column(element, "mass")] * table[:, column(element, "radius")] ** 2
         else:
             keys = ("outer_diameter", "inner_diameter", "thickness", "density")
@@ -296,7 +332,15 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.empty_like(static) for _ in range(4))
     each: dict[int, Array] = {}
+    plain = assembly.plain_springs
+    of_plain = list(plain.compliances)
+    stiffness[:, of_plain] = table[:, plain.stiffness]
+    damping[:, of_plain] = table[:, plain.damping] if damped else 0.0
+    loss[:, of_plain] = 0.0
+    by_spring = torque[:, of_plain] / stiffness[:, of_plain]
     for e, compliance in enumerate(topo.compliances):
+        if e in plain.compliances:
+            continue
         for i in compliance.shafts:
             each[i] = shaft_stiffness(assembly, table, i)
         k = [each[i] for i in compliance.shafts]
@@ -316,11 +360,15 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
                 at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
                 damping[:, e] *= damped_there
             twist[:, e] = at_rest if twisted else 0.0
+    twist[:, of_plain] = np.where(stiffness[:, of_plain] > 0, by_spring, 0.0)
     shift = np.zeros((cases, stations))
+    shift[:, plain.stations] = by_spring + table[:, plain.forks]
     compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}
     for s, here in enumerate(topo.stations):
         if here.link is Link.SHAFT:
             i = here.element
+            if compliance_of[i] in plain.compliances:
+                continue
             e = compliance_of[i]
             own = twist[:, e] if has_stages(assembly.line.elements[i]) else torque[:, e] / each[i]
             forks = column(i, "fork_offset")

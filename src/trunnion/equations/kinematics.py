@@ -68,8 +68,4 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
 
 def ratio_values(topo: Topology) -> Array:
     """Input speed over output speed at each station that hangs on a Ratio; 1 elsewhere."""
-    values = np.ones(len(topo.stations))
-    for s, station in enumerate(topo.stations):
-        if station.link is Link.RATIO:
-            values[s] = float(topo.speed_ratio[station.before] / topo.speed_ratio[s])
-    return values
+    return topo.ratio_values

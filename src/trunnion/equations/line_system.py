@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
 
@@ -38,6 +38,7 @@ ANGLE_SCALE = 0.01
 """The deviation [rad] that counts as one in error control."""
 
 
+@cache
 def kernel() -> ModuleType:
     """The compiled right-hand side of lines and what observes their motion."""
     return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
@@ -203,7 +204,7 @@ class LineSystem:
         assembly, topo = self.assembly, self.assembly.topology
         table = row[None]
         co = known or self.untwisted(table)
-        ratios, mean = ratio_values(topo), np.array([float(q) for q in topo.speed_ratio])
+        ratios, mean = topo.ratio_values.tolist(), topo.mean_speeds
         load, by_speed, by_square = co.load[case], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
         if course is not None and topo.free and given_shares(topo, assembly.packed.column, table).any():
             load, by_speed, by_square = accelerating_loads(
@@ -213,30 +214,24 @@ class LineSystem:
         if drive:
             share = drive_places(topo, assembly.packed.column, table)
             load = load + drive_torques(topo, share, np.array([drive]))[0]
-        stations = np.zeros((len(topo.stations), core.PER_STATION))
-        phase, joints = np.zeros(len(topo.stations)), dict(zip(topo.joints, co.joints, strict=True))
-        column = assembly.packed.column
+        stations = self._stations.copy()
+        stations[:, core.INERTIA], sense_of = co.inertia[case], np.sign(mean)
+        for place, part in ((core.LOAD, load), (core.BY_SPEED, by_speed), (core.BY_SQUARE, by_square)):
+            stations[:, place] = part * sense_of
+        stations[:, core.VISCOUS], stations[:, core.QUADRATIC] = co.viscous[case], co.quadratic[case]
+        phase, joints = [0.0] * len(topo.stations), dict(zip(topo.joints, co.joints, strict=True))
+        shifts, column = co.shift[case].tolist(), assembly.packed.column
         for s, station in enumerate(topo.stations):
-            group = station.group
-            out = stations[s]
-            out[core.BEFORE], out[core.LINK] = station.before, getattr(core, station.link.name, core.ROOT)
-            out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
-            out[core.MEAN], out[core.OVER] = mean[s], 1 / ratios[s]
-            out[core.INERTIA] = co.inertia[case, s]
-            out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] = load[s], by_speed[s], by_square[s]
-            out[[core.LOAD, core.BY_SPEED, core.BY_SQUARE]] *= np.sign(mean[s])
             before = phase[station.before] if station.before >= 0 else 0.0
-            chi = before + co.shift[case, s]
             if station.link is Link.SHAFT:
-                phase[s] = chi
+                phase[s] = before + shifts[s]
             elif station.link is Link.RATIO:
                 phase[s] = before / ratios[s]
             elif station.link is Link.JOINT:
-                out[core.PHASE], phase[s] = chi, chi + joints[s].turned
+                chi = before + shifts[s]
+                stations[s, core.PHASE], phase[s] = chi, chi + joints[s].turned
         harmonics = []
         for s, i in topo.disks:
-            stations[s, core.VISCOUS] += row[column(i, "viscous_load")]
-            stations[s, core.QUADRATIC] += row[column(i, "quadratic_load")]
             element = assembly.line.elements[i]
             for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
                 torque = harmonic_torque(
@@ -273,6 +268,18 @@ class LineSystem:
         parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics)]
         parts += [np.ravel(friction), law_numbers, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+
+    @cached_property
+    def _stations(self) -> Array:
+        """What the compiled right-hand side reads of every station, without what depends on the line's numbers."""
+        topo, core = self.assembly.topology, kernel()
+        stations = np.zeros((len(topo.stations), core.PER_STATION))
+        for s, (station, ratio) in enumerate(zip(topo.stations, topo.ratio_values, strict=True)):
+            out, group = stations[s], station.group
+            out[core.BEFORE], out[core.LINK] = station.before, getattr(core, station.link.name, core.ROOT)
+            out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
+            out[core.MEAN], out[core.OVER] = topo.mean_speeds[s], 1 / ratio
+        return stations
 
     def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
         """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters)."""

@@ -33,6 +33,8 @@ from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 Array = NDArray[np.float64]
+FAINT = 1e-4
+"""Share of a harmonic that a step of an integration may leap over to begin with."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +73,20 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     slope_seen = np.zeros((cases, times, len(topo.compliances)))
     ratio_seen, wave = np.zeros_like(slope_seen), stiffness_waves(topo, coefficients, tau)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
-    for s in np.flatnonzero(np.any([part.any(axis=0) for part in acting], axis=0)).tolist():
+    loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
+    for s in np.flatnonzero(acting[0].any(axis=0) | loaded).tolist():
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]
         if i < 0:
             continue
         r, r1, r2 = motion.relative[..., s], motion.relative_slope[..., s], motion.relative_curvature[..., s]
         w, w1 = motion.speed[..., ref] * speed, motion.acceleration[..., ref] * speed**2
-        inertia, load = coefficients.inertia[:, s, None], coefficients.load[:, s, None]
+        inertia = coefficients.inertia[:, s, None]
+        if s == ref and not loaded[s]:  # r = 1
+            mass[..., i, i] += inertia
+            forcing[..., i] -= inertia * w1
+            continue
+        load = coefficients.load[:, s, None]
         viscous, quadratic = coefficients.viscous[:, s, None], coefficients.quadratic[:, s, None]
         v = r * w
         growth = viscous + 2 * quadratic * np.abs(v)
@@ -94,6 +102,19 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     for e, compliance in enumerate(topo.compliances):
         near_group = topo.group_of(compliance.near)
         far, near = topo.coordinate[compliance.far_group], topo.coordinate[near_group]
+        if compliance.near == topo.reference[near_group] and not coefficients.waves:  # r = 1
+            ratio_seen[..., e] = 1.0
+            k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
+            torque = coefficients.torque[:, e, None]
+            for one, other, sign in ((far, near, 1), (near, far, -1)):
+                if one >= 0:
+                    damping[..., one, one] += c
+                    stiffness[..., one, one] += k
+                    forcing[..., one] -= sign * torque
+                    if other >= 0:
+                        damping[..., one, other] -= c
+                        stiffness[..., one, other] -= k
+            continue
         r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
         r_dot = r1 * motion.speed[..., topo.reference[near_group]] * speed
         k, c = coefficients.stiffness[:, e, None] * wave[..., e], coefficients.damping[:, e, None]
@@ -141,7 +162,16 @@ def periodic_linear_system(
     aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
     fastest = float(max(topo.rates, default=0))
-    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
+    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest, _harmonics(coefficients))
+
+
+def _harmonics(coefficients: LineCoefficients) -> int:
+    """Harmonics of the joints' own orders in which they pass rotation on, down to a share ``FAINT``; meshes state
+    theirs."""
+    spread = max((law.spread for law in coefficients.joints), default=0.0)
+    if not spread < 1:
+        return 0
+    return max(1, int(np.ceil(np.log(FAINT) / np.log(max(spread, FAINT)))))
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:

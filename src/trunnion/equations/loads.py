@@ -41,12 +41,24 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
 
 
 def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
-    constant, viscous, quadratic = (np.zeros((len(table), len(topo.stations))) for _ in range(3))
-    for station, element in topo.disks:
-        constant[:, station] += table[:, column(element, "load_torque")]
-        viscous[:, station] += table[:, column(element, "viscous_load")]
-        quadratic[:, station] += table[:, column(element, "quadratic_load")]
-    return StationLoads(constant, viscous, quadratic)
+    return StationLoads(*(_of_disks(topo, column, table, k) for k in ("load_torque", "viscous_load", "quadratic_load")))
+
+
+def _of_disks(topo: Topology, column: Column, table: Array, key: str) -> Array:
+    """One number of the disks added up by station (case, station)."""
+    stations = [station for station, _ in topo.disks]
+    return by_station(topo, stations, table, [column(element, key) for _, element in topo.disks])
+
+
+def by_station(topo: Topology, stations: list[int], table: Array, columns: list[int]) -> Array:
+    """Numbers of ``table`` (case, column) in the given columns, added up by station (case, station)."""
+    found = np.zeros((len(table), len(topo.stations)))
+    if len(set(stations)) == len(stations):
+        found[:, stations] = table[:, columns]
+    else:
+        for station, place in zip(stations, columns, strict=True):
+            found[:, station] += table[:, place]
+    return found
 
 
 def accelerating_loads(
@@ -57,7 +69,7 @@ def accelerating_loads(
 
     The drives carry the loads at their mean speeds and what accelerates the ``inertia`` (station,), were it rigid.
     """
-    table, turning = row[None], np.abs(_ratios(topo))
+    table, turning = row[None], np.abs(topo.mean_speeds)
     loads, share = _described(topo, column, table), given_shares(topo, column, table)
     needed = (
         loads.constant @ turning + acceleration * (inertia @ turning**2),
@@ -73,28 +85,25 @@ def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
 
     A load that does not depend on the speed is known without one (``speed`` NaN).
     """
-    turning = np.abs(_ratios(topo)) * np.asarray(speed)[:, None]
+    turning = np.abs(topo.mean_speeds) * np.asarray(speed)[:, None]
     by_speed = (loads.viscous + loads.quadratic * turning) * turning
     return np.asarray(loads.constant + np.where((loads.viscous != 0) | (loads.quadratic != 0), by_speed, 0.0))
 
 
 def load_slope(topo: Topology, viscous: Array, quadratic: Array, speed: Array) -> Array:
     """Slope c₁ + 2c₂|ω| of every station's load by its speed [N m s/rad], (case, station), at its mean speed."""
-    turning = np.abs(_ratios(topo)) * np.asarray(speed)[:, None]
+    turning = np.abs(topo.mean_speeds) * np.asarray(speed)[:, None]
     return np.asarray(viscous + np.where(quadratic != 0, 2 * quadratic * turning, 0.0))
 
 
 def unbalanced(topo: Topology, loads: StationLoads, speed: Array) -> Array:
     """Torque at the input [N m], (case,), that would keep the line at its mean speed: Σ M_s |R_s|."""
-    return np.asarray(mean_load(topo, loads, speed) @ np.abs(_ratios(topo)))
+    return np.asarray(mean_load(topo, loads, speed) @ np.abs(topo.mean_speeds))
 
 
 def given_shares(topo: Topology, column: Column, table: Array) -> Array:
     """The shares as described, (case, station)."""
-    share = np.zeros((len(table), len(topo.stations)))
-    for station, element in topo.disks:
-        share[:, station] += table[:, column(element, "drive_share")]
-    return share
+    return _of_disks(topo, column, table, "drive_share")
 
 
 def drive_torques(topo: Topology, share: Array, torque: Array) -> Array:
@@ -104,7 +113,7 @@ def drive_torques(topo: Topology, share: Array, torque: Array) -> Array:
     """
     total = share.sum(axis=1, keepdims=True)
     part = share / np.where(total > 0, total, np.nan)
-    return np.asarray(-part * np.asarray(torque)[:, None] / np.abs(_ratios(topo)))
+    return np.asarray(-part * np.asarray(torque)[:, None] / np.abs(topo.mean_speeds))
 
 
 def drive_places(topo: Topology, column: Column, table: Array) -> Array:
@@ -117,15 +126,11 @@ def drive_places(topo: Topology, column: Column, table: Array) -> Array:
     driving = np.zeros_like(share)
     for station, element in topo.disks:
         driving[:, station] += np.maximum(-table[:, column(element, "load_torque")], 0.0)
-    driving *= np.abs(_ratios(topo))
+    driving *= np.abs(topo.mean_speeds)
     first = np.zeros_like(share)
     first[:, topo.disks[0][0] if topo.disks else 0] = 1.0
     share = np.where(share.any(axis=1, keepdims=True), share, driving)
     return np.where(share.any(axis=1, keepdims=True), share, first)
-
-
-def _ratios(topo: Topology) -> Array:
-    return np.array([float(q) for q in topo.speed_ratio])
 
 
 def static_torque(topo: Topology, load: Array) -> Array:
@@ -137,15 +142,7 @@ def static_torque(topo: Topology, load: Array) -> Array:
     torque = np.zeros((len(load), len(topo.compliances)))
     if not load.any():
         return torque
-    for e in range(len(topo.compliances) - 1, -1, -1):
-        far = topo.compliances[e].far_group
-        own = float(topo.speed_ratio[topo.reference[far]])
-        for s, station in enumerate(topo.stations):
-            if station.group == far:
-                torque[:, e] -= load[:, s] * abs(float(topo.speed_ratio[s])) / own
-        for d in range(e + 1, len(topo.compliances)):
-            next_one = topo.compliances[d]
-            if topo.group_of(next_one.near) == far:
-                ratio = float(topo.speed_ratio[topo.reference[next_one.far_group]]) / own
-                torque[:, e] += torque[:, d] * ratio
+    for e, behind in enumerate(topo.stations_behind):
+        own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
+        torque[:, e] = load[:, behind] @ (-np.abs(topo.mean_speeds[behind]) / own)
     return torque

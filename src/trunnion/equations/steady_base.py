@@ -105,7 +105,7 @@ def _at_input(assembly: Assembly, table: Array) -> Array:
     """Mean load torques taken to the input (cases, station) [N m]."""
     topo = assembly.topology
     loads = station_loads(topo, assembly.packed.column, table)
-    return mean_load(topo, loads, table[:, 0]) * np.abs(np.array([float(q) for q in topo.speed_ratio]))
+    return mean_load(topo, loads, table[:, 0]) * np.abs(topo.mean_speeds)
 
 
 def _remedy(assembly: Assembly, row: Array, left: float) -> str:

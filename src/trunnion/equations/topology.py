@@ -13,6 +13,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
@@ -21,6 +25,9 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 
 class Link(IntEnum):
@@ -91,7 +98,7 @@ class Topology:
     ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
     where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
     an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station; ``meshes`` are those that
-    vary with their phase.
+    vary with their phase. What follows from these is found once: a topology does not change.
     """
 
     stations: tuple[Station, ...]
@@ -105,7 +112,7 @@ class Topology:
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of unknown rotations n."""
         return sum(c >= 0 for c in self.coordinate)
@@ -115,12 +122,12 @@ class Topology:
         """True when no rotation is prescribed, so that the line can turn as a rigid body."""
         return not any(self.prescribed)
 
-    @property
+    @cached_property
     def joints(self) -> tuple[int, ...]:
         """Stations behind a joint that does not pass rotation unchanged, in order."""
         return tuple(i for i, s in enumerate(self.stations) if s.link is Link.JOINT)
 
-    @property
+    @cached_property
     def firsts(self) -> list[int]:
         """The first station of each unknown's group (n,)."""
         return [self.reference[g] for g, c in enumerate(self.coordinate) if c >= 0]
@@ -129,7 +136,59 @@ class Topology:
         """The group a station belongs to."""
         return self.stations[station].group
 
-    @property
+    @cached_property
+    def mean_speeds(self) -> Array:
+        """Mean speed of every station over the input's (station,)."""
+        return _fixed([float(ratio) for ratio in self.speed_ratio])
+
+    @cached_property
+    def relative_ratios(self) -> Array:
+        """Mean speed of every station over that of its group's first station (station,)."""
+        first = [self.reference[station.group] for station in self.stations]
+        return _fixed(
+            [float(self.speed_ratio[s] / self.speed_ratio[f]) if s != f else 1.0 for s, f in enumerate(first)]
+        )
+
+    @cached_property
+    def ratio_values(self) -> Array:
+        """Input speed over output speed at each station that hangs on a Ratio (station,); 1 elsewhere."""
+        return _fixed(
+            [
+                float(self.speed_ratio[station.before] / self.speed_ratio[s]) if station.link is Link.RATIO else 1.0
+                for s, station in enumerate(self.stations)
+            ]
+        )
+
+    @cached_property
+    def unknown_of(self) -> Places:
+        """Place among the unknowns of every station's group (station,); −1 where its rotation is prescribed."""
+        return np.array([self.coordinate[station.group] for station in self.stations], dtype=np.intp)
+
+    @cached_property
+    def stations_behind(self) -> tuple[Places, ...]:
+        """Per compliance all stations that it drives: those of its far group and of every group behind that."""
+        behind = [[s for s, one in enumerate(self.stations) if one.group == c.far_group] for c in self.compliances]
+        into = {c.far_group: e for e, c in enumerate(self.compliances)}
+        for e in range(len(self.compliances) - 1, -1, -1):
+            before = into.get(self.group_of(self.compliances[e].near))
+            if before is not None:
+                behind[before] += behind[e]
+        return tuple(np.array(one, dtype=np.intp) for one in behind)
+
+    @cached_property
+    def elongations(self) -> Array:
+        """Twist of every compliance per rotation of every unknown (compliance, n), joints straight."""
+        found = np.zeros((len(self.compliances), self.size))
+        for e, ends in enumerate(self.compliances):
+            far, near = self.coordinate[ends.far_group], self.coordinate[self.group_of(ends.near)]
+            if far >= 0:
+                found[e, far] = 1.0
+            if near >= 0:
+                found[e, near] = -self.relative_ratios[ends.near]
+        found.flags.writeable = False
+        return found
+
+    @cached_property
     def rates(self) -> tuple[Fraction, ...]:
         """Cycles per turn of the input of everything that makes the linear coefficients vary.
 
@@ -196,6 +255,13 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
             remedy=f"study the {what} on each side of the ratio separately",
         )
     return turns
+
+
+def _fixed(numbers: list[float]) -> Array:
+    """As an array that nobody can change."""
+    found = np.array(numbers)
+    found.flags.writeable = False
+    return found
 
 
 def common_rate(rates: Iterable[Fraction]) -> Fraction:
@@ -345,11 +411,11 @@ def _bare_place(line: Driveline, draft: _Draft, group: int) -> dict[str, str]:
 
 def _names(line: Driveline, draft: _Draft, coordinate: list[int]) -> list[str]:
     """A name per unknown: the first disk of its group, or the shaft end that carries it."""
-    names = []
-    for g, c in enumerate(coordinate):
-        if c < 0:
-            continue
-        disks = [i for s, i in draft.disks if draft.stations[s].group == g]
-        tubes = [i for s, i in draft.tube_ends if draft.stations[s].group == g]
-        names.append(line.names[disks[0]] if disks else f"end of {line.names[tubes[0]]}")
-    return names
+    disks, tubes = (
+        {draft.stations[s].group: i for s, i in reversed(placed)} for placed in (draft.disks, draft.tube_ends)
+    )
+    return [
+        line.names[disks[g]] if g in disks else f"end of {line.names[tubes[g]]}"
+        for g, c in enumerate(coordinate)
+        if c >= 0
+    ]

@@ -14,6 +14,7 @@ on a copy.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -271,7 +272,16 @@ class System:
             if key not in self.parameters:
                 known = ", ".join(self.parameters) or "none"
                 raise InputError("is not a parameter", element=self.name, key=key, remedy=f"parameters are: {known}")
-        return replace(self, parameters={**self.parameters, **{k: float(v) for k, v in parameters.items()}})
+        changed = {key: float(value) for key, value in parameters.items()}
+        for key, value in changed.items():
+            if not math.isfinite(value):
+                raise InputError("must be a finite number", element=self.name, key=key, value=value)
+        # What the two share is checked already: along a branch a system is made for every period that is integrated.
+        made = object.__new__(type(self))
+        made.__dict__.update({name: self.__dict__[name] for name in type(self).__dataclass_fields__})
+        made.__dict__["parameters"] = {**self.parameters, **changed}
+        _ = made.forcing_period
+        return made
 
     def rate_at(self, time: float, state: ArrayLike, regime: int = 0) -> Array:
         """x′ (n,) at one time and state; NaN where the right-hand side cannot be evaluated."""

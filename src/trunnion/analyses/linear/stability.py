@@ -268,11 +268,12 @@ def stability(
         return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = propagated(system, tolerance)
-    coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     topo = assembly.topology
     forced = Forced(assembly, system.rate, statically_twisted)
     turns, frequency = require_period(assembly.line, topo), np.array(system.frequencies)
-    aside = rigid_motions(topo, coefficients)
+    aside = np.zeros((2 * topo.size, 0))
+    if topo.free:
+        aside = rigid_motions(topo, assembly.coefficients(table, statically_twisted=statically_twisted))
     found = _judge(system, run, sources(assembly), turns, frequency, forced, aside)
     return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
 

@@ -348,7 +348,7 @@ def _inertia_torque(assembly: Assembly) -> Array:
     """Torque of every compliance (shaft,) [N m] per acceleration of the input [rad/s²], in the sense of its twist."""
     topo = assembly.topology
     coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False, free_play=True)
-    ratios = np.abs(np.array([float(q) for q in topo.speed_ratio]))
+    ratios = np.abs(topo.mean_speeds)
     needed = coefficients.inertia * ratios
     if topo.free:
         share = given_shares(topo, assembly.packed.column, assembly.table(1))

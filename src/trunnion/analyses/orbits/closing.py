@@ -64,36 +64,38 @@ class Closing(Generic[M]):
         """Number of states."""
         return self.map.size
 
-    @property
-    def rows(self) -> int:
-        """Number of equations."""
-        return self.size + (self.phase is not None)
-
     def place(self, z: Array) -> M:
         """The map at z."""
         return self.map.at(*map(float, z[self.size :])) if len(z) > self.size else self.map
 
     def equations(self, z: Array) -> tuple[Array, Array]:
         """What is missing to close, and its derivative by z, in units of the scales; NaN where there is no motion."""
-        n, count = self.size, len(z) - self.size
-        left, slope = np.full(self.rows, np.nan), np.full((self.rows, len(z)), np.nan)
-        if not np.isfinite(z).all():
-            return left, slope
-        try:
-            passage = self.place(z)(z[:n], by=range(count))
-        except InputError:  # a trial value may be no value of this parameter
-            return left, slope
-        self.last = passage
-        if not passage.done:
-            return left, slope
+        n = self.size
+        passage = self._tried(z)
+        if passage is None or not passage.done:
+            rows = n + (self.phase is not None)
+            return np.full(rows, np.nan), np.full((rows, len(z)), np.nan)
         size = self.scale[:n]
-        left[:n] = (passage.state - z[:n]) / size
-        slope[:n, :n], slope[:n, n:] = passage.tangents, passage.by_values
-        slope[range(n), range(n)] -= 1
-        slope[:n] /= size[:, None]
+        left = (passage.state - z[:n]) / size
+        slope = np.empty((n, len(z)))
+        slope[:, :n], slope[:, n:] = passage.tangents, passage.by_values
+        slope.reshape(-1)[:: len(z) + 1] -= 1  # its diagonal
+        slope /= size[:, None]
         if self.phase is not None:
-            left[n], slope[n] = self.phase.row @ (z[:n] - self.phase.anchor), np.append(self.phase.row, np.zeros(count))
+            left = np.append(left, self.phase.row @ (z[:n] - self.phase.anchor))
+            slope = np.vstack([slope, np.append(self.phase.row, np.zeros(len(z) - n))])
         return left, slope
+
+    def _tried(self, z: Array) -> Passage | None:
+        """The motion at z, kept as the last one tried; None where z is nowhere."""
+        if not np.isfinite(z).all():
+            return None
+        n = self.size
+        try:
+            self.last = self.place(z)(z[:n], by=range(len(z) - n))
+        except InputError:  # a trial value may be no value of this parameter
+            return None
+        return self.last
 
     def solve(self, guess: Array) -> Root:
         """The orbit near ``guess`` (n + unknown values,)."""

@@ -168,5 +168,5 @@ def torque_scale(line: LineSystem) -> float:
     topo, system = line.assembly.topology, line.system
     assert system.forcing_period is not None
     co = line.untwisted(line.assembly.table(1, line.speed))
-    inertia = float(co.inertia[0] @ np.array([float(q) for q in topo.speed_ratio]) ** 2)
+    inertia = float(co.inertia[0] @ topo.mean_speeds**2)
     return float(np.asarray(system.scale)[topo.size]) * inertia / float(system.forcing_period)
