@@ -21,7 +21,7 @@ def periodic_states(run: Propagation) -> np.ndarray:
     """States (time, 2n) of the periodic solution; least-norm where a multiplier is 1 (a free line)."""
     z = run.monodromy * run.scale[None, :] / run.scale[:, None]
     start = np.linalg.lstsq(np.eye(len(z)) - z, run.particular / run.scale, rcond=1e-13)[0] * run.scale
-    return run.states(start)
+    return run.states(start, 1)
 
 
 def two_shafts(beta: float, load: float = 0.0) -> Chain:
@@ -155,5 +155,5 @@ def test_wave_of_a_line_without_excitation_is_that_of_the_propagator() -> None:
         return m.mass, m.damping, m.stiffness, m.forcing
 
     run = propagate(arrays, system.period, 2, 1e-13, len(response.tau) - 1)  # type: ignore[arg-type]
-    x = periodic_states(run)[:: (len(run.tau) - 1) // (len(response.tau) - 1), :2]
+    x = periodic_states(run)[:: run.steps // (len(response.tau) - 1), :2]
     assert np.abs(response.rotation - x).max() < 1e-9 * np.abs(x).max()

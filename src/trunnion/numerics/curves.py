@@ -10,7 +10,7 @@ then closed in on until what is left of it is known.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -94,14 +94,18 @@ def extremes_in(curves: Curves, cuts: Array, edges: Array) -> Extremes:
     cuts = np.union1d(cuts[(cuts >= edges[0]) & (cuts <= edges[-1])], edges)
     window = np.searchsorted(edges, cuts[:-1], side="right") - 1
     parts = [_top(curves, cuts[i : i + BLOCK + 1]) for i in range(0, len(cuts) - 1, BLOCK)]
-    low, high = (_Tops(*map(np.concatenate, zip(*(part[i] for part in parts), strict=True))) for i in (0, 1))
-    low_at, least, below = _best(curves, cuts, window, low, -1.0)
-    high_at, most, above = _best(curves, cuts, window, high, 1.0)
-    return Extremes(-least, most, low_at, high_at, np.maximum(below, above))
+    tops = parts[0] if len(parts) == 1 else _Tops(*map(np.concatenate, zip(*parts, strict=True)))
+    at, most, error = _best(curves, cuts, window, tops)
+    count = at.shape[1] // 2
+    below, above = slice(count), slice(count, None)
+    return Extremes(
+        -most[:, below], most[:, above], at[:, below], at[:, above], np.maximum(error[:, below], error[:, above])
+    )
 
 
 class _Tops(NamedTuple):
-    """Of ± x in every cell (cells, curves): the largest of the samples, what it may grow to between them, its place."""
+    """Of −x and of x in every cell (cells, 2 · curves): the largest of the samples, what it may grow to between them,
+    its place."""
 
     value: Array
     most: Array
@@ -111,10 +115,10 @@ class _Tops(NamedTuple):
 def _inside(begin: Array, length: Array, place: Array) -> Array:
     """Times at shares ``place`` of cells, none on a cut as far as rounding lets tell."""
     edge = np.maximum(EDGE * length, 2 * np.spacing(np.abs(begin) + length))
-    return np.asarray(np.clip(begin + place * length, begin + edge, begin + np.maximum(length - edge, edge)))
+    return np.minimum(np.maximum(begin + place * length, begin + edge), begin + np.maximum(length - edge, edge))
 
 
-def _top(curves: Curves, cuts: Array) -> tuple[_Tops, _Tops]:
+def _top(curves: Curves, cuts: Array) -> _Tops:
     """Of −x and of x."""
     begin, length = cuts[:-1, None], np.diff(cuts)[:, None]
     times = _inside(begin, length, np.arange(PARTS + 1) / PARTS)
@@ -124,11 +128,12 @@ def _top(curves: Curves, cuts: Array) -> tuple[_Tops, _Tops]:
     lowest, highest = np.argmin(values, axis=1), np.argmax(values, axis=1)
     low = -np.take_along_axis(values, lowest[:, None], 1)[:, 0]
     high = np.take_along_axis(values, highest[:, None], 1)[:, 0]
-    return _Tops(low, low + bend / 4, lowest), _Tops(high, high + bend / 4, highest)
+    value = np.concatenate([low, high], axis=1)
+    return _Tops(value, value + np.concatenate([bend, bend], axis=1) / 4, np.concatenate([lowest, highest], axis=1))
 
 
-def _best(curves: Curves, cuts: Array, window: Integers, tops: _Tops, sign: float) -> tuple[Array, Array, Array]:
-    """Where sign · x is largest in every window, how large, and how well that is known, each (windows, curves)."""
+def _best(curves: Curves, cuts: Array, window: Integers, tops: _Tops) -> tuple[Array, Array, Array]:
+    """Where −x and x are largest in every window, how large, and how well that is known, each (windows, 2 · curves)."""
     starts = np.flatnonzero(np.diff(window, prepend=-1))
     best = np.maximum.reduceat(tops.value, starts, axis=0)
     floor = best[window]
@@ -138,7 +143,9 @@ def _best(curves: Curves, cuts: Array, window: Integers, tops: _Tops, sign: floa
     for i in range(0, len(cell), BLOCK):
         part = slice(i, i + BLOCK)
         middle = tops.place[cell[part], curve[part]] / PARTS
-        at[part], value[part], error[part] = _closed_in(curves, begin[part], length[part], middle, curve[part], sign)
+        at[part], value[part], error[part] = _closed_in(
+            curves, begin[part], length[part], middle, curve[part], tops.value.shape[1] // 2
+        )
     order = np.lexsort((-value, window[cell], curve))
     first = np.flatnonzero(np.diff(curve[order] * (window[-1] + 1) + window[cell[order]], prepend=-1))
     chosen = order[first].reshape(tops.value.shape[1], -1).T
@@ -146,19 +153,21 @@ def _best(curves: Curves, cuts: Array, window: Integers, tops: _Tops, sign: floa
 
 
 def _closed_in(
-    curves: Curves, begin: Array, length: Array, middle: Array, curve: Integers, sign: float
+    curves: Curves, begin: Array, length: Array, middle: Array, column: Integers, count: int
 ) -> tuple[Array, Array, Array]:
-    """The largest sign · x of one curve in a bracket of each cell, one part to either side of ``middle``."""
+    """The largest −x (``column`` below ``count``) or x of one curve in a bracket of each cell, one part to either side
+    of ``middle``."""
     rows, half = np.arange(len(begin)), 1 / PARTS
+    curve, sign = (column % count)[:, None], np.where(column < count, -1.0, 1.0)[:, None]
     for _ in range(ZOOMS):
-        low, high = np.clip(middle - half, 0.0, 1.0), np.clip(middle + half, 0.0, 1.0)
+        low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, 1.0)
         places = low[:, None] + (high - low)[:, None] * np.arange(ZOOM_PARTS + 1) / ZOOM_PARTS
         times = _inside(begin[:, None], length[:, None], places)
         seen = curves(times.ravel()).reshape(*times.shape, -1)
-        values = sign * seen[rows[:, None], np.arange(ZOOM_PARTS + 1), curve[:, None]]
+        values = sign * seen[rows[:, None], np.arange(ZOOM_PARTS + 1), curve]
         best = np.argmax(values, axis=1)
         middle, half = places[rows, best], 2 * half / ZOOM_PARTS
-    inner = np.clip(best, 1, ZOOM_PARTS - 1)
+    inner = np.minimum(np.maximum(best, 1), ZOOM_PARTS - 1)
     left, here, right = (values[rows, inner + k] for k in (-1, 0, 1))
     bend = left - 2 * here + right
     steep = (best == inner) & (bend < 0)
@@ -183,16 +192,34 @@ def fourier(curves: Curves, cuts: Array, highest: int) -> Complex:
     length = np.repeat(np.diff(cuts) / count, count)
     within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     left = np.repeat(cuts[:-1], count) + within * length
+    if highest < WIDTH:
+        return _directly(curves, begin, period, left, length, highest)
     grid: Array | None = None
     size = 2 * fft.next_fast_len(max(2 * (highest + 1), WIDTH))
-    for i in range(0, len(left), BLOCK):
-        half = length[i : i + BLOCK, None] / 2
-        times = (left[i : i + BLOCK, None] + half * (1 + _GAUSS)).ravel()
-        weighed = curves(times) * (half * _WEIGHTS).ravel()[:, None] / period
+    for times, weighed in _weighed(curves, period, left, length):
         grid = np.zeros((size, weighed.shape[1])) if grid is None else grid
         _spread((times - begin) / period, weighed, grid)
     assert grid is not None
     out = fft.rfft(grid, axis=0)[: highest + 1] / _spreading(np.arange(highest + 1) / size)[:, None]
+    out[1:] *= 2
+    return np.asarray(out)
+
+
+def _weighed(curves: Curves, period: float, left: Array, length: Array) -> Iterator[tuple[Array, Array]]:
+    """Gauss's nodes in cells, block by block, and the values there (times, curves) by their weights over the period."""
+    for i in range(0, len(left), BLOCK):
+        half = length[i : i + BLOCK, None] / 2
+        times = (left[i : i + BLOCK, None] + half * (1 + _GAUSS)).ravel()
+        yield times, curves(times) * ((half * _WEIGHTS).ravel()[:, None] / period)
+
+
+def _directly(curves: Curves, begin: float, period: float, left: Array, length: Array, highest: int) -> Complex:
+    """``fourier`` by a sum for each order, less work than spreading where they are few."""
+    turns = -2j * np.pi * np.arange(highest + 1)[:, None]
+    out = sum(
+        np.exp(turns * ((times - begin) / period)) @ weighed
+        for times, weighed in _weighed(curves, period, left, length)
+    )
     out[1:] *= 2
     return np.asarray(out)
 

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-TIMES_PER_PERIOD, STEPS_PER_CYCLE = 128, 4
+STEPS_PER_CYCLE = 4
+FEWEST = 64
+"""Steps of a period to begin with."""
+MEANS = 64
+"""Times over which the coefficients are averaged."""
 SAMPLES, SAMPLES_PER_CYCLE = 128, 6
 """Of a Floquet mode over the period, at least; per cycle of the highest mode."""
 
@@ -40,7 +44,7 @@ def propagated(system: PeriodicLinearSystem, tolerance: float) -> Propagation:
 
     # A step that leaps over cycles of the coefficients could agree with its half by accident.
     cycles = system.fastest * system.period / (2 * np.pi)
-    least = max(TIMES_PER_PERIOD // 2, 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, 1)))))
+    least = 1 << int(np.ceil(np.log2(max(STEPS_PER_CYCLE * cycles, FEWEST))))
     return propagate(arrays, system.period, system.size, tolerance, least)
 
 
@@ -50,10 +54,10 @@ def carried_mode(system: PeriodicLinearSystem, run: Propagation, multiplier: com
     if pair is None:
         return None
     start, last = pair[0] * run.scale, pair[1] / run.scale
-    at_rest = run.states(np.zeros(2 * system.size))
-    parts = [run.states(np.ascontiguousarray(part)) - at_rest for part in (start.real, start.imag)]
+    at_rest = run.states(np.zeros(2 * system.size), SAMPLES)
+    parts = [run.states(np.ascontiguousarray(part), SAMPLES) - at_rest for part in (start.real, start.imag)]
     states = (parts[0] + 1j * parts[1])[:-1]
-    mean = system.coefficients(run.tau[: -1 : max(1, len(states) // 64)])
+    mean = system.coefficients(system.period * np.arange(MEANS) / MEANS)
     # Enough for the highest mode: steps are a power of two, at least as many.
     cycles = max((*system.frequencies, system.fastest)) * system.period / (2 * np.pi)
     count = min(len(states), max(SAMPLES, 1 << int(np.ceil(np.log2(max(SAMPLES_PER_CYCLE * cycles, 1))))))

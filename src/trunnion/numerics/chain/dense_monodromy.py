@@ -24,7 +24,9 @@ from trunnion.numerics.jit import njit
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-MOST_STEPS = 1 << 15
+FEWEST_STEPS, MOST_STEPS = 16, 1 << 15
+EVEN = 32
+"""Times at which units and a first number of steps are found."""
 CHUNK = 32 * 2**20
 """Bytes that the coefficients evaluated together may take, per array."""
 KEPT = 4 * 2**20
@@ -40,18 +42,19 @@ class Propagation:
     monodromy (2n, 2n): Z = Φ(period); particular (2n,): where the motion from rest under the forcing ends. State
     order: x, then x′. ``scale`` (2n,) are the units in which ``error``, the estimated error of Z, holds: |δZ_ij| ≲
     error · scale_i / scale_j. ``damping_trace`` is ∫ tr(M⁻¹C) dτ, which Liouville's identity equates to −ln det Z.
-    ``states(start)`` follows one motion: states (steps + 1, 2n) at ``tau`` (steps + 1,) from ``start`` (2n,) on.
-    ``adjoint(last, count)`` carries the row l = ``last`` (2n,) back from the end of the period, so that l·x stays for
-    every free motion x: rows (count + 1, 2n) at equal distances; ``count`` divides the steps, a power of two.
+    ``states(start, least)`` follows one motion from ``start`` (2n,) over ``steps`` steps of equal length, or over
+    ``least`` where that is more: states (steps + 1, 2n). ``adjoint(last, count)`` carries the row l = ``last`` (2n,)
+    back from the end of the period, so that l·x stays for every free motion x: rows (count + 1, 2n) at equal distances.
+    ``steps``, ``least`` and ``count`` are powers of two.
     """
 
-    tau: Array
+    steps: int
     monodromy: Array
     particular: Array
     scale: Array
     error: float
     damping_trace: float
-    states: Callable[[Array], Array]
+    states: Callable[[Array, int], Array]
     adjoint: Callable[[Complex, int], Complex]
 
     @property
@@ -60,7 +63,8 @@ class Propagation:
         return self.monodromy * self.scale[None, :] / self.scale[:, None]
 
 
-CoefficientFunction = Callable[[Array], tuple[Array, Array, Array, Array]]
+Parts = tuple[Array, Array, Array, Array]
+CoefficientFunction = Callable[[Array], Parts]
 
 
 def propagate(
@@ -75,14 +79,15 @@ def propagate(
     ------
     ComputationError : the coefficients are not finite or M is singular; no agreement in 32768 steps.
     """
-    scale, steps = _scales(coefficients, period, size)
+    looked = _first_look(coefficients, period, size, max(FEWEST_STEPS, least_steps))
+    scale, steps = _scales(looked.even, period, size)
     steps = max(steps, least_steps)
     if steps >= MOST_STEPS:
         raise ComputationError(
             f"the fastest motion needs {steps:.3g} steps a period, more than {MOST_STEPS}: a stiffness is very large "
             "or an inertia very small beside the others; join the parts rigidly, or raise the speed"
         )
-    problem = _Problem(coefficients, period, size, scale)
+    problem = _Problem(coefficients, period, size, scale, looked.at_stages)
     everything = np.concatenate([np.eye(2 * size), np.zeros((2 * size, 1))], axis=1)
     coarse = problem.march(everything, steps)
     while steps < MOST_STEPS:
@@ -94,7 +99,7 @@ def propagate(
             break
         if change / 16 <= max(tolerance, rounding):
             return Propagation(
-                np.linspace(0.0, period, steps + 1),
+                steps,
                 fine.state[:, :-1] * scale[:, None] / scale[None, :],
                 fine.state[:, -1] * scale,
                 scale,
@@ -110,9 +115,40 @@ def propagate(
     )
 
 
-def _scales(coefficients: CoefficientFunction, period: float, size: int) -> tuple[Array, int]:
+@dataclass(frozen=True)
+class _Look:
+    """Coefficients at 32 even times, and at all stages by a number of steps."""
+
+    even: Parts
+    at_stages: dict[int, Parts]
+
+
+def _first_look(coefficients: CoefficientFunction, period: float, size: int, steps: int) -> _Look:
+    """At all times that ``steps`` steps and twice as many need, which most often are all, in one call: of a small
+    system a call costs more than its times. At 32 times where that would be much memory."""
+    if 24 * steps * STAGES * size**2 > KEPT:
+        return _Look(coefficients(period * np.arange(EVEN) / EVEN), {})
+    stages = [_stages(0, count, period / count) for count in (steps, 2 * steps)]
+    every = coefficients(np.concatenate(stages))
+    cut = len(stages[0])
+    coarse, fine = _part(every, slice(cut)), _part(every, slice(cut, None))
+    even = slice(None, None, STAGES * max(1, 2 * steps // EVEN))  # the first stage stands where its step begins
+    return _Look(_part(fine, even), {steps: coarse, 2 * steps: fine})
+
+
+def _part(every: Parts, times: slice) -> Parts:
+    mass, damping, stiffness, forcing = every
+    return mass[times], damping[times], stiffness[times], forcing[times]
+
+
+def _stages(first: int, count: int, step: float) -> Array:
+    """Times of all stages of ``count`` steps, one step after the other."""
+    return np.asarray(((first + np.arange(count)[:, None] + C[None, :]) * step).ravel())
+
+
+def _scales(even: Parts, period: float, size: int) -> tuple[Array, int]:
     """Units of the state and a first number of steps, from the coefficients at a few times."""
-    mass, damping, stiffness, _ = coefficients(period * np.arange(32) / 32)
+    mass, damping, stiffness, _ = even
     try:
         diagonal = np.abs(np.einsum("tii->ti", mass)).mean(0)
         root = np.sqrt(diagonal)
@@ -127,7 +163,7 @@ def _scales(coefficients: CoefficientFunction, period: float, size: int) -> tupl
     frequency = max(np.sqrt(square), 2 * np.pi / period)
     steps = np.ceil(np.log2(period * max(frequency, rate) / 2 + 8))  # may be past what an integer of the machine holds
     scale = np.concatenate([1 / root, frequency / root])
-    return scale, 1 << max(4, int(steps))
+    return scale, max(FEWEST_STEPS, 1 << int(steps))
 
 
 @dataclass(frozen=True)
@@ -147,13 +183,15 @@ class _March:
 class _Problem:
     """The equations in energy-like units ``scale`` (2n,).
 
-    ``held``: by number of steps, the coefficients at all of them, of the last run whose are few.
+    ``looked``: by number of steps, the coefficients where they are known already. ``held``: the same in the problem's
+    units, of the last run whose are few.
     """
 
     coefficients: CoefficientFunction
     period: float
     size: int
     scale: Array
+    looked: dict[int, Parts]
     held: dict[int, tuple[Array, Array, Array, Array]] = field(default_factory=dict, repr=False)
 
     def march(
@@ -178,8 +216,9 @@ class _Problem:
             largest = max(largest, run(q, d, g, frequency, step, A, B, state, rows))
         return _March(state, largest, trace)
 
-    def follow(self, start: Array, steps: int) -> Array:
-        """States (steps + 1, 2n) of the forced motion from ``start`` (2n,), in the user's units."""
+    def follow(self, start: Array, least: int, steps: int) -> Array:
+        """States (steps + 1, 2n), or ``least`` + 1, of the forced motion from ``start`` (2n,), in the user's units."""
+        steps = max(steps, least)
         kept = np.empty((steps + 1, 2 * self.size))
         kept[0] = start / self.scale
         self.march(kept[0][:, None], steps, kept)
@@ -187,6 +226,7 @@ class _Problem:
 
     def carry_back(self, last: Complex, count: int, steps: int) -> Complex:
         """Rows (count + 1, 2n) of the adjoint motion that ends as ``last`` (2n,), in the user's units."""
+        steps = max(steps, count)
         size, each = 2 * self.size, steps // count
         rows = np.empty((count + 1, size), dtype=complex)
         rows[count] = last * self.scale
@@ -199,18 +239,18 @@ class _Problem:
     def _slopes(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:
         """Q/ν, D, g and tr D at the stages of ``count`` of the ``steps`` of a period, in the problem's units."""
         if 8 * steps * STAGES * self.size**2 > KEPT:
-            return self._evaluated(first, count, self.period / steps)
+            return self._evaluated(first, count, steps)
         if steps not in self.held:
             self.held.clear()
-            self.held[steps] = self._evaluated(0, steps, self.period / steps)
+            self.held[steps] = self._evaluated(0, steps, steps)
         q, d, g, damping = (part[first : first + count] for part in self.held[steps])
         return q, d, g, damping
 
-    def _evaluated(self, first: int, count: int, step: float) -> tuple[Array, Array, Array, Array]:
+    def _evaluated(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:
         n, unit = self.size, self.scale[: self.size]
         frequency = self.scale[n:] / unit
-        tau = (first + np.arange(count)[:, None] + C[None, :]) * step
-        mass, damping, stiffness, forcing = self.coefficients(tau.ravel())
+        known = self.looked.get(steps) if count == steps else None
+        mass, damping, stiffness, forcing = known or self.coefficients(_stages(first, count, self.period / steps))
         diagonal = np.einsum("tii->ti", mass)
         if n > 1 and np.count_nonzero(mass) == np.count_nonzero(diagonal):
             over = 1 / diagonal
@@ -233,44 +273,44 @@ class _Problem:
 def _march(q, d, g, frequency, step, a, b, state, kept):  # type: ignore[no-untyped-def]
     """Carry ``state`` (2n, columns) in place; the last column is forced, and kept (steps + 1, 2n) unless empty."""
     steps, stages, n, wide = q.shape[0], q.shape[1], q.shape[2], state.shape[1]
-    slopes, here = np.empty((stages, 2 * n, wide)), np.empty((2 * n, wide))
+    # Rows one behind the other: sums of stages then run over one long row.
+    whole = 2 * n * wide
+    flat, here, slopes = state.reshape(whole), np.empty(whole), np.empty((stages, whole))
     largest = 0.0
     for s in range(steps):
         for m in range(stages):
-            _weighted(state, slopes, step, a[m], m, here)
+            slope = slopes[m]
+            _weighted(flat, slopes, step, a[m], m, here)
+            rows, at = slope.reshape(2 * n, wide), here.reshape(2 * n, wide)
             for i in range(n):
-                rate, out = slopes[m, i], slopes[m, n + i]
+                rate, out = rows[i], rows[n + i]
                 for c in range(wide):
-                    rate[c] = frequency[i] * here[n + i, c]
+                    rate[c] = frequency[i] * at[n + i, c]
                     out[c] = 0.0
                 for j in range(n):
-                    by_angle, by_rate, x, v = q[s, m, i, j], d[s, m, i, j], here[j], here[n + j]
+                    by_angle, by_rate, x, v = q[s, m, i, j], d[s, m, i, j], at[j], at[n + j]
                     for c in range(wide):
                         out[c] -= by_angle * x[c] + by_rate * v[c]
                 out[wide - 1] += g[s, m, i]
-        _weighted(state, slopes, step, b, stages, state)
-        for i in range(2 * n):
-            for c in range(wide):
-                largest = max(largest, abs(state[i, c]))
+        _weighted(flat, slopes, step, b, stages, flat)
+        for k in range(whole):
+            largest = max(largest, abs(flat[k]))
         if len(kept) > 0:
             for i in range(2 * n):
-                kept[s + 1, i] = state[i, wide - 1]
+                kept[s + 1, i] = flat[i * wide + wide - 1]
     return largest
 
 
 @njit(nogil=True, inner=True)
 def _weighted(state, slopes, step, weights, stages, out):  # type: ignore[no-untyped-def]
-    """out = state + step · Σ weights · slopes, by loops: to set one slice to another takes the compiler seconds."""
-    for i in range(state.shape[0]):
-        row = out[i]
-        for c in range(state.shape[1]):
-            row[c] = state[i, c]
-        for p in range(stages):
-            weight = step * weights[p]
-            if weight != 0.0:
-                slope = slopes[p, i]
-                for c in range(state.shape[1]):
-                    row[c] += weight * slope[c]
+    """out = state + step · Σ weights · slopes, all (entries,) or (stages, entries)."""
+    for k in range(len(state)):
+        out[k] = state[k]
+    for p in range(stages):
+        weight = step * weights[p]
+        if weight != 0.0:
+            for k in range(len(state)):
+                out[k] += weight * slopes[p, k]
 
 
 def _march_by_products(
