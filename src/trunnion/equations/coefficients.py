@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+MOST_KNOWN = 8
+"""Rows whose coefficients are kept."""
+
 
 @dataclass(frozen=True)
 class MeshWave:
@@ -143,7 +146,23 @@ class Assembly:
             _refuse_any_frequency(self.line)
         if not free_play:
             refuse_friction(self.line, but=states_a_motion)
-        return _coefficients(self, np.atleast_2d(table), statically_twisted, damped, free_play)
+        asked = np.atleast_2d(table)
+        if len(asked) > 1:
+            return _coefficients(self, asked, statically_twisted, damped, free_play)
+        key = (asked.tobytes(), statically_twisted, damped, free_play)
+        found = self._known.get(key)
+        if found is None:
+            if len(self._known) >= MOST_KNOWN:
+                self._known.clear()
+            # Of a copy, as laws keep parts of the table.
+            found = _coefficients(self, asked.copy(), statically_twisted, damped, free_play)
+            self._known[key] = found
+        return found
+
+    @cached_property
+    def _known(self) -> dict[tuple[bytes, bool, bool, bool], LineCoefficients]:
+        """Coefficients of single rows: parts of one analysis ask for the same."""
+        return {}
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:
         """Damping (case,) of a spring under the line's one damping ratio: 2ζk/ω."""

@@ -33,8 +33,6 @@ from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 Array = NDArray[np.float64]
-FAINT = 1e-4
-"""Share of a harmonic that a step of an integration may leap over to begin with."""
 
 
 @dataclass(frozen=True)
@@ -162,16 +160,7 @@ def periodic_linear_system(
     aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
     fastest = float(max(topo.rates, default=0))
-    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest, _harmonics(coefficients))
-
-
-def _harmonics(coefficients: LineCoefficients) -> int:
-    """Harmonics of the joints' own orders in which they pass rotation on, down to a share ``FAINT``; meshes state
-    theirs."""
-    spread = max((law.spread for law in coefficients.joints), default=0.0)
-    if not spread < 1:
-        return 0
-    return max(1, int(np.ceil(np.log(FAINT) / np.log(max(spread, FAINT)))))
+    return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:

@@ -44,8 +44,6 @@ class PeriodicLinearSystem:
         named after them.
     fastest : the highest frequency of the coefficients in radians per unit τ, where known: no step of an integration
         is longer than a quarter of its cycle.
-    harmonics : how many harmonics of ``fastest`` the coefficients hold, but for parts without weight; 0 where nothing
-        is known of them.
     """
 
     period: float
@@ -55,7 +53,6 @@ class PeriodicLinearSystem:
     names: tuple[str, ...] = ()
     frequencies: tuple[float, ...] = ()
     fastest: float = 0.0
-    harmonics: int = 0
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.period) and self.period > 0):
