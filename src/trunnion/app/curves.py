@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,6 +13,8 @@ from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem, Span
 
 from trunnion.app import figures
 
+NARROW = 34
+"""Letters of a title in one line over a picture that has half of the page."""
 MOST = 24
 """Curves that one figure shows."""
 
@@ -30,6 +33,7 @@ class Curves:
         **more: Any,
     ) -> None:
         self.figure = figures.plot(x, y, height=height, title=title, **more)
+        self.words, self.is_narrow = title, False
         self.source = ColumnDataSource(data={"xs": [], "ys": [], "colour": [], "dash": [], "width": [], "name": []})
         self.areas = ColumnDataSource(data={"xs": [], "ys": []})
         self.figure.patches(
@@ -107,4 +111,15 @@ class Curves:
         if y:
             self.figure.yaxis.axis_label = y
         if title:
-            self.figure.title.text = title
+            self.title(title)
+
+    def title(self, text: str) -> None:
+        """Words above the figure, in lines that it holds."""
+        self.words = text
+        self.figure.title.text = "\n".join(textwrap.wrap(text, NARROW)) if self.is_narrow else text
+
+    def narrow(self, narrow: bool) -> None:
+        """Half of the page, or all of it."""
+        self.is_narrow = narrow
+        self.legend.ncols = 1 if narrow else 3
+        self.title(self.words)

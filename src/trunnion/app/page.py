@@ -128,7 +128,7 @@ class Page:
                 side.panel,
                 sizing_mode="stretch_width",
                 margin=0,
-                min_width=min(460, 900 // len(sides)),
+                min_width=460 if len(sides) == 1 else 240,  # two fit beside the sliders at 1024
             )
             for name, side in sides
         ]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import panel as pn
 
 from trunnion.app.calls import Call
+from trunnion.app.curves import Curves
 from trunnion.app.jobs import Job
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
@@ -71,8 +72,11 @@ class Side(ABC):
     panel: Any
     variant = "now"
 
-    def narrow(self, narrow: bool) -> None:  # noqa: B027 - most pictures take any width
+    def narrow(self, narrow: bool) -> None:
         """Take half of the page, or all of it again."""
+        for held in vars(self).values():
+            if isinstance(held, Curves):
+                held.narrow(narrow)
 
     @abstractmethod
     def show(self, name: str, data: Any) -> None:

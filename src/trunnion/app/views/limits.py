@@ -252,7 +252,7 @@ class _Side(Side):
         self._over_speed(data, now, size, factor)
         title = "regions of instability and stable windows of" if name == "windows" else "largest stable"
         figure = self.curves.figure
-        figure.title.text = f"{title} {path}"
+        self.curves.title(f"{title} {path}")
         figure.xaxis.axis_label, figure.yaxis.axis_label = f"input speed [{speed}]", f"{path} [{unit}]"
 
     def _over_speed(self, data: Any, now: float, size: float, factor: float) -> None:

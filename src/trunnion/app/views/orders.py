@@ -215,6 +215,6 @@ class Mode:
             self.figure.x_range.factors = names
         figures.put(self.source, {"x": names, "y": shape, "shape": shape})
         self.figure.title.text = (
-            f"mode {k + 1} of {len(data['frequency'])}: {data['frequency'][k] / (2 * np.pi):.5g} Hz, "
+            f"mode {k + 1} of {len(data['frequency'])}: {data['frequency'][k] / (2 * np.pi):.5g} Hz,\n"
             f"damping ratio {data['damping'][k]:.3g}"
         )

@@ -283,6 +283,7 @@ class _Side(Side):
 
     def narrow(self, narrow: bool) -> None:
         """The mode goes below the multipliers."""
+        super().narrow(narrow)
         self.point.narrow(narrow)
 
     def show(self, name: str, data: Any) -> None:
