@@ -13,6 +13,8 @@ from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem, Span
 
 from trunnion.app import figures
 
+IN_A_ROW, ROW = 3, 28
+"""Names in a row of the legend, and its height in pixels."""
 NARROW = 34
 """Letters of a title in one line over a picture that has half of the page."""
 MOST = 24
@@ -33,7 +35,7 @@ class Curves:
         **more: Any,
     ) -> None:
         self.figure = figures.plot(x, y, height=height, title=title, **more)
-        self.words, self.is_narrow = title, False
+        self.words, self.is_narrow, self.height = title, False, height
         self.source = ColumnDataSource(data={"xs": [], "ys": [], "colour": [], "dash": [], "width": [], "name": []})
         self.areas = ColumnDataSource(data={"xs": [], "ys": []})
         self.figure.patches(
@@ -46,7 +48,7 @@ class Curves:
         self.figure.add_tools(
             HoverTool(renderers=[drawn], tooltips=[("", "@name"), ("", "($x, $y)")], line_policy="interp")
         )
-        self.legend = Legend(items=[LegendItem(label={"field": "name"}, renderers=[drawn])], ncols=3)
+        self.legend = Legend(items=[LegendItem(label={"field": "name"}, renderers=[drawn])], ncols=IN_A_ROW)
         self.legend.label_text_font_size = "12px"
         self.legend.spacing = 8
         self.legend.margin = 2
@@ -105,6 +107,7 @@ class Curves:
                 "name": [name for name, _, _ in shown],
             },
         )
+        self._make_room(len(shown))
         self.cursor.location = cursor
         if x:
             self.figure.xaxis.axis_label = x
@@ -118,8 +121,14 @@ class Curves:
         self.words = text
         self.figure.title.text = "\n".join(textwrap.wrap(text, NARROW)) if self.is_narrow else text
 
+    def _make_room(self, names: int) -> None:
+        """Rows of the legend below the picture, which keeps its height."""
+        self.legend.ncols = 1 if self.is_narrow else IN_A_ROW
+        usual = -(-names // IN_A_ROW)
+        self.figure.height = self.height + (ROW * (names - usual) if self.is_narrow else 0)
+
     def narrow(self, narrow: bool) -> None:
         """Half of the page, or all of it."""
         self.is_narrow = narrow
-        self.legend.ncols = 1 if narrow else 3
+        self._make_room(len(self.source.data["name"]))
         self.title(self.words)
