@@ -90,6 +90,16 @@ def test_drawn() -> None:
     assert "probability" in axes.get_title(loc="left")
 
 
+def test_few_unstable_lines_are_seen_beside_many_stable_ones() -> None:
+    tolerances = {"Shaft 1.stiffness": 0.1, "Disk 2.inertia": 0.1, "HookeJoint 1.angle": ("range", 0.25, 0.32)}
+    study = tn.tolerance_study(LINE, tolerances, 1.66, samples=1024)
+    axes = study.plot()
+    assert 0.9 < study.probability < 1.0
+    low, high = axes.get_ylim()
+    heights = [np.log(bar.get_height() / low) / np.log(high / low) for bar in axes.patches if bar.get_height() > 0]
+    assert axes.get_yscale() == "log" and min(heights) > 0.03
+
+
 @pytest.mark.slow
 def test_intervals_overlap_those_of_plain_monte_carlo() -> None:
     """100 seeds: at least 90 intervals overlap that of 4096 independent random lines."""

@@ -13,6 +13,8 @@ from trunnion.results.speeds import show_speed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+CROWDED = 0.5
+"""Share of lines in one bar above which the few others, those that grow among them, would not be seen beside it."""
 SHOWN = 8
 """Parameters shown at most."""
 
@@ -22,12 +24,16 @@ def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
     axes = axes if axes is not None else new_axes(7.2, 3.6)
     fastest = int(np.nanargmax(study.growth_rate.max(axis=1)))
     rates = study.growth_rate[fastest]
-    axes.hist(rates, bins=60, color="#b9a7ad", lw=0)
+    counts, _, _ = axes.hist(rates, bins=60, color="#b9a7ad", lw=0)
+    few = np.max(counts) > CROWDED * len(rates)
+    if few:
+        axes.set_yscale("log")
+        axes.set_ylim(0.5, 1e3 * np.max(counts))  # the ranking stands above the bars
     axes.axvline(0.0, color="#4a1526", lw=1.4)
     axes.set_xlabel(
         f"growth rate at {show_speed(float(study.speeds[fastest]), study.unit)} [1/s]", fontsize=TEXT, color=INK
     )
-    axes.set_ylabel("lines", fontsize=TEXT, color=INK)
+    axes.set_ylabel("lines, logarithmic" if few else "lines", fontsize=TEXT, color=INK)
     low, high = study.interval
     title = f"stable with probability {study.probability:.4g} ({low:.4g} to {high:.4g})"
     axes.set_title(title, fontsize=TEXT, color=INK, loc="left")
