@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import trunnion as tn
 from trunnion.analyses.orders.response import rough_response
@@ -220,3 +222,49 @@ def test_the_motion_of_rigid_shafts_serves_as_well_to_first_order() -> None:
 def test_a_lossy_bent_free_line_is_straight_where_its_joint_is() -> None:
     bent, straight = (tn.order_response(lossy(angle), [20.0, 80.0], orders=[1.5]) for angle in (1e-5, 0.0))
     assert bent.torque == pytest.approx(straight.torque, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_own_equations_integrated_to_the_periodic_state():
+    """Three inertias, a joint of 14° and order 3, by scipy: all orders but 6, which is quadratic in the excitation."""
+    bend, inertia, cv, nominal = 0.25, (0.4, 0.05, 0.3), 0.5, 80.0
+    (k1, c1), (k2, c2) = (8e3, 30.0), (5e3, 20.0)
+    half = np.tan(bend / 2) ** 2
+
+    def torques(t, y):
+        a1, a2, a3 = (nominal * t + y[i] for i in range(3))
+        w1, w2, w3 = (nominal + y[i] for i in range(3, 6))
+        ratio = np.cos(bend) / (1 - np.sin(bend) ** 2 * np.cos(a2) ** 2)
+        output = a2 + np.arctan2(half * np.sin(2 * a2), 1 - half * np.cos(2 * a2))
+        return k1 * (a2 - a1) + c1 * (w2 - w1), k2 * (a3 - output) + c2 * (w3 - ratio * w2), ratio
+
+    def rate(t, y):
+        first, second, ratio = torques(t, y)
+        turned = 2.0 * np.cos(3 * (nominal * t + y[0]))
+        driven = (cv * nominal + turned + first) / inertia[0]
+        return [*y[3:], driven, (ratio * second - first) / inertia[1], (-second - cv * (nominal + y[5])) / inertia[2]]
+
+    turn = 2 * np.pi / nominal
+    settled = solve_ivp(rate, (0, 400 * turn), np.zeros(6), rtol=1e-10, atol=1e-12, method="DOP853").y[:, -1]
+    span = (400 * turn, 440 * turn)
+    motion = solve_ivp(rate, span, settled, rtol=1e-11, atol=1e-13, method="DOP853", dense_output=True).sol
+    begin = 400.3 * turn
+
+    def turned_by(t):
+        return nominal * (t - begin) + motion(t)[1] - motion(begin)[1]
+
+    end = brentq(lambda t: turned_by(t) - 32 * np.pi, begin + 14 * turn, begin + 20 * turn, xtol=1e-13)
+    times = begin + np.arange(4096) * (end - begin) / 4096
+    found = np.abs([2 * np.fft.rfft(torque)[16:81:16] / 4096 for torque in torques(times, motion(times))[:2]])
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=inertia[0], drive_share=1, excitation=[{"order": 3, "amplitude": 2.0}]),
+            tn.Shaft(stiffness=k1, damping=c1),
+            tn.Disk(inertia=inertia[1]),
+            tn.HookeJoint(angle=bend),
+            tn.Shaft(stiffness=k2, damping=c2),
+            tn.Disk(inertia=inertia[2], viscous_load=cv),
+        ]
+    )
+    linear = np.abs(tn.order_response(line, [32 * np.pi / (end - begin)], orders=[1, 2, 3, 4, 5]).torque[0]).T
+    np.testing.assert_allclose(found, linear, rtol=2e-6, atol=2e-8 * linear.max())
