@@ -7,6 +7,7 @@ import pytest
 import trunnion as tn
 
 LINE = tn.catalogue("two-shaft-cardan")
+BENT = LINE.replace("HookeJoint 1", angle=0.2)
 ANGLE = "HookeJoint 1.angle"
 
 
@@ -29,6 +30,7 @@ REFUSED = [
     (lambda: tn.compare(LINE, LINE, (2.0, 1.0)), "speeds = (2.0, 1.0): must be a lowest and a highest", "tn.rpm"),
     (lambda: tn.compare(LINE, LINE, (1.0, 2.0), load_case="hill"), "load_case = 'hill'", ""),
     (lambda: tn.compare(LINE, LINE).plot(), "comparison: has nothing to draw", "change a value"),
+    (lambda: tn.compare(LINE, BENT).plot(), "comparison: has nothing to draw", "name speeds"),
     (lambda: tn.optimise(LINE, {}, "irregularity"), "free: must name one parameter or more", "fork_offset"),
     (lambda: tn.optimise(LINE, {"speed": (1, 2)}, "irregularity"), "speed: is no parameter of the line", "give speeds"),
     (lambda: tn.optimise(LINE, {"Shaft 9.damping": (0, 1)}, "irregularity"), "is not a parameter", "did you mean"),

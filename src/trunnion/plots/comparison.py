@@ -27,7 +27,9 @@ def draw(found: Comparison, axes: Axes | None = None, *, most: int = SHOWN) -> A
         return _margins(found, margins[:most], axes)
     moved = [one for one in found.differences if one.matters and np.isfinite(one.relative)]
     if not moved:
-        raise InputError("has nothing to draw: nothing differs", element="comparison", remedy="change a value")
+        unjudged = found.changes and None in found.verdicts
+        remedy = "name speeds, as speeds=(tn.rpm(300), tn.rpm(2400))" if unjudged else "change a value"
+        raise InputError("has nothing to draw: no result differs", element="comparison", remedy=remedy)
     return _changes(found, moved[:most], axes)
 
 

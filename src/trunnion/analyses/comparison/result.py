@@ -154,7 +154,13 @@ class Comparison(Result):
         if len(told) > len(shown):
             rows.append(f"  {len(told) - len(shown)} more move by less than {100 * LITTLE:g} %")
         if self.changes and not told:
-            rows.append("  none of these moves a frequency, a growth rate, a torque or a margin")
+            judged = None not in self.verdicts
+            rest = (
+                "a growth rate, a torque or a margin"
+                if judged
+                else "which is all that could be compared without speeds"
+            )
+            rows.append(f"  none of these moves a frequency, {rest}")
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 
     def _bound(self, check: Check | None) -> str:
