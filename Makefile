@@ -3,7 +3,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
+# Of all that is installed a run imports a small part: what it imports is compiled then, and kept.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt
 
 # Files of tests side by side, one per processor, in the order of tests/conftest.py; kernels are compiled into one cache
 # that they share. One thread each for linear algebra: more of them spin against the other workers.

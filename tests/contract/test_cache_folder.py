@@ -127,6 +127,30 @@ def test_two_processes_do_not_compile_the_same_function(tmp_path):
     assert sorted(process.communicate(timeout=300)[0].strip() for process in both) == ["0", "1"]
 
 
+def test_what_no_compiler_takes_holds_nobody_back(tmp_path):
+    """A process that failed to compile lives on; the others must not wait for its end."""
+    script = tmp_path / "failing.py"
+    script.write_text(
+        "from trunnion.numerics.compile_lock import HELD\n"
+        "from trunnion.numerics.jit import njit\n"
+        "import numba\n\n"
+        "@njit()\n"
+        "def outer(inner, x):\n"
+        "    return inner(x)\n\n"
+        "def spelled(x):\n"
+        "    return str(x).spell()\n\n"
+        "try:\n"
+        "    outer(numba.njit(spelled), 1.0)\n"
+        "except numba.TypingError:\n"
+        "    print(len(HELD), 'held')\n"
+        "print(outer(numba.njit(lambda x: abs(x)), -1.0), len(HELD))\n",
+        encoding="utf-8",
+    )
+    env = {**os.environ, "TRUNNION_CACHE": str(tmp_path / "kept"), "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, timeout=300)
+    assert done.stdout.splitlines() == ["0 held", "1.0 0"], done.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no locks of this kind there")
 def test_who_waits_too_long_compiles_for_itself(tmp_path, monkeypatch):
     from trunnion.numerics import compile_lock

@@ -16,6 +16,8 @@ try:
 except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
+HELD: set[CompileLock] = set()
+"""All locks that this process holds."""
 PATIENCE = 180.0
 """Seconds to wait for another process, beyond which it is taken for stopped."""
 POLL = 0.05
@@ -52,6 +54,7 @@ class CompileLock:
                 break
             else:
                 self._held = file
+                HELD.add(self)
                 return
         file.close()
 
@@ -60,3 +63,10 @@ class CompileLock:
         if self._held is not None:
             self._held.close()
             self._held = None
+            HELD.discard(self)
+
+
+def release_all() -> None:
+    """Let the next ones in, whatever this process was about to compile."""
+    for lock in tuple(HELD):
+        lock.release()

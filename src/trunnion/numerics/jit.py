@@ -8,17 +8,18 @@ cannot be written and a disk that is full stop nothing here: they cost the time 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
 import numba
-from numba.core import caching, ccallback, dispatcher
+from numba.core import caching, ccallback, dispatcher, event
 
 from trunnion.numerics import shipped
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
-from trunnion.numerics.compile_lock import CompileLock
+from trunnion.numerics.compile_lock import CompileLock, release_all
 from trunnion.numerics.linked import INNER, link_only
 from trunnion.numerics.sources import SOURCES, digest_of
 
@@ -106,6 +107,22 @@ class Kept(CACHE):
             without_a_cache(error)
         finally:
             self._lock.release()
+
+
+class _Failures(event.Listener):  # type: ignore[misc]
+    """What is not compiled is not saved either, which would let the next process in: without this it would wait for
+    the end of a process whose user's function no compiler takes, or that was interrupted."""
+
+    def on_start(self, event: Any) -> None:
+        """Nothing to do."""
+
+    def on_end(self, event: Any) -> None:
+        """Hold nothing back after a failure, which numba's own ``is_failed`` does not tell."""
+        if sys.exc_info()[0] is not None:
+            release_all()
+
+
+event.register("numba:compile", _Failures())  # type: ignore[no-untyped-call]
 
 
 class NotKept(NO_CACHE):
