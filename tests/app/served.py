@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,11 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 WAIT = 180_000
 """Milliseconds until a page must have answered: machines that test are busy, and the first run compiles."""
+
+LATE = 90_000
+"""The same of a page that was just opened, before it is loaded once more."""
+IDLE = "[data-state=idle]"
+"""What says that nothing is being computed."""
 
 
 def browser_path() -> str | None:
@@ -66,14 +72,25 @@ class Look:
     errors: list[str] = field(default_factory=list)
 
     def at(self, query: str = "") -> Look:
-        """Open the page and wait until it has computed."""
+        """Open the page and wait until it has computed.
+
+        Two of some hundred fresh pages, both of *Joints* beside other work, said "computing …" for good; until the
+        cause is known a page that does so is loaded once more, and the report of the tests says it.
+        """
+        from playwright.sync_api import TimeoutError as Late
+
         self.page.goto(self.server.address + query)
-        self.settled()
+        try:
+            self.page.wait_for_selector(IDLE, timeout=LATE)
+        except Late:
+            warnings.warn(f"{query or 'the first page'} was loaded twice: it still computed after 90 s", stacklevel=2)
+            self.page.reload()
+            self.settled()
         return self
 
     def settled(self) -> None:
         """Wait until nothing is being computed."""
-        self.page.wait_for_selector("[data-state=idle]", timeout=WAIT)
+        self.page.wait_for_selector(IDLE, timeout=WAIT)
 
     def settled_anew(self) -> None:
         """Wait until the page has rested for a while: what was just pressed may not have begun yet."""

@@ -182,6 +182,7 @@ def test_forks_are_turned_by_a_slider_and_angles_of_two_views_are_combined(look:
     no_alarm(look)
 
 
+@pytest.mark.slow
 def test_two_variants_stand_side_by_side_in_every_view(look: Look) -> None:
     """With what changed; no picture is squeezed out of its half at 1024 px."""
     look.page.set_viewport_size({"width": 1024, "height": 800})
