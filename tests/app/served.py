@@ -74,8 +74,8 @@ class Look:
     def at(self, query: str = "") -> Look:
         """Open the page and wait until it has computed.
 
-        Two of some hundred fresh pages, both of *Joints* beside other work, said "computing …" for good; until the
-        cause is known a page that does so is loaded once more, and the report of the tests says it.
+        Two of some hundred fresh pages of *Joints* said "computing …" for good, behind a large picture. The session now
+        sends what stayed behind; should it happen again the page is loaded once more, and the report says so.
         """
         from playwright.sync_api import TimeoutError as Late
 

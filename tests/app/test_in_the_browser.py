@@ -127,3 +127,13 @@ def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
     look.page.wait_for_function("() => document.location.search.length > 0", timeout=180_000)
     look.page.get_by_text("3.5").first.wait_for()
     expect(look.page.get_by_label("angle of HookeJoint 1", exact=True)).to_have_value("3.5 deg", timeout=60_000)
+
+
+def test_what_stayed_unsent_follows_when_the_page_rests(look: Look) -> None:
+    """A change that nobody sees carries it; it comes after every other change."""
+    look.at("?view=joints")
+    look.page.wait_for_selector("[data-mark]", state="attached")
+    look.page.wait_for_timeout(1000)
+    before = look.page.locator("[data-mark]").get_attribute("data-mark")
+    look.type("Angle in side view [deg]", "6")
+    look.page.wait_for_selector(f"[data-mark]:not([data-mark='{before}'])", state="attached")

@@ -85,14 +85,15 @@ class Page:
         self.state = pn.pane.HTML("", margin=(4, 10))
         self.cancel_button = pn.widgets.Button(label="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
-        self.status = pn.Column(
-            self.said, pn.Row(self.bar, self.cancel_button, self.state, margin=0), sizing_mode="stretch_width", margin=0
-        )
+        self.mark = pn.pane.HTML("", width=0, height=0, margin=0)
+        told = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
+        self.status = pn.Column(self.said, told, sizing_mode="stretch_width", margin=0)
         self.main = pn.Column(sizing_mode="stretch_width", margin=0)
         self.aside = pn.Column(sizing_mode="stretch_width", margin=0)
         self._shown: tuple[Any, ...] = ()
         self._told = 0.0
         self._done = 0
+        self._marks = 0
         self.template = pn.Template(_TEMPLATE, location=True)
         for name in ("navigation", "status", "main", "aside"):
             self.template.add_panel(name, getattr(self, name))
@@ -153,6 +154,11 @@ class Page:
         self._told = now
         self.bar.value = int(100 * min(1.0, max(0.0, share)))
         self.state.object = "<span role='status' data-state='busy'>computing …</span>"
+
+    def send_rest(self) -> None:
+        """Change what nobody sees, so that changes which still wait to be sent go with it."""
+        self._marks += 1
+        self.mark.object = f"<span hidden data-mark='{self._marks}'></span>"
 
     def idle(self, text: str = "", remarks: Sequence[str] = ()) -> None:
         """Nothing is under way."""

@@ -33,6 +33,8 @@ QUICK = 0.15
 """Seconds that a computation takes at most for which nothing is shown in advance."""
 UNSAID = 0.25
 """Seconds that a computation takes without a word: a bar that comes and goes at once only makes the page jump."""
+REST = 0.5
+"""Seconds after a change of the page when what may have stayed behind is sent."""
 KEPT, NOW = "kept", "now"
 KINDS: dict[str, type[View]] = {kind.name: kind for kind in VIEWS}
 
@@ -47,6 +49,7 @@ class Session:
         self.kept: str | None = None
         self.said_from = 0.0
         self.task: asyncio.Task[None] | None = None
+        self.rest: asyncio.TimerHandle | None = None
         self.resting = False
         self.side_tasks: set[asyncio.Task[None]] = set()
         self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
@@ -98,6 +101,8 @@ class Session:
 
     def _destroyed(self, sessions: dict[str, Session]) -> None:
         sessions.pop(self.token, None)
+        if self.rest:
+            self.rest.cancel()
         for task in (self.task, *self.side_tasks):
             if task:
                 task.cancel()
@@ -114,6 +119,22 @@ class Session:
         except Exception as error:
             traceback.print_exc()
             self.page.message(f"unexpected {type(error).__name__}: {error}. The page goes on; undo the last change.")
+        finally:
+            self._send_rest_soon()
+
+    def _send_rest_soon(self) -> None:
+        """Panel 1.9 leaves a message unsent that comes while it writes a large one, until the next: as "computing …"
+        for good behind the picture of the forks. That next one is made here, when the page rests."""
+        if self.rest:
+            self.rest.cancel()
+        self.rest = asyncio.get_event_loop().call_later(REST, self._send_rest)
+
+    def _send_rest(self) -> None:
+        def work() -> None:
+            with set_curdoc(self.doc), unlocked():
+                self.page.send_rest()
+
+        self._next(work)
 
     def edit(self, change: Callable[[Document], Any]) -> None:
         """Change the line, and everything that follows from it."""
@@ -305,6 +326,9 @@ class Session:
             with set_curdoc(self.doc):
                 self.guarded(action)
 
+        self._next(work)
+
+    def _next(self, work: Callable[[], None]) -> None:
         if self.doc.session_context is not None and not self.doc.session_context.destroyed:
             self.doc.add_next_tick_callback(work)
 
