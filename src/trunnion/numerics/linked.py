@@ -51,7 +51,7 @@ class LinkedLowering(LOWERING):  # type: ignore[misc]
         library.finalize()
         entrance = _no_entrance(state.func_id.func_qualname)
         state.targetctx.insert_user_function(entrance, state.cr.fndesc, [library])
-        state.reload_init.extend(library._reload_init)
+        state.reload_init.extend(getattr(library, "_reload_init", ()))  # numba before 0.61 has none
         state.cr = state.cr._replace(cfunc=entrance)
         return True
 
