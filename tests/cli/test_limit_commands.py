@@ -10,7 +10,7 @@ import pytest
 def test_tongues(run, here):
     call = ("tongues", "two-shaft-cardan", "--x", "speed:1.4:1.8", "--y", "HookeJoint 1.angle:0deg:20deg:3")
     done = run(*call, "-o", "t.csv", "-o", "t.png", "-o", "t.nc")
-    assert done.exit_code == 0 and "subharmonic ω₂: closes at input speed 1.618" in done.stdout
+    assert done.exit_code == 0 and "subharmonic ω₂: closes below at input speed 1.618" in done.stdout
     assert (
         (here / "t.csv").read_text(encoding="utf-8").startswith("point,of_tongue,boundary_x [rad/s],boundary_y [rad]")
     )

@@ -13,8 +13,8 @@ import trunnion as tn
 from trunnion.analyses.tongues.boundaries import boundary_functions
 from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.meetings import meetings
-from trunnion.analyses.tongues.region import patched
-from trunnion.analyses.tongues.rows import unstable_intervals
+from trunnion.analyses.tongues.region import Region, patched
+from trunnion.analyses.tongues.rows import looked_at, unstable_intervals
 from trunnion.analyses.tongues.series_roots import row_roots
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.results.verdict import Verdict
@@ -127,6 +127,31 @@ def test_a_row_without_regions(gentle) -> None:
     assert gentle.complete and "completely" in gentle.search
 
 
+def test_words_are_in_the_units_of_the_file() -> None:
+    """Speeds in rpm, angles in degrees, whatever is computed with."""
+    line = tn.Driveline(LINE.elements, operation=tn.Operation(speed="15 rpm"))
+    said = str(tn.tongues(line, ("speed", 1.4, 1.8), ("HookeJoint *.angle", 0.05, 0.5), rows=5))
+    assert "over input speed × angle" in said and " rpm, angle of all Hooke's joints" in said and "° apart" in said
+
+
+def test_what_lies_in_the_dark_is_not_called_high(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stretch of which no point can be computed: no region in it, and no warning either."""
+    task = task_of(LINE, *BOX, None, False, "tongues")
+    region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, 1, lambda share: None)
+    (row,) = unstable_intervals(region, np.array([0.2]))
+    judged = Region.judged
+
+    def blind(self: Region, u, v):
+        found = judged(self, u, v)
+        found.radius[:] = np.nan
+        return found
+
+    monkeypatch.setattr(Region, "judged", blind)
+    middle = (region.box.u0 + region.box.u1) / 2
+    (found,) = looked_at(region, [row], [np.array([[middle, middle * 1.001]])])
+    assert not len(found)
+
+
 def test_damping_as_the_second_axis() -> None:
     """The tip is then the least damping that removes the tongue."""
     found = tn.tongues(
@@ -221,7 +246,7 @@ def test_result_as_data_and_table(gentle, tmp_path) -> None:
     lines = (tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "tongue,name,speed [rad/s],HookeJoint 1.angle [rad]" and len(lines) == 1 + data.sizes["point"]
     assert json.loads(gentle.to_json())["complete"] == 1
-    assert "closes below" in str(gentle)
+    assert "closes below at input speed" in str(gentle)
     with pytest.raises(tn.InputError, match="beyond this tongue"):
         gentle[0].interval_at(0.6)
     with pytest.raises(tn.InputError, match="outside the box"):

@@ -69,7 +69,7 @@ def tongues(
     if as_json:
         output.write_json("tongues", {**found.to_dict(), "written": written_paths(written)})
         return
-    print_result(_tongues_text(found, unit), written)
+    print_result(found.said_in(unit), written)
 
 
 def read_box_range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[tuple[object, ...], int]:
@@ -88,23 +88,6 @@ def read_box_range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[
 def _points(found: Tongues) -> Any:
     """Boundary points as a table: number of the tongue, x, y."""
     return found.data[["of_tongue", "boundary_x", "boundary_y"]]
-
-
-def _tongues_text(found: Tongues, unit: str) -> str:
-    from trunnion.results.quantity_axes import quantity_axis
-
-    across, up = quantity_axis(found.x_label, found.x_unit, unit), quantity_axis(found.y_label, found.y_unit, unit)
-    what = f"over {across.quantity} × {up.quantity}"
-    lines = [f"{len(found)} instability regions {what}" if len(found) else f"no instability found {what}"]
-    for t in found:
-        where = (
-            "goes on outside the box" if t.tip is None else f"closes at {across.value(t.tip[0])}, {up.value(t.tip[1])}"
-        )
-        if t.parts is not None:
-            where = f"parts from region {t.parts}"
-        lines.append(f"  {t.number}  {t.name}: {where}; grows by up to {t.growth_rate:.4g} {found.rate_unit}")
-    lines.append(f"  {found.search}")
-    return "\n".join([*lines, *(f"  note: {r}" for r in found.remarks)])
 
 
 def written_paths(written: Sequence[Path]) -> list[str]:

@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
+from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -224,23 +226,27 @@ class Tongues(Result):
         ]
 
     def __str__(self) -> str:
-        if not self.tongues:
-            head = f"no instability found over {self.x_label} × {self.y_label}"
-        else:
-            many = "region" if len(self) == 1 else "regions"
-            head = f"{len(self)} instability {many} over {self.x_label} × {self.y_label}"
+        return self.said_in(speed_unit(self.line) if self.line else None)
+
+    def said_in(self, unit: str | None) -> str:
+        """Every region in a line; speeds in ``unit``, numbers of a family of one's own as they are."""
+        across, up = parameter_axis(self.x_label, self.x_unit, unit), parameter_axis(self.y_label, self.y_unit, unit)
+        what = f"over {across.quantity} × {up.quantity}"
+        many = "region" if len(self) == 1 else "regions"
+        head = f"{len(self)} instability {many} {what}" if self.tongues else f"no instability found {what}"
         rows = [
-            f"  {t.number}  {t.name}: {_tip_words(t)}, grows by up to {t.growth_rate:.4g} {self.rate_unit}"
+            f"  {t.number}  {t.name}: {_tip_words(t, across, up)}; grows by up to {t.growth_rate:.4g} {self.rate_unit}"
             for t in self.tongues
         ]
         return "\n".join([head, *rows, f"  {self.search}", *(f"  note: {r}" for r in self.remarks)])
 
 
-def _tip_words(tongue: Tongue) -> str:
+def _tip_words(tongue: Tongue, across: QuantityAxis, up: QuantityAxis) -> str:
     if tongue.tip is None:
-        return f"from y = {tongue.y[0]:.6g} on" if tongue.parts is None else f"parts from tongue {tongue.parts}"
+        first = up.value(float(tongue.y[0]))
+        return f"goes on outside the box from {first}" if tongue.parts is None else f"parts from region {tongue.parts}"
     closes = "above" if tongue.top is None and tongue.tip[1] >= tongue.y[-1] else "below"
-    return f"closes {closes} at {_place(tongue.tip)}"
+    return f"closes {closes} at {across.value(tongue.tip[0])}, {up.value(tongue.tip[1])}"
 
 
 def _place(point: tuple[float, float] | None) -> str:

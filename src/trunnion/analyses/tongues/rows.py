@@ -237,14 +237,15 @@ def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
         u = low[left, None] + (high - low)[left, None] * shares
         found = region.judged(u.ravel(), np.repeat(v[left], LOOKS))
         height = (found.radius - 1 - found.error).reshape(u.shape)
-        here = np.nanargmax(np.where(np.isfinite(height), height, -np.inf), axis=1)
+        told = np.isfinite(height)
+        here = np.where(told, height, -np.inf).argmax(axis=1)
         reached = np.take_along_axis(height, here[:, None], 1)[:, 0]
         at = np.take_along_axis(u, here[:, None], 1)[:, 0]
         best[left], top[left] = np.where(reached > top[left], at, best[left]), np.fmax(top[left], reached)
         step = (high - low)[left] / (LOOKS - 1)
         low[left], high[left] = np.maximum(low[left], best[left] - step), np.minimum(high[left], best[left] + step)
         # Meetings lie in the middle of their stretches: where nothing rises there, no region hides.
-        flat = reached - np.nanmin(height, axis=1) < RISES * np.abs(reached)
+        flat = reached - np.where(told, height, np.inf).min(axis=1) < RISES * np.abs(reached)
         left = left[~(top[left] > 0) & ~(flat & (not region.by_coefficients))]
         if not len(left):
             break

@@ -25,8 +25,10 @@ from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
 from trunnion.analyses.tongues.ridges import TIP, ridge, tips
 from trunnion.analyses.tongues.rows import Kind, Row, unstable_intervals
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.systems.family import PeriodicLinearFamily
 
 Array = NDArray[np.float64]
@@ -90,6 +92,8 @@ def tongues(
     tell(1.0)
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
     unknown = _unknown(region, searched)
+    unit = speed_unit(task.line) if task.line else None
+    across, up = (parameter_axis(axis.label, axis.unit, unit) for axis in (task.x, task.y))
     return Tongues(
         _numbered(found),
         task.x.label,
@@ -102,9 +106,9 @@ def tongues(
         len(searched),
         float(np.abs(steps).max()),
         region.by_coefficients and not region.uncovered,
-        _search_words(region, len(searched), float(np.abs(steps).max()), task.y.unit)
+        _search_words(region, len(searched), up.number(float(np.abs(steps).max()), 3))
         + words(strands)
-        + _unknown_words(unknown),
+        + _unknown_words(unknown, across, up),
         unknown,
         task.line,
         task.remarks,
@@ -134,8 +138,8 @@ def task_of(
     return line_task(line, across, up, speed, twisted, analysis)
 
 
-def _search_words(region: Region, rows: int, step: float, unit: str) -> str:
-    apart = f"{rows} rows, at most {step:.3g} {'' if unit == '1' else unit}".rstrip() + " apart,"
+def _search_words(region: Region, rows: int, step: str) -> str:
+    apart = f"{rows} rows, at most {step} apart,"
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
         return (
@@ -158,13 +162,13 @@ def _unknown(region: Region, rows: list[Row]) -> tuple[Unknown, ...]:
     return tuple(sorted(found, key=lambda place: (place.y, place.x)))
 
 
-def _unknown_words(unknown: tuple[Unknown, ...]) -> str:
+def _unknown_words(unknown: tuple[Unknown, ...], across: QuantityAxis, up: QuantityAxis) -> str:
     if not unknown:
         return ""
     rows, first = len({place.y for place in unknown}), unknown[0]
     return (
-        f"; on {rows} of them it could not be told whether the motion grows, first at y = {first.y:.6g} for x from "
-        f"{first.x[0]:.6g} to {first.x[1]:.6g}"
+        f"; on {rows} of them it could not be told whether the motion grows, first at "
+        f"{up.value(first.y)} for {across.said(np.array(first.x))}"
     )
 
 
