@@ -34,6 +34,7 @@ def test_tolerance_study(run, here):
     assert done.exit_code == 0 and "with probability" in done.stdout and "what matters" in done.stdout
     shown = json.loads(run(*call, "--speed", "1.2", "--samples", "256", "--json", "-o", "t.nc").stdout)
     assert shown["parameter"] == ["Shaft 1.stiffness", "Disk 1.inertia"] and 0 <= shown["probability"] <= 1
+    assert "stable at 11.4592 rpm with" in run(*call, "--speed", "1.2rad/s", "--unit", "rpm", "--samples", "256").stdout
 
 
 def test_envelope(run, here):

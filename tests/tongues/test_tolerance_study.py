@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import two_shafts
+from long_lines import long_line
 from scipy.optimize import brentq
 
 import trunnion as tn
@@ -121,9 +124,50 @@ def test_intervals_overlap_those_of_plain_monte_carlo() -> None:
     assert hits >= 90
 
 
-STIFF = [*LINE.elements, tn.Shaft(stiffness=1e6, damping=1.0), tn.Disk(inertia=1e-2)]
+def stiff(line: tn.Driveline, stiffness: float) -> tn.Driveline:
+    """``line`` with a small disk behind a shaft that is all but rigid."""
+    end = [tn.Shaft(stiffness=stiffness, damping=1.0), tn.Disk(inertia=1e-2)]
+    return tn.Driveline([*line.elements, *end], damping_ratio=line.damping_ratio)
+
+
+def test_stiff_lines_at_slow_speeds_have_the_probability_of_rigid_ones() -> None:
+    """A last shaft a million times as stiff, whose mode makes a thousand cycles a turn: as if its disk were tied."""
+    edge = brentq(lambda b: two_shafts.radius(1.61, b, gamma=1.01) - 1, 0.1, 0.3, xtol=1e-9)
+    tolerances = {"HookeJoint 1.angle": ("range", edge - 0.03, edge + 0.07)}
+    study = tn.tolerance_study(stiff(LINE, 1e6), tolerances, 1.61, samples=2048)
+    assert study.probability == pytest.approx(0.3, abs=2e-3) and study.undecided == 0
+    tied = tn.tolerance_study(LINE.replace("Disk 2", inertia=1.01), tolerances, 1.61, samples=2048)
+    assert np.allclose(study.growth_rate, tied.growth_rate, atol=2e-6)
+
+
+def test_every_line_of_a_stiff_driveline_is_decided_at_its_slowest_speed() -> None:
+    """At 300 rpm the ordinary integration leaves the truck's radius open by more than its distance from 1."""
+    truck = tn.load(Path(__file__).parents[2] / "examples/truck.toml")
+    study = tn.tolerance_study(truck, {"front tube.length": 0.05, "joint 2.angle": 0.1}, tn.rpm(300), samples=256)
+    assert study.probability == 1.0 and study.undecided == 0
+    middle = tn.stability(truck, tn.rpm(300)).growth_rate
+    assert np.all(np.abs(study.growth_rate / middle - 1) < 0.01) and study.worst.growth_rate < 0
+
+
+@pytest.mark.parametrize("damping", [0.02, 0.0])
+def test_both_ways_to_judge_many_lines_agree(damping: float) -> None:
+    from trunnion.analyses.tolerance.many_lines import ManyLines
+    from trunnion.equations.coefficients import assemble
+
+    assembly = assemble(long_line(3, 4, damping * 1e-3))
+    table = assembly.table(8, 150.0)
+    table[:, 0] *= np.linspace(0.5, 1.5, 8)
+    lines = ManyLines.of(assembly, table, True, 1)
+    ordinary, stepped = lines._integrated(table, 1e-10), lines._stepped(table)
+    assert np.all(np.abs(ordinary.radius - stepped.radius) <= ordinary.error + stepped.error)
+    assert np.all(stepped.error < 1e-3) and np.array_equal(ordinary.verdict, stepped.verdict)
+
+
 BAD = [
-    (lambda: tn.tolerance_study(tn.Driveline(STIFF), {"Shaft 1.stiffness": 0.1}, 1.2), "speeds = 1.2: is too slow"),
+    (
+        lambda: tn.tolerance_study(stiff(LINE, 1e14), {"Shaft 1.stiffness": 0.1}, 1e-2, samples=256),
+        "speeds = 0.01: is too slow",
+    ),
     (lambda: tn.tolerance_study(LINE, {}, 1.0), "tolerances = {}: must name one parameter or more"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is no tolerance"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", 2, 1)}, 1.0), "Shaft 1.stiffness = ('range', 2"),

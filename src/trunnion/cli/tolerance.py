@@ -56,6 +56,7 @@ def tolerance_study(
     with output.progress("tolerance study") as advance:
         counted = True if checks < 0 else checks
         found = study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
+    found = replace(found, unit=unit)
     written = write_results(to, file_stem(file), "tolerance-study", found.data, lambda: found.plot())
     if as_json:
         output.write_json("tolerance-study", {**found.to_dict(), "written": written_paths(written)})

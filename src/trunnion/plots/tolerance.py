@@ -22,8 +22,9 @@ SHOWN = 8
 def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
     """Histogram of the growth rate at the speed where it is fastest; beside it the ranking as bars."""
     axes = axes if axes is not None else new_axes(7.2, 3.6)
-    fastest = int(np.nanargmax(study.growth_rate.max(axis=1)))
+    fastest = int(np.nanmax(study.growth_rate, axis=1).argmax())
     rates = study.growth_rate[fastest]
+    rates = rates[np.isfinite(rates)]
     counts, _, _ = axes.hist(rates, bins=60, color="#b9a7ad", lw=0)
     few = np.max(counts) > CROWDED * len(rates)
     if few:

@@ -1,4 +1,8 @@
-"""Stability of very many lines that differ in their numbers, on the compiled kernel."""
+"""Stability of very many lines that differ in their numbers, on the compiled kernels.
+
+The ordinary kernel follows every mode. Of a stiff line at a slow speed the fastest ones make the error of the matrix
+far larger than what the radius is wanted to: there steps of exponentials are halved until the largest multipliers stay.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +12,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import quantities
-from trunnion.analyses.charts.chart_pixels import Pixels, judge
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, put_better
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import require_period
+from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
+from trunnion.numerics.chain.exponential_monodromy import by_halving
+from trunnion.numerics.threads import on_threads
+from trunnion.results.verdict import verdicts
 
 Array = NDArray[np.float64]
 AT_ONCE = 1 << 15
 """Lines in one call of the kernel."""
+STEPPED_AT_ONCE = 256
+"""Lines whose steps are halved together."""
+FIRST = 16
+"""Lines that tell which way suits the others."""
+COARSE, SHARE = 1e-6, 1e-2
+"""Errors of ρ above this, and above this share of 1 − ρ, are too large."""
+UNKNOWN = 0.1
+"""Error of ρ from which nothing is known of it."""
 
 
 @dataclass(frozen=True)
@@ -60,15 +77,55 @@ class ManyLines:
 
     def judged(self, table: Array, tolerance: float) -> Pixels:
         """Radius, error, critical multiplier and verdict of rows of ``table``, each (rows,)."""
-        size, aside = self.assembly.topology.size, self.set_aside(table)
-        parts = []
-        for start in range(0, len(table), AT_ONCE):
-            values, bounds = quantities(*self.matrices(table[start : start + AT_ONCE], tolerance))
-            parts.append(judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), size, aside))
-        return Pixels(
-            *(np.concatenate([getattr(p, name) for p in parts]) for name in ("radius", "error", "critical", "verdict"))
-        )
+        stiff = np.mean(_too_coarse(self._integrated(table[:FIRST], tolerance))) > 0.5
+        ways = (lambda rows: self._integrated(rows, tolerance)), self._stepped
+        way, other = ways[::-1] if stiff else ways
+        found = _joined([way(table[start : start + AT_ONCE]) for start in range(0, len(table), AT_ONCE)])
+        coarse = np.flatnonzero(_too_coarse(found))
+        if len(coarse):
+            put_better(other(table[coarse]), found, coarse)
+        return found
 
-    def growth(self, table: Array, radius: Array) -> Array:
-        """Growth rates [1/s] of spectral radii at the speeds of ``table``."""
-        return np.asarray(np.log(np.maximum(radius, 1e-300)) / self.period * table[:, 0])
+    def _integrated(self, table: Array, tolerance: float) -> Pixels:
+        values, bounds = quantities(*self.matrices(table, tolerance))
+        size, aside = self.assembly.topology.size, self.set_aside(table)
+        return judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), size, aside)
+
+    def _stepped(self, table: Array) -> Pixels:
+        """The same by steps of exponentials; an infinite error where the shortest ones do not tell."""
+        topo = self.assembly.topology
+        steps = steps_that_see(fastest_cycles(self.assembly, self.period))
+
+        def run(rows: Array) -> Pixels:
+            co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
+            by_speed = loaded_by_speed(topo, co)
+            lanes = chain_lanes(topo, co, by_speed)
+            points = ChainExponentials(chain_program(topo, co, by_speed), lanes, self.period, steps)
+            rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.free else None
+            beside = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+            found = by_halving(
+                lambda which, count: points.monodromies(which, count)[0],
+                len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside,
+            )  # fmt: skip
+            undamped = np.abs(points.monodromies(np.arange(len(rows)), steps)[1]) < 1e-12 * topo.size
+            error = np.where(np.isfinite(found.radius), found.error, np.inf)
+            return Pixels(found.radius, error, found.critical, verdicts(found.radius, error, undamped))
+
+        parts = np.array_split(table, max(1, -(-len(table) // STEPPED_AT_ONCE)))
+        return _joined(on_threads(run, parts, self.threads))
+
+    def growth(self, table: Array, found: Pixels) -> Array:
+        """Growth rates [1/s] at the speeds of ``table``; of a radius smaller than its error that of the error, NaN
+        where nothing is known."""
+        known = np.where(found.error <= UNKNOWN, np.maximum(found.radius, found.error), np.nan)
+        return np.asarray(np.log(np.maximum(known, 1e-300)) / self.period * table[:, 0])
+
+
+def _too_coarse(found: Pixels) -> NDArray[np.bool_]:
+    return ~(found.error <= np.maximum(COARSE, SHARE * np.abs(1 - found.radius)))
+
+
+def _joined(parts: list[Pixels]) -> Pixels:
+    return Pixels(
+        *(np.concatenate([getattr(p, name) for p in parts]) for name in ("radius", "error", "critical", "verdict"))
+    )

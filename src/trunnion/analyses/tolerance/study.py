@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
-from trunnion.analyses.tolerance.many_lines import ManyLines
+from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
 from trunnion.driveline.arguments import numbers, one_number
@@ -63,9 +63,10 @@ class ToleranceStudy(Result):
 
     probability, interval: the share of stable lines and its interval of ``confidence``; undecided: share of lines whose
     radius is 1 to within its error, which count as unstable in ``probability``; stable_share (speeds,) at each speed;
-    growth_rate (speeds, samples) of every sample [1/s]; worst: by gradient from the fastest sample; ranking:
-    parameters by the share of the scatter of the growth rate, at the speed where it is fastest, that each explains
-    alone; checks: the same for the checks of ``assess``, where they were asked for.
+    growth_rate (speeds, samples) of every sample [1/s], where the radius is smaller than its error that of the error,
+    NaN where nothing is known of it; worst: by gradient from the fastest sample; ranking: parameters by the share of
+    the scatter of the growth rate, at the speed where it is fastest, that each explains alone; checks: the same for the
+    checks of ``assess``, where they were asked for.
     """
 
     parameters: tuple[str, ...]
@@ -96,7 +97,7 @@ class ToleranceStudy(Result):
         yield axis("speed", self.speeds, "rad/s")
         yield over("speed", "stable_share", self.stable_share, "1")
         yield axis("quantile", np.array(QUANTILES), "1")
-        yield over("speed quantile", "growth_rate", np.quantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
+        yield over("speed quantile", "growth_rate", np.nanquantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
         yield remark("probability", self.probability)
         yield remark("interval", list(self.interval))
         yield remark("confidence", self.confidence)
@@ -122,7 +123,8 @@ class ToleranceStudy(Result):
         lines = [
             f"stable {where} with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
             f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances",
-            f"  worst line found: {self.worst.verdict}, grows by {self.worst.growth_rate:+.4g} 1/s at "
+            f"  worst line found: {self.worst.verdict}, "
+            f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
             f"{show_speed(self.worst.speed, self.unit)}, with "
             + ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items()),
             "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
@@ -136,10 +138,6 @@ class ToleranceStudy(Result):
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
 
 
-UNKNOWN = 0.1
-"""Error of a spectral radius from which nothing is known of it."""
-FIRST = 16
-"""Lines that tell whether a speed is too slow for all."""
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 
@@ -204,11 +202,11 @@ def tolerance_study(
         table = tables(assembly, spreads, shares, speed)
         _require_known(lines.judged(table[:FIRST], TOLERANCE), speed)
         found = lines.judged(table, TOLERANCE)
-        growth[k] = lines.growth(table, found.radius)
+        growth[k] = lines.growth(table, found)
         fine = np.isin(found.verdict, (Verdict.STABLE, Verdict.MARGINAL))
         at_each[k] = fine.mean()
         stable &= fine
-        undecided |= found.verdict == Verdict.UNDECIDED
+        undecided |= ~fine & (found.verdict != Verdict.UNSTABLE)
         if progress:
             progress((k + 1) / (len(at) + 1))
     judged = None
@@ -216,7 +214,7 @@ def tolerance_study(
         count, tell = None if checks is True else int(checks), progress or (lambda share: None)
         judged = study_checks(assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, tell)
     probability = float(stable.mean())
-    fastest = int(np.nanargmax(growth.max(axis=1)))
+    fastest = int(np.nanmax(growth, axis=1).argmax())
     return ToleranceStudy(
         tuple(s.label for s in spreads),
         np.array([s.low for s in spreads]),
@@ -240,9 +238,9 @@ def tolerance_study(
 def _require_known(found: Pixels, speed: float) -> None:
     """Refuse a speed at which the motion of none of the first lines is known: its share of stable lines would be 0 for
     nothing. The first few tell before many are integrated in vain."""
-    if np.all(found.error > UNKNOWN):
+    if not np.any(found.error <= UNKNOWN):
         raise InputError(
-            "is too slow for such stiff lines: over one turn their fastest mode makes too many cycles to be followed",
+            "is too slow for such stiff lines: over one turn their fastest modes make too many cycles to be followed",
             key="speeds", value=speed, remedy="leave it out, or take the stiffest parts as rigid",
         )  # fmt: skip
 
@@ -254,7 +252,7 @@ def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth:
 
     def rates(points: Array) -> Array:
         table = tables(lines.assembly, spreads, np.clip(points, LEAST, 1 - LEAST), speed)
-        return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE).radius)
+        return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE))
 
     size = len(spreads)
     for _ in range(CLIMBS):
@@ -283,6 +281,8 @@ LEAST = 1e-12
 
 def _ranking(spreads: tuple[Spread, ...], shares: Array, growth: Array) -> tuple[tuple[str, float], ...]:
     """Share of the growth rate's variance between classes of each parameter, less what chance alone would make."""
+    known = np.isfinite(growth)
+    shares, growth = shares[known], growth[known]
     total, count = float(growth.var()), len(growth)
     found = []
     for k, one in enumerate(spreads):

@@ -23,6 +23,7 @@ from trunnion.numerics.spectrum import multipliers, spectral_radius
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Rates = Callable[[NDArray[np.intp], Array], Array]
+March = Callable[[NDArray[np.intp], int], Array]
 FIRST_STEPS = 8
 MOST_STEPS = 1 << 12
 CHUNK = 1 << 21
@@ -49,7 +50,6 @@ class Monodromies:
     steps: NDArray[np.intp]
 
 
-@np.errstate(over="ignore", invalid="ignore")  # steps that are far too long overflow, and are halved
 def exponential_monodromies(
     rates: Rates,
     cases: int,
@@ -70,15 +70,33 @@ def exponential_monodromies(
     least_steps : as many as follow the fastest change of A.
     aside : (case numbers, matrices) → matrices without what is no disturbance, for the radius.
     """
+
+    def march(which: NDArray[np.intp], count: int) -> Array:
+        return marched(rates, which, size, period, count)
+
+    return by_halving(march, cases, size, tolerance=tolerance, least_steps=least_steps, aside=aside)
+
+
+@np.errstate(over="ignore", invalid="ignore")  # steps that are far too long overflow, and are halved
+def by_halving(
+    march: March,
+    cases: int,
+    size: int,
+    *,
+    tolerance: float = 1e-9,
+    least_steps: int = FIRST_STEPS,
+    aside: Callable[[NDArray[np.intp], Array], Array] | None = None,
+) -> Monodromies:
+    """The same of whatever ``march`` steps: (case numbers, number of steps) → matrices (case, size, size)."""
     matrix = np.full((cases, size, size), np.nan)
     radius, error = np.full(cases, np.nan), np.full(cases, np.nan)
     critical, steps = np.full(cases, np.nan, dtype=complex), np.zeros(cases, dtype=np.intp)
     left, count = np.arange(cases), least_steps
     judged = aside or (lambda which, found: found)
-    coarse = marched(rates, left, size, period, count)
+    coarse = march(left, count)
     while len(left) and count < MOST_STEPS:
         count *= 2
-        fine = marched(rates, left, size, period, count)
+        fine = march(left, count)
         found, off, value = _radius(judged(left, fine), judged(left, coarse))
         done = np.asarray(off <= np.maximum(tolerance, SHARE * np.abs(1 - found)))
         matrix[left], steps[left] = fine, count
