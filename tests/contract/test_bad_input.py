@@ -836,6 +836,11 @@ FILES = [
         'did you mean "damping"?',
     ),
     (
+        HEAD + SHAFT + 'name = "rear tube"\nmax_torque = "2 kN*m"\n',
+        "bad.toml: rear tube (element 1).max_torque = '2 kN*m': unknown key",
+        'write [[limit]] with of = "rear tube" and max_torque',
+    ),
+    (
         HEAD + JOINT.replace("12", "95"),
         "bad.toml: HookeJoint 1 (element 1).angle = '95 deg': must be less",
         "deg",

@@ -272,11 +272,20 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Pa
                 data["excitation"] = read_excitation(folder / named)
             element = KINDS[kind](**data)
     except InputError as error:
-        raise about(error, label) from None
+        raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
     for key, problem, remedy in (*element.doubts(), *element.file_doubts()):
         remark = InputError(problem, element=label, key=key, value=data.get(key), remedy=remedy)
         warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
     return element
+
+
+def _limit_elsewhere(error: InputError, name: str | None) -> InputError:
+    """Of a limit written into an element, where it belongs."""
+    if error.key not in LIMIT_KINDS:
+        return error
+    of = f'of = "{name}" and ' if name else "of and "
+    remedy = f"limits stand in tables of their own: write [[limit]] with {of}{error.key}"
+    return InputError(error.problem, element=error.element, key=error.key, value=error.value, remedy=remedy)
 
 
 def _operation(table: Any) -> Operation:
