@@ -10,12 +10,14 @@ which assumes less; a chart that fails in every way is refused.
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.chart_families import ChartFamily
+from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, put_better
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.patches import patches
@@ -123,16 +125,25 @@ def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: in
     ComputationError : the check fails in every way.
     """
     failed: list[SpotCheck] = []
-    for way in LADDER:
-        own, asked = family_for(way, family), tolerance * way.share
-        if way.smaller and not way.half_windows and own is family:
-            continue  # it never used half periods, so this was tried before
-        function = _patched(way, own, x, y, asked, threads, tell)
-        pixels = fill(own, function, x, y, asked, threads)
-        check = spot_check(family, pixels, x, y, tolerance, threads, SPOTS * (1 + len(failed)))
-        if not check.worst_ratio > 1:
-            return Built(way, own, asked, function, pixels, check, tuple(failed))
-        failed.append(check)
+
+    def sharp() -> Spots:
+        return spots_known(family, x, y, tolerance, threads, SPOTS * (1 + len(failed)))
+
+    # What the check compares with asks nothing of the chart. Functions of a user's own stay on one thread.
+    beside = threads > 1 and isinstance(family, LineFamily)
+    with ThreadPoolExecutor(1) as aside:
+        first = aside.submit(sharp) if beside else None
+        for way in LADDER:
+            own, asked = family_for(way, family), tolerance * way.share
+            if way.smaller and not way.half_windows and own is family:
+                continue  # it never used half periods, so this was tried before
+            function = _patched(way, own, x, y, asked, threads, tell)
+            pixels = fill(own, function, x, y, asked, threads)
+            check = compared(sharp() if first is None else first.result(), pixels)
+            first = None
+            if not check.worst_ratio > 1:
+                return Built(way, own, asked, function, pixels, check, tuple(failed))
+            failed.append(check)
     worst = failed[-1]
     raise ComputationError(
         f"the chart failed its own check in each of {len(failed)} ways of building it: points integrated anew move the "
@@ -202,16 +213,22 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
     return pixels
 
 
-def spot_check(
-    family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int, count: int
-) -> SpotCheck:
-    """Compare ``count`` random pixels (y, x) with integration over whole periods at a thousandth of the tolerance.
+class Spots(NamedTuple):
+    """Some of a chart's pixels, known more sharply: ``found`` (spot,) of ``rows`` and ``columns``."""
+
+    found: Pixels
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+
+
+def spots_known(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, count: int) -> Spots:
+    """``count`` random pixels (y, x) by integration over whole periods at a thousandth of the tolerance.
 
     The same pixels for the same shape: a chart built anew is asked first where it failed before.
     """
-    rows, columns = spots(pixels, count)
+    rows, columns = spots((len(y), len(x)), count)
     values, bounds = family.over_whole_periods().evaluate(x[columns], y[rows], sharply(tolerance), threads)
-    return compared(judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside), pixels, rows, columns)
+    return Spots(judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside), rows, columns)
 
 
 def sharply(tolerance: float) -> float:
@@ -219,22 +236,22 @@ def sharply(tolerance: float) -> float:
     return max(tolerance * 1e-3, 1e-13)
 
 
-def spots(pixels: Pixels, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Rows and columns of ``count`` random pixels (y, x)."""
-    shares = np.random.default_rng(pixels.verdict.size).random((count, 2))
-    height, width = pixels.verdict.shape
-    return (shares[:, 0] * height).astype(int), (shares[:, 1] * width).astype(int)
+def spots(shape: tuple[int, int], count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of ``count`` random pixels of a chart of ``shape`` (y, x)."""
+    shares = np.random.default_rng(shape[0] * shape[1]).random((count, 2))
+    return (shares[:, 0] * shape[0]).astype(int), (shares[:, 1] * shape[1]).astype(int)
 
 
-def compared(found: Pixels, pixels: Pixels, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> SpotCheck:
-    """What pixels of a chart are off from ``found``, known more sharply."""
+def compared(known: Spots, pixels: Pixels) -> SpotCheck:
+    """What pixels (y, x) of a chart are off from ``known``."""
+    found, rows, columns = known
     off = np.abs(found.radius - pixels.radius[rows, columns])
     # Without error and without estimate is not off.
     ratio = off / np.maximum(pixels.error[rows, columns] + found.error, 1e-300)
-    known = np.isfinite(ratio)
-    if not known.any():
+    finite = np.isfinite(ratio)
+    if not finite.any():
         return SpotCheck(len(rows), float("nan"), float("nan"))
-    return SpotCheck(len(rows), float(ratio[known].max()), float(off[known].max()))
+    return SpotCheck(len(rows), float(ratio[finite].max()), float(off[finite].max()))
 
 
 def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:

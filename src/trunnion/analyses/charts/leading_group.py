@@ -29,6 +29,8 @@ FALLS = 24
 """Fall of the change from one halving to the next that shows order 6, whose own is 64."""
 NOTABLE = 1e-3
 """Of the largest multiplier, what one must be to matter for the group."""
+WORTH_A_THREAD = 10_000
+"""Microseconds of work for which a thread of its own is begun."""
 TELLING = 100
 """Difference over its error at which two points are told apart without a second look."""
 
@@ -64,7 +66,8 @@ class Settling:
 
     def __init__(self, points: Points, threads: int) -> None:
         self.points, self.threads, self.work = points, threads, 0.0
-        self.eigenvalues = pixel_price(points.states) / step_price(points.states)
+        self.price = step_price(points.states)
+        self.eigenvalues = pixel_price(points.states) / self.price
         self.fine, self.coarse, self.coarser = (np.empty((0, points.states), complex) for _ in range(3))
         self.norm, self.trace, self.steps = np.empty(0), np.empty(0), np.empty(0, dtype=np.intp)
         self._add(points.count)
@@ -92,7 +95,7 @@ class Settling:
 
     def sharpen(self, which: NDArray[np.intp]) -> None:
         """Twice the steps at the points ``which``."""
-        for steps in np.unique(self.steps[which]).tolist():
+        for steps in np.unique(self.steps[which])[::-1].tolist():  # the least last: none is taken up twice
             some = which[self.steps[which] == steps]
             self.coarser[some], self.coarse[some] = self.coarse[some], self.fine[some]
             self.fine[some], self.norm[some], self.trace[some] = self._multipliers(some, 2 * steps)
@@ -112,8 +115,9 @@ class Settling:
             order = np.argsort(-np.abs(values), axis=1)
             return np.take_along_axis(values, order, axis=1), norm, trace
 
-        pieces = np.array_split(which, max(1, -(-len(which) // LANES)))
-        values, norm, trace = zip(*on_threads(run, pieces, self.threads if len(pieces) > 1 else 1), strict=True)
+        worth = len(which) * (steps * self.price) / WORTH_A_THREAD
+        pieces = np.array_split(which, max(1, min(self.threads, len(which) // LANES, int(worth))))
+        values, norm, trace = zip(*on_threads(run, pieces, len(pieces)), strict=True)
         return np.concatenate(values), np.concatenate(norm), np.concatenate(trace)
 
 

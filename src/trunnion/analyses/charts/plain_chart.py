@@ -18,6 +18,7 @@ from trunnion.analyses.charts.building import (
     LADDER,
     SPOTS,
     Built,
+    Spots,
     between,
     compared,
     decide_stiff,
@@ -150,11 +151,11 @@ def build_plainly(
     try:
         if not _decided(plain, pixels, x, y, tolerance):
             return None
-        rows, columns = spots(pixels, SPOTS)
+        rows, columns = spots(pixels.verdict.shape, SPOTS)
         sharp = judge_matrices(*plain.matrices(x[columns], y[rows], sharply(tolerance)))
     except ComputationError:
         return None
-    check = compared(sharp, pixels, rows, columns)
+    check = compared(Spots(sharp, rows, columns), pixels)
     return None if check.worst_ratio > 1 else Built(way, family, tolerance, function, pixels, check, ())
 
 
