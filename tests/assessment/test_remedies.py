@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -176,6 +177,33 @@ def test_where_nothing_helps_it_is_said():
     helped = tn.remedies(line, (20.0, 30.0))
     assert helped.remedies == ()
     assert helped.sentences[0].startswith("max torque of shaft: no single change of up to a factor of two")
+    assert helped.closest == {}
+
+
+def test_what_nearly_helps_is_said_with_what_it_breaks():
+    """Two joints that cancel: each angle alone is too large for its speed, and neither may change without the other."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=5e4, damping=8.0, name="input"),
+            tn.Disk(inertia=0.05, name="flange"),
+            tn.HookeJoint(angle="6 deg", name="joint 1"),
+            tn.Shaft(stiffness=2e4, damping=5.0, name="tube"),
+            tn.HookeJoint(angle="6 deg", name="joint 2"),
+            tn.Disk(inertia=0.5, name="machine"),
+        ]
+    )
+    top = tn.rpm(4500)
+    helped = tn.remedies(line, (top, top), checks=["angle of joint 1"])
+    assert helped.remedies == ()
+    (sentence,) = helped.sentences
+    found = re.search(
+        r"other check; angle of joint 1 at ([\d.]+) instead of 6 deg would, but (.+) is then (.+ %)", sentence
+    )
+    assert found, sentence
+    changed = tn.assess(line.replace("joint 1", angle=f"{found[1]} deg"), (top, top))
+    assert changed.check("angle of joint 1").status is Status.SATISFIED
+    assert changed.check(found[2]).because.count(found[3]) == 1
 
 
 @pytest.mark.slow

@@ -138,6 +138,7 @@ def remedies_json(found: Remedies) -> dict[str, Any]:
             }
             for r in found.remedies
         ],
+        "closest": found.closest,
         "sensitivities": {
             check: {v.path: s for v, s in zip(found.variables, row, strict=True)}
             for check, row in zip(found.checks, found.sensitivity, strict=True)

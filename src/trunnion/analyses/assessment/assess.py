@@ -25,6 +25,8 @@ from trunnion.errors import InputError
 from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
 
+OF_RESPONSE = (own_limits, coupling_ratings, ship_shafts, gear_hammer)
+
 
 def assess(
     line: Driveline,
@@ -113,10 +115,8 @@ def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Ch
 
 def of_response(subject: Subject, case: Case) -> Iterator[Check]:
     """The checks that look at the linear response by order."""
-    yield from own_limits(subject, case)
-    yield from coupling_ratings(subject, case)
-    yield from ship_shafts(subject, case)
-    yield from gear_hammer(subject, case)
+    for rule in OF_RESPONSE:
+        yield from rule(subject, case)
 
 
 def of_line(subject: Subject) -> Iterator[Check]:

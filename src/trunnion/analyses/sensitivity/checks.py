@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.assess import by_case, of_line, of_response
+from trunnion.analyses.assessment.assess import OF_RESPONSE, by_case, of_line, of_response
 from trunnion.analyses.assessment.check import Check
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.assessment.parametric import parametric_stability
@@ -96,7 +96,12 @@ class _Values:
     ) -> None:
         """``checks``, each of its load case (check,), bind at ``speeds`` (check,)."""
         self.subject, self.near, self.directions = subject, near, directions
-        self.separation = any(check.name.startswith("separation") for check in checks)
+        asked = {check.name for check in checks}
+        self.rules = [
+            rule
+            for rule in (*OF_RESPONSE, separation)
+            if any(one.name in asked for case in subject.cases for one in rule(subject, case))
+        ]
         self.speeds = {
             case.name: np.unique([s for s, one in zip(speeds, cases, strict=True) if one is case and np.isfinite(s)])
             for case in cases
@@ -176,9 +181,8 @@ class _Values:
         self._seen[key] = self._seen.get(key, {}) | found
 
     def _by_case(self, one: Subject) -> Iterator[Check]:
-        yield from of_response(one, one.cases[0])
-        if self.separation:
-            yield from separation(one, one.cases[0])
+        for rule in self.rules:
+            yield from rule(one, one.cases[0])
 
 
 def _speed_by_speed(subject: Subject, case: Case, speeds: Array) -> Iterator[tuple[float, Subject]]:

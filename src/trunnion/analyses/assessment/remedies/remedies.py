@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
-from trunnion.analyses.assessment.check import Check
+from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.remedies.result import Remedies, Remedy
 from trunnion.analyses.assessment.remedies.search import Found, Search, goals_of
 from trunnion.analyses.assessment.remedies.sensitivities import sensitivities
@@ -20,6 +20,7 @@ from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
+from trunnion.results.counts import counted
 
 NEAR = 0.1
 """Spare margin below which a check is nearly binding."""
@@ -91,11 +92,13 @@ def remedies_of(
     targets = [by_name[name] for name in goals]
     slopes = sensitivities(subject, design, targets)
     found: list[Found] = []
+    closest: list[Found] = []
     verified = ""
     lines = 4 * len(targets) * len(design.variables)
     if goals:
         trials = Trials(subject, base, design, targets)
-        found, verified = Search(trials, goals, most, progress).run(), trials.verified
+        found, closest = Search(trials, goals, most, progress).run()
+        verified = trials.verified
         lines += trials.count
     return Remedies(
         assessment=judged,
@@ -105,6 +108,7 @@ def remedies_of(
         sensitivity_error=slopes.error,
         sensitivity_speed=slopes.speed,
         remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
+        closest={one.check: _closest(one, by_name) for one in closest},
         lines=lines,
         verified=verified,
     )
@@ -158,6 +162,20 @@ def _sentence(subject: Subject, design: Design, before: Check, after: Check | No
         return f"{change} moves {what} from {subject.shown(here)} to {subject.shown(there)}: {left}"
     unit = "" if before.unit == "1" else f" {before.unit}"
     return f"{change} brings it from {before.value:.4g}{unit} to {after.value:.4g}{unit}: {left}"
+
+
+def _closest(found: Found, base: dict[str, Check]) -> str:
+    """ "coupling softer by 18 % (32.8 kN*m/rad) would, but gear hammer in gearbox is then exceeded by 4 %"."""
+    first = found.breaks[0]
+    now, before = percent(first.margin), base.get(first.name)
+    if first.status is not Status.EXCEEDED:
+        how = "can then not be judged any more"
+    elif before is not None and before.status is Status.EXCEEDED:
+        how = f"gets worse, {now}" if now != percent(before.margin) else "gets slightly worse"
+    else:
+        how = f"is then {now}"
+    more = f", and {counted(len(found.breaks) - 1, 'check')} more" if len(found.breaks) > 1 else ""
+    return f"{found.variable.worded(found.value)} would, but {first.name} {how}{more}"
 
 
 def _critical(subject: Subject, design: Design, before: Check, found: Found) -> tuple[float, float] | None:

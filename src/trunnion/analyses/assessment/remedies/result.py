@@ -60,7 +60,8 @@ class Remedies(Result):
 
     checks: names of those checks; remedies: smallest change first for each of them; sensitivity (check, variable):
     d ln(value)/d ln p, of angles d ln(value)/dφ [1/rad], with sensitivity_error; sensitivity_speed (check,) [rad/s]:
-    where it was taken; assessment: of the line as it is; lines: how many were judged; verified: which checks of the
+    where it was taken; closest: for checks without a remedy the smallest change that would satisfy them, and what it
+    breaks; assessment: of the line as it is; lines: how many were judged; verified: which checks of the
     changed lines were judged anew, and where.
     """
 
@@ -71,6 +72,7 @@ class Remedies(Result):
     sensitivity_error: Array
     sensitivity_speed: Array
     remedies: tuple[Remedy, ...]
+    closest: dict[str, str]
     lines: int
     verified: str
 
@@ -99,10 +101,11 @@ class Remedies(Result):
             known = self.of(check)
             found += [f"{check}: {remedy.sentence}" for remedy in known]
             if not known:
-                found.append(
+                none = (
                     f"{check}: no single change of up to a factor of two, 21 deg of a joint or half a turn of a phase "
                     "satisfies it and breaks no other check"
                 )
+                found.append("; ".join([none, *([self.closest[check]] if check in self.closest else [])]))
         return tuple(found)
 
     def declared(self) -> Iterator[Held]:
@@ -115,6 +118,7 @@ class Remedies(Result):
         yield over("check variable", "sensitivity", self.sensitivity, about=about)
         yield over("check variable", "sensitivity_error", self.sensitivity_error)
         yield over("check", "sensitivity_speed", self.sensitivity_speed, "rad/s", "input speed where it was taken")
+        yield over("check", "closest", [self.closest.get(check, "") for check in self.checks])
         yield axis("remedy", [f"{r.check}: {r.variable}" for r in self.remedies])
         for key in ("check", "variable", "before", "after", "unit", "size", "value", "margin", "required_margin"):
             yield over("remedy", f"remedy_{key}", [getattr(r, key) for r in self.remedies])

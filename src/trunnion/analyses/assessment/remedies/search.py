@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Status
-from trunnion.analyses.assessment.remedies.trials import Checks, Trials
+from trunnion.analyses.assessment.remedies.trials import Checks, Trial, Trials
 from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
 from trunnion.numerics.threads import on_threads
 
@@ -26,18 +26,21 @@ PROBES = (0.2, 0.7)
 """Sizes at which a variable shows whether it matters at all."""
 IDLE = 0.02
 """Share of the way to the goal that a variable has to move a margin to count as one that matters."""
+CLOSEST = 2
+"""Variables of which is said what they would break, where nothing else can be said."""
 DRAWN = 5
 """Halvings between a step that fails and one that does not."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """A change that satisfies ``check`` and breaks nothing: the variable, its new value, all checks after it."""
+    """A change that satisfies ``check``: the variable, its new value, all checks after it; or what it ``breaks``."""
 
     check: str
     variable: DesignVariable
     value: float
     after: Checks
+    breaks: tuple[Check, ...] = ()
 
     @property
     def size(self) -> float:
@@ -54,8 +57,9 @@ class Search:
         self.sizes: tuple[float, ...] = FEWER_SIZES if trials.costly else SIZES
         self.probes: tuple[float, ...] = PROBES[1:] if trials.costly else PROBES
 
-    def run(self) -> list[Found]:
-        """The smallest changes for every goal, smallest first; of each variable the smaller direction."""
+    def run(self) -> tuple[list[Found], list[Found]]:
+        """The smallest changes for every goal, smallest first; of each variable the smaller direction. For goals
+        without any, the smallest change that would do if it broke nothing."""
         matter = self._that_matter()
         passed: dict[str, dict[str, Found]] = {name: {} for name in self.goals}
         last = 0.0
@@ -63,47 +67,47 @@ class Search:
             open_goals = [name for name in self.goals if len(passed[name]) < self.most]
             if not open_goals:
                 break
-            self._ahead([v for v in matter if any(v.path not in passed[name] for name in open_goals)], [size])
+            self._ahead([(n, v, size) for n in open_goals for v in matter[n] if v.path not in passed[n]])
             for name in open_goals:
-                self._step(name, matter, last, size, passed[name])
+                self._step(name, matter[name], last, size, passed[name])
             last = size
             self._tell((step + 2) / (len(self.sizes) + 1))
         self._tell(1.0)
-        return [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
+        found = [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
+        closest = (self._closest(name, matter[name]) for name in self.goals if not passed[name])
+        return found, [one for one in closest if one]
 
     def _tell(self, share: float) -> None:
         if self.progress:
             self.progress(share)
 
-    def _that_matter(self) -> list[DesignVariable]:
-        """Variables that move the margin of a goal; a nut that nothing hangs on is not turned twelve times."""
-        kept = []
-        self._ahead(self.variables, self.probes)
-        for i, variable in enumerate(self.variables):
-            if any(self._moves(variable, sign * size) for size in self.probes for sign in (-1.0, 1.0)):
-                kept.append(variable)
-            self._tell((i + 1) / len(self.variables) / (len(self.sizes) + 1))
+    def _that_matter(self) -> dict[str, list[DesignVariable]]:
+        """By goal the variables that move its margin; a nut that nothing hangs on is not turned twelve times."""
+        kept: dict[str, list[DesignVariable]] = {}
+        self._ahead([(n, v, size) for n in self.goals for v in self.variables for size in self.probes])
+        for i, name in enumerate(self.goals):
+            signed = [sign * size for size in self.probes for sign in (-1.0, 1.0)]
+            kept[name] = [v for v in self.variables if any(self._moves(name, v, size) for size in signed)]
+            self._tell((i + 1) / len(self.goals) / (len(self.sizes) + 1))
         return kept
 
-    def _moves(self, variable: DesignVariable, size: float) -> bool:
+    def _moves(self, name: str, variable: DesignVariable, size: float) -> bool:
         after = self._quick(variable, size)
-        for name, goal in self.goals.items():
-            before = self.trials.unchanged[name] if name in self.trials.unchanged else self.trials.base[name]
-            now = after.get(name) if after else None
-            if now is None and after:
-                return True
-            if now and not abs(now.spare - before.spare) <= IDLE * abs(goal - before.spare):
-                return True
-        return False
+        if after is None:
+            return False
+        before, now = self.trials.unchanged.get(name, self.trials.base[name]), self.trials.check(name, after)
+        return now is None or not abs(now.spare - before.spare) <= IDLE * abs(self.goals[name] - before.spare)
 
-    def _ahead(self, variables: Iterable[DesignVariable], sizes: Iterable[float]) -> None:
-        """Judge changes of these sizes, up and down, side by side where every line costs seconds."""
-        if not self.trials.costly:
-            return
-        every = [(v, sign * size) for v in variables for size in sizes for sign in (-1.0, 1.0)]
-        on_threads(lambda one: self._quick(*one), every, os.cpu_count() or 1)
+    def _ahead(self, tasks: Iterable[tuple[str, DesignVariable, float]]) -> None:
+        """Judge checks after changes of these sizes, up and down, side by side where every line costs seconds."""
+        if self.trials.costly:
+            lines: dict[tuple[str, float], list[tuple[str, DesignVariable, float]]] = {}
+            for name, variable, size in tasks:
+                for signed in (-size, size):
+                    lines.setdefault((variable.path, signed), []).append((name, variable, signed))
+            on_threads(lambda asked: [self._satisfies(*one) for one in asked], lines.values(), os.cpu_count() or 1)
 
-    def _quick(self, variable: DesignVariable, size: float) -> Checks | None:
+    def _quick(self, variable: DesignVariable, size: float) -> Trial | None:
         value = variable.at(size)
         if variable.scale is Scale.BEND and value < 0:
             return None
@@ -115,10 +119,10 @@ class Search:
         """Add to ``passed`` what satisfies a goal with a change between the sizes ``last`` and ``size``, smallest
         first, until there are enough."""
         near = [
-            (self._drawn(name, variable, sign * last, sign * size), variable, sign * size)
+            (self._drawn(name, variable, sign * last, sign * size, self._helps), variable, sign * size)
             for variable in variables
             for sign in (-1.0, 1.0)
-            if variable.path not in passed and self._passes(name, self._quick(variable, sign * size), whole=False)
+            if variable.path not in passed and self._helps(name, variable, sign * size)
         ]
         for least, variable, far in sorted(near, key=lambda one: abs(one[0])):
             if len(passed) >= self.most:
@@ -127,11 +131,14 @@ class Search:
             if found:
                 passed[variable.path] = found
 
-    def _drawn(self, name: str, variable: DesignVariable, fails: float, passes: float) -> float:
-        """The size nearest to ``fails`` that satisfies a goal as ``passes`` does."""
+    def _drawn(
+        self, name: str, variable: DesignVariable, fails: float, passes: float,
+        good: Callable[[str, DesignVariable, float], bool],
+    ) -> float:  # fmt: skip
+        """The size nearest to ``fails`` that is as ``good`` for a goal as ``passes``."""
         for _ in range(DRAWN):
             middle = (fails + passes) / 2
-            if self._passes(name, self._quick(variable, middle), whole=False):
+            if good(name, variable, middle):
                 passes = middle
             else:
                 fails = middle
@@ -140,9 +147,23 @@ class Search:
     def _verified(self, name: str, variable: DesignVariable, least: float, far: float) -> Found | None:
         for value in self._written(variable, least, far):
             after = self.trials.whole(variable, value)
-            if self._passes(name, after, whole=True):
-                assert after is not None
-                return Found(name, variable, value, after)
+            if after is not None and self._reached(name, after) and not self.trials.broken(name, after):
+                return Found(name, variable, value, after.checks)
+        return None
+
+    def _closest(self, name: str, variables: list[DesignVariable]) -> Found | None:
+        """The smallest change that satisfies a goal, and what it breaks, of the variables that do soonest."""
+        sizes, near = (0.0, *self.sizes), []
+        for variable in variables:
+            for sign in (-1.0, 1.0):
+                far = next((i for i in range(1, len(sizes)) if self._satisfies(name, variable, sign * sizes[i])), None)
+                near += [(far, sign, variable)] if far is not None else []
+        for far, sign, variable in sorted(near, key=lambda one: one[0])[:CLOSEST]:
+            least = self._drawn(name, variable, sign * sizes[far - 1], sign * sizes[far], self._satisfies)
+            value = next(self._written(variable, least, sign * sizes[far]))
+            after = self.trials.whole(variable, value)
+            if after is not None and self._reached(name, after) and (broken := self.trials.broken(name, after)):
+                return Found(name, variable, value, {}, tuple(broken))
         return None
 
     def _written(self, variable: DesignVariable, size: float, far: float) -> Iterator[float]:
@@ -153,10 +174,18 @@ class Search:
                 yield value
         yield variable.at(size)
 
-    def _passes(self, name: str, after: Checks | None, *, whole: bool) -> bool:
-        if after is None or self.trials.breaks(after, whole=whole):
-            return False
-        check = after.get(name)
+    def _satisfies(self, name: str, variable: DesignVariable, size: float) -> bool:
+        """Whether a change of signed ``size`` reaches a goal, as far as one sees when looking around."""
+        after = self._quick(variable, size)
+        return after is not None and self._reached(name, after)
+
+    def _helps(self, name: str, variable: DesignVariable, size: float) -> bool:
+        """The same, and breaks nothing."""
+        after = self._quick(variable, size)
+        return after is not None and self._reached(name, after) and not self.trials.broken(name, after)
+
+    def _reached(self, name: str, after: Trial) -> bool:
+        check = self.trials.check(name, after)
         if check is None:
             return name.endswith(", passing")  # nothing is left to pass quickly
         return check.status is Status.SATISFIED and bool(check.spare >= self.goals[name])

@@ -1,21 +1,24 @@
 """Judging a line with one number changed, quickly to search and wholly to be sure.
 
-Of a bent line that starts free every speed takes a motion of its own. There the search looks at the response about the
-motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's own motions,
-over the whole range on a coarser grid.
+Checks are judged in groups, that of the check in question first: what does not satisfy it, or breaks another, costs no
+more. Of a bent line that starts free every speed takes a motion of its own. There the search looks at the response
+about the motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's
+own motions, over the whole range on a coarser grid.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from trunnion.analyses.assessment.assess import by_case, checks_of, of_line
-from trunnion.analyses.assessment.check import Check, Status, worst
+from trunnion.analyses.assessment.assess import OF_RESPONSE, of_line, prepare
+from trunnion.analyses.assessment.check import Check, Status, in_order, worst
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
-from trunnion.analyses.assessment.remedies.variables import Design, DesignVariable, Scale
+from trunnion.analyses.assessment.parametric import parametric_stability
+from trunnion.analyses.assessment.remedies.variables import Design, DesignVariable
 from trunnion.analyses.assessment.result import verdict_of
-from trunnion.analyses.assessment.subject import Subject, cases_of, lossy
+from trunnion.analyses.assessment.separation import separation
+from trunnion.analyses.assessment.subject import Case, Subject, cases_of, lossy
 from trunnion.driveline.driveline import Driveline
 
 QUICK_POINTS = 41
@@ -26,6 +29,41 @@ WORSE = 1e-3
 """Share of a limit by which what is exceeded already may be exceeded more."""
 
 Checks = dict[str, Check]
+Group = Callable[[Subject], Iterable[Check]]
+
+
+def _by_case(rule: Callable[[Subject, Case], Iterable[Check]]) -> Group:
+    return lambda subject: worst(check for case in subject.cases for check in rule(subject, case))
+
+
+GROUPS: tuple[Group, ...] = (of_line, *map(_by_case, (*OF_RESPONSE, separation, parametric_stability)))
+"""Checks that are judged together, growth last."""
+
+
+class Trial:
+    """One line, of which groups of checks are judged as they are asked for; ``whole``: all of them will be."""
+
+    def __init__(self, subject: Subject, groups: int, whole: bool = False) -> None:
+        self.subject, self.groups, self.whole = subject, groups, whole
+        self._found: dict[int, Checks] = {}
+
+    def group(self, number: int) -> Checks:
+        """The checks of one group, by name."""
+        if number not in self._found:
+            if self.whole and number and not any(self._found):
+                prepare(self.subject.cases)
+            self._found[number] = {check.name: check for check in GROUPS[number](self.subject)}
+        return self._found[number]
+
+    def in_turn(self, first: int) -> Iterator[Checks]:
+        """The groups one by one, that with the number ``first`` before the others."""
+        for number in (first, *(i for i in range(self.groups) if i != first)):
+            yield self.group(number)
+
+    @property
+    def checks(self) -> Checks:
+        """All of them by name, in order."""
+        return {check.name: check for check in in_order(c for found in self.in_turn(0) for c in found.values())}
 
 
 class Trials:
@@ -42,14 +80,18 @@ class Trials:
         self.costly = subject.cases[0].costly
         self.points = QUICK_POINTS if self.costly and not lossy(subject.cases[0].assembly) else None
         targets = tuple(targets)
-        self.growth = any(check.name == GROWTH for check in targets)
-        self.of_line = {check.name for check in targets} & {check.name for check in of_line(subject)}
+        of_line = Trial(subject, 1).checks
         # What the response says to a change that helps a check of the line is left to the whole judgement where costly.
-        asked = [check for check in targets if not (self.costly and check.name in self.of_line)]
+        asked = [check for check in targets if not (self.costly and check.name in of_line)]
         self.cases = {check.load_case for check in asked}
-        self._quick: dict[tuple[str, float], Checks | None] = {}
-        self._whole: dict[tuple[str, float], Checks | None] = {}
-        self.unchanged = self._judge(subject.line, None)
+        growth = any(check.name == GROWTH for check in targets)
+        self.groups = (len(GROUPS) - (not growth)) if asked else 1
+        self._quick: dict[tuple[str, float], Trial | None] = {}
+        self._whole: dict[tuple[str, float], Trial | None] = {}
+        unchanged = self._looked_at(subject.line)
+        self.of = {name: i for i, found in enumerate(unchanged.in_turn(0)) for name in found}
+        """By name of a check the number of its group."""
+        self.unchanged = unchanged.checks
 
     @property
     def verified(self) -> str:
@@ -66,48 +108,57 @@ class Trials:
         """Lines judged so far."""
         return len(self._quick) + len(self._whole)
 
-    def quick(self, variable: DesignVariable, value: float) -> Checks | None:
-        """Checks by name; None where the line is refused."""
+    def quick(self, variable: DesignVariable, value: float) -> Trial | None:
+        """The changed line to look around; None where it is refused."""
         key = variable.path, value
         if key not in self._quick:
             line = self.design.changed(variable, value)
-            self._quick[key] = None if line is None else self._judge(line, variable)
+            self._quick[key] = None if line is None else self._looked_at(line)
         return self._quick[key]
 
-    def whole(self, variable: DesignVariable, value: float) -> Checks | None:
-        """All checks by name, in order; None where the line is refused."""
+    def whole(self, variable: DesignVariable, value: float) -> Trial | None:
+        """The changed line to be judged wholly; None where it is refused."""
         key = variable.path, value
         if key not in self._whole:
             line = self.design.changed(variable, value)
-            found = None if line is None else checks_of(self.of(line, self.points))
-            self._whole[key] = None if found is None else {check.name: check for check in found}
+            self._whole[key] = None if line is None else Trial(self._asked(line, self.points), len(GROUPS), whole=True)
         return self._whole[key]
 
-    def of(self, line: Driveline, points: int | None = None) -> Subject:
+    def _asked(self, line: Driveline, points: int | None) -> Subject:
         """The same question about another line."""
         subject = self.subject
         cases = cases_of(line, subject.low, subject.high, *((points,) if points else ()))[: len(subject.cases)]
         return replace(subject, line=line, cases=cases, naming=False)
 
-    def _judge(self, line: Driveline, variable: DesignVariable | None) -> Checks:
-        subject = self.of(line, QUICK_POINTS)
-        cases = [case for case in subject.cases if case.name in self.cases]
+    def _looked_at(self, line: Driveline) -> Trial:
+        subject = self._asked(line, QUICK_POINTS)
+        cases = tuple(case for case in subject.cases if case.name in self.cases) or subject.cases[:1]
         if self.costly:
-            cases = [
-                replace(case, rough=True, given=(*case.speeds[:-1:THINNED].tolist(), case.speeds[-1])) for case in cases
-            ]
-        found = list(worst(check for case in cases for check in by_case(subject, case, growth=self.growth)))
-        if self.of_line or variable is None or variable.scale is not Scale.FACTOR:
-            found += of_line(subject)
-        return {check.name: check for check in found}
+            cases = tuple(map(_thinned, cases))
+        return Trial(replace(subject, cases=cases), self.groups)
 
-    def breaks(self, after: Checks, *, whole: bool) -> list[str]:
-        """Names of checks that a change breaks, or makes worse where they are exceeded already."""
-        before = self.base if whole else self.unchanged
-        found = [name for name, check in after.items() if _broken(before.get(name), check)]
-        if whole and self.verdict is not Status.EXCEEDED:
-            found += ["the verdict"] * (verdict_of(tuple(after.values()), self.subject.speed)[0] is Status.EXCEEDED)
-        return found
+    def check(self, name: str, trial: Trial) -> Check | None:
+        """One check of a changed line, others judged with it only where they belong to its group."""
+        return (trial.group(self.of[name]) if name in self.of else trial.checks).get(name)
+
+    def broken(self, name: str, trial: Trial) -> list[Check]:
+        """What a change made for the check called ``name`` breaks, or makes worse where it is exceeded already: of the
+        first group of checks where there is any. A change that only spoils the verdict, by the operating speed in a
+        barred range, say, breaks all that is exceeded."""
+        before = self.base if trial.whole else self.unchanged
+        for found in trial.in_turn(self.of.get(name, 0)):
+            broken = [check for check in found.values() if _broken(before.get(check.name), check)]
+            if broken:
+                return broken
+        if trial.whole and self.verdict is not Status.EXCEEDED:
+            after = tuple(trial.checks.values())
+            if verdict_of(after, self.subject.speed)[0] is Status.EXCEEDED:
+                return [check for check in after if check.status is Status.EXCEEDED]
+        return []
+
+
+def _thinned(case: Case) -> Case:
+    return replace(case, rough=True, given=(*case.speeds[:-1:THINNED].tolist(), case.speeds[-1]))
 
 
 def _broken(before: Check | None, after: Check) -> bool:
