@@ -46,6 +46,30 @@ def test_fourier_rows(h: int) -> None:
     )
 
 
+def test_products_with_matrices() -> None:
+    h, rng = 3, np.random.default_rng(5)
+    rows, g = rng.normal(size=(2, 2 * h + 1)), rng.normal(size=(4, 64, 3, 2))
+    g[..., 1, 0] = 0.0
+    made = np.einsum("ctij,jt->cit", g, fourier.samples(rows, 64))
+    found = np.einsum("ciajb,jb->cia", fourier.product_blocks(g, h), rows)
+    assert found == pytest.approx(fourier.rows_of(made, h))
+    # Mẍ + Cẋ + Kx of a series with three harmonics on a carrier of its own, of samples of the period.
+    parts, omega, carrier = rng.normal(size=(3, 1, 64, 2, 2)), 0.7, 0.3
+    harmonics, x = np.arange(-1, 2), rng.normal(size=(3, 2)) + 1j * rng.normal(size=(3, 2))
+    s = 1j * (carrier + omega * harmonics)
+    t = 2 * np.pi / omega * np.arange(64) / 64
+    wave = np.exp(np.outer(t, s))
+    force = sum(np.einsum("tij,tj->ti", part[0], wave @ (s[:, None] ** p * x)) for p, part in enumerate(parts))
+    blocks = fourier.hill_blocks(s[None], harmonics, [np.fft.fft(part, axis=1) / 64 for part in parts])
+    assert np.einsum("iajb,jb->ia", blocks[0], x) == pytest.approx(wave.conj().T @ force / 64)
+
+
+def test_one_singular_matrix_among_others_has_no_solution() -> None:
+    matrix = np.array([np.eye(2), np.ones((2, 2)), np.full((2, 2), np.nan), 2 * np.eye(2)])
+    found = fourier.solved(matrix, np.ones((4, 2)))
+    assert np.isnan(found[1:3]).all() and (found[[0, 3]] == [[1, 1], [0.5, 0.5]]).all()
+
+
 def test_duffing() -> None:
     found = tn.harmonic_balance(tn.reference_system("duffing"), "frequency", 0.8, 1.6)
     assert found.outcome.ok and found.tail.max() < 1e-6 and found.defect.max() < 1e-8

@@ -7,10 +7,16 @@ A *row* has 2H + 1 numbers in that order; a motion of n states is an array (n, 2
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
 
 
 def order(row: Array) -> int:
@@ -77,7 +83,7 @@ def product_matrix(values: Array, h: int) -> Array:
     return product_matrix_of(np.fft.rfft(values)[..., : 2 * h + 1] / values.shape[-1], h)
 
 
-def product_matrix_of(spectrum: NDArray[np.complex128], h: int) -> Array:
+def product_matrix_of(spectrum: Complex, h: int) -> Array:
     """The same from ĝ_m, m = 0 … 2h, shape (…, 2h + 1)."""
     k = np.arange(h + 1)
     apart = k[:, None] - k[None, :]
@@ -93,7 +99,49 @@ def product_matrix_of(spectrum: NDArray[np.complex128], h: int) -> Array:
     return out
 
 
-def spectrum_of_steps(ends: Array, values: Array, highest: int) -> NDArray[np.complex128]:
+def product_blocks(values: Array, h: int) -> Array:
+    """The matrix (…, n, 2h + 1, m, 2h + 1) that multiplies m rows by a matrix of functions G(t), given by samples
+    (…, count, n, m); 0 where G is."""
+    *many, count, n, m = values.shape
+    out = np.zeros((*many, n, 2 * h + 1, m, 2 * h + 1))
+    of, by = np.nonzero(values.reshape(-1, n, m).any(axis=0))
+    waves = np.ascontiguousarray(np.moveaxis(values[..., of, by], -1, 0))
+    out[..., of, :, by, :] = product_matrix(waves, h)
+    return out
+
+
+def hill_blocks(s: Any, harmonics: Integers, parts: Sequence[Complex], places: Integers | None = None) -> Complex:
+    """The matrix (case, h, n, h, n) of P₀ x + P₁ ẋ + P₂ ẍ … for x = Σ X_h exp(s_h t): blocks Σ_p s_l^p P_p,h−l.
+
+    s (case, h) [1/s] of the ``harmonics`` (h,); parts (case, count, n, n): Fourier coefficients of each P, as an FFT
+    orders them. ``places`` (…,) of that order that are not 0; by default all.
+    """
+    count, n = parts[0].shape[1:3]
+    out = np.zeros((len(s), len(harmonics), n, len(harmonics), n), dtype=complex)
+    apart = harmonics[:, None] - harmonics[None, :]
+    # What is further apart than half the samples is not known from them.
+    place = np.where(2 * np.abs(apart) < count, apart % count, -1)
+    for d in np.intersect1d(place[place >= 0], np.arange(count) if places is None else places):
+        rows, columns = np.nonzero(place == d)
+        v = s.T[columns][:, :, None, None]
+        out[:, rows, :, columns, :] = sum(v**p * part[:, d] for p, part in enumerate(parts))
+    return out
+
+
+def solved(matrix: Any, right: Any) -> Any:
+    """Solutions (case, m) of matrices (case, m, m), real or complex; NaN where one is singular or not finite."""
+    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+    out = np.full(right.shape, np.nan, dtype=right.dtype)
+    try:
+        out[finite] = np.linalg.solve(matrix[finite], right[finite, :, None])[..., 0]
+    except np.linalg.LinAlgError:
+        for i in np.flatnonzero(finite):
+            with suppress(np.linalg.LinAlgError):
+                out[i] = np.linalg.solve(matrix[i], right[i])
+    return out
+
+
+def spectrum_of_steps(ends: Array, values: Array, highest: int) -> Complex:
     """Complex coefficients 0 … ``highest`` of a function of phase that is constant between ``ends``.
 
     ends (pieces + 1,): rising phases [rad], the last 2π after the first; values (…, pieces).

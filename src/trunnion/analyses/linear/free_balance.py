@@ -196,16 +196,13 @@ class FreeBalance:
         around, along = rates[..., n:].transpose(0, 2, 1), by_torque[..., n:].transpose(0, 2, 1)
         speed = motions.speed
         d = fourier.rate_matrix(h, 1.0)
-        matrix = np.zeros((n, n, cases, wide, wide))
-        matrix[np.arange(n), np.arange(n)] = (d @ d) * (rate**2)[:, None, None]
-        for part, turned in ((slopes[..., n:, :n], None), (slopes[..., n:, n:], d * rate[:, None, None])):
-            of, by = np.nonzero((part != 0).any(axis=(0, 1)))
-            waves = part[:, :, of, by].transpose(2, 0, 1)
-            product = fourier.product_matrix(np.ascontiguousarray(waves), h)
-            matrix[of, by] -= product if turned is None else product @ turned
+        by_angle, by_speed = (fourier.product_blocks(part, h) for part in np.split(slopes[..., n:, :], 2, axis=-1))
+        # Products with D from the right: D is minus its transpose.
+        matrix = fourier.rate(by_speed, 1.0) * rate[:, None, None, None, None] - by_angle
+        matrix[:, np.arange(n), :, np.arange(n), :] += (d @ d) * (rate**2)[:, None, None]
         size = n * wide
         whole = np.zeros((cases, size + 1, size + 1))
-        whole[:, :size, :size] = matrix.transpose(2, 0, 3, 1, 4).reshape(cases, size, size) / (speed**2)[:, None, None]
+        whole[:, :size, :size] = matrix.reshape(cases, size, size) / (speed**2)[:, None, None]
         column = fourier.rows_of(along, h).reshape(cases, size)
         whole[:, :size, size] = -column * (unit / (ANGLE_SCALE * speed**2))[:, None]
         whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
@@ -215,7 +212,7 @@ class FreeBalance:
         right = np.zeros((cases, size + 1))
         right[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
         right[:, size] = -(motions.rows[..., 0] @ self.phase) / np.linalg.norm(self.phase) / ANGLE_SCALE
-        found = _solved(whole, right)
+        found = fourier.solved(whole, right)
         return found[:, :size].reshape(cases, n, wide) * ANGLE_SCALE, found[:, size] * unit
 
     def _rigid(self, speed: Array, h: int, co: LineCoefficients) -> Array:
@@ -229,16 +226,3 @@ class FreeBalance:
         rows[..., 0] += (loaded - loose)[:, topo.firsts]
         rows[..., 0] -= np.outer(rows[..., 0] @ self.phase, self.phase) / (self.phase @ self.phase)
         return rows
-
-
-def _solved(matrix: Array, right: Array) -> Array:
-    """Solutions (case, m); NaN where there is none."""
-    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-    found = np.full(right.shape, np.nan)
-    try:
-        found[finite] = np.linalg.solve(matrix[finite], right[finite, :, None])[..., 0]
-    except np.linalg.LinAlgError:
-        for i in np.flatnonzero(finite):
-            if np.linalg.matrix_rank(matrix[i]) == len(matrix[i]):
-                found[i] = np.linalg.solve(matrix[i], right[i])
-    return found

@@ -35,6 +35,7 @@ from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
+from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -294,16 +295,11 @@ def _periodic(
     )
     cases, times, n = forcing.shape
     h = np.arange(-harmonics, harmonics + 1)
-    place = (h[:, None] - h[None, :]) % times
     x, rate = np.zeros((2, cases, times, n), dtype=complex)
     for case in range(cases):
         s = 1j * h * (2 * np.pi / period) * speed[case]
-        blocks = (
-            mass[case, place] * (s**2)[None, :, None, None]
-            + damping[case, place] * s[None, :, None, None]
-            + stiffness[case, place]
-        )
-        matrix = blocks.transpose(0, 2, 1, 3).reshape(len(h) * n, len(h) * n)
+        parts = [part[[case]] for part in (stiffness, damping, mass)]
+        matrix = fourier.hill_blocks(s[None], h, parts).reshape(len(h) * n, len(h) * n)
         right = forcing[case, h % times].reshape(-1)
         if border is not None:
             matrix, right = _bordered(matrix, right, border, harmonics * n)

@@ -1,8 +1,9 @@
 """Harmonic balance as one driver: a branch with so many harmonics, or with as many as its tail asks for.
 
 What differs is the residual: of any first-order system (``harmonic_equations``), and of masses on springs
-(``harmonic_balance_springs``). Own motions of free lines are balanced by the same equations, their parameter the torque
-of the drives, at given speeds instead of along a branch.
+(``harmonic_balance_springs``). Own motions of free lines (``linear.free_balance``) lie on no branch: their speeds are
+given, and Newton's steps are taken for all of them together. The matrices of the balance are the same for all
+(``numerics.harmonics``).
 """
 
 from __future__ import annotations

@@ -97,9 +97,6 @@ class HarmonicEquations(Series):
         left = (fourier.rate(rows, omega) - fourier.rows_of(rates.T, h)) / omega
         if not with_slope:
             return left.ravel(), np.zeros((0, 0))
-        slope = np.zeros((n, wide, n, wide))
-        for i in range(n):
-            slope[i, :, i, :] = fourier.rate_matrix(h, omega)
-        of, by = np.nonzero(jacobians.any(axis=0))
-        slope[of, :, by, :] -= fourier.product_matrix(np.ascontiguousarray(jacobians[:, of, by].T), h)
+        slope = -fourier.product_blocks(jacobians, h)
+        slope[np.arange(n), :, np.arange(n), :] += fourier.rate_matrix(h, omega)
         return left.ravel(), slope.reshape(n * wide, n * wide) / omega

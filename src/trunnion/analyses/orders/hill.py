@@ -22,6 +22,7 @@ from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
+from trunnion.numerics import harmonics as fourier
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -114,14 +115,10 @@ class HillBlocks:
         """
         count, n = right.shape[1:]
         frequency = carrier[:, None] + harmonics * self.step[:, None]
-        matrix = np.zeros((len(right), count, n, count, n), dtype=complex)
-        apart = (harmonics[:, None] - harmonics[None, :]) % self.times
-        for d in np.intersect1d(apart, np.flatnonzero(self.kept)):
-            rows, columns = np.nonzero(apart == d)
-            v = frequency.T[columns][:, :, None, None]
-            block = -(v**2) * self.mass[:, d] + (1j * v) * self.damping[:, d] + self.stiffness[:, d]
-            matrix[:, rows, :, columns, :] = block
+        parts = (self.stiffness, self.damping, self.mass)
+        matrix = fourier.hill_blocks(1j * frequency, harmonics, parts, np.flatnonzero(self.kept))
         if self.loss.any():
+            apart = (harmonics[:, None] - harmonics[None, :]) % self.times
             self._add_loss(matrix, apart, np.sign(frequency))
         if self.topo.free and not carrier.any():
             self._hold(matrix, np.flatnonzero(harmonics == 0))
@@ -196,20 +193,10 @@ def _times(matrix: Complex, rim: Flags, x: Complex) -> Complex:
 
 def _solve(matrix: Complex, right: Complex, *, bounded: bool = True) -> Complex:
     """Solutions (case, m); NaN where a matrix is singular, with ``bounded`` to rounding."""
-    try:
-        x = np.linalg.solve(matrix, right[..., None])[..., 0]
-    except np.linalg.LinAlgError:
-        x = np.stack([_one(a, b) for a, b in zip(matrix, right, strict=True)])
+    x = fourier.solved(matrix, right)
     if bounded:
         with np.errstate(invalid="ignore"):
             weight = np.abs(matrix).max(axis=(1, 2)) * np.abs(x).max(axis=1)
             x[np.abs(right).max(axis=1) < SINGULAR * weight] = np.nan
     x[~right.any(axis=1)] = 0.0
     return np.asarray(x)
-
-
-def _one(matrix: Complex, right: Complex) -> Complex:
-    try:
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)

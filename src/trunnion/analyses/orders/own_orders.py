@@ -26,6 +26,7 @@ from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Link, Topology
 from trunnion.errors import ComputationError
+from trunnion.numerics import harmonics as fourier
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -136,15 +137,12 @@ def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
     """
     cases, times, n = own.mass.shape
     s = 1j * (carrier[:, None] + own.rate[:, None] * h)
-    apart = h[:, None] - h[None, :]
-    known = (np.abs(apart) < times // 2)[..., None, None]
-    slopes = np.where(known, own.by_state[:, apart % times], 0.0)
-    blocks = -slopes[..., :n] - slopes[..., n:] * s[:, None, :, None, None]
+    blocks = fourier.hill_blocks(s, h, (-own.by_state[..., :n], -own.by_state[..., n:]))
     every = np.arange(len(h))
-    blocks[:, every, every] += (s**2)[..., None, None] * np.eye(n)
+    blocks[:, every, :, every, :] += (s**2).T[..., None, None] * np.eye(n)
     size = len(h) * n
     matrix = np.zeros((cases, size + 1, size + 1), dtype=complex)
-    matrix[:, :size, :size] = blocks.transpose(0, 1, 3, 2, 4).reshape(cases, size, size)
+    matrix[:, :size, :size] = blocks.reshape(cases, size, size)
     unit = np.abs(matrix[:, :size, :size]).max(axis=(1, 2))
     matrix[:, size, size] = unit
     if not carrier.any() and h[0] <= 0 <= h[-1]:
