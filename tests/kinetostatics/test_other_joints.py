@@ -36,7 +36,7 @@ def test_tripod_law_against_the_rigid_joint_in_space(name, solved):
     assert third == pytest.approx(published, rel=5e-5)
     assert third == pytest.approx(float(tripod.amplitude(np.radians(degrees), radius / length)), rel=1e-4)
     assert np.delete(np.abs(spectrum), [3, 69]).max() < 1e-4 * third
-    law = tripod.output_angle(chi, np.radians(degrees), radius / length) - chi
+    law = tripod.law(np.radians(degrees), radius / length).at(chi).output - chi
     assert np.abs(turned - PHI - law).max() < 2e-4 * third
 
 
@@ -44,9 +44,9 @@ def test_tripod_law_against_the_rigid_joint_in_space(name, solved):
 def test_spider_orbit(name, solved):
     radius, _, degrees, _ = CASES[name]
     _, centres = solved[name]
-    predicted = tripod.orbit(PHI - np.pi, np.radians(degrees), radius)
-    size = float(tripod.orbit_radius(np.radians(degrees), radius))
-    assert size == pytest.approx(radius * np.tan(np.radians(degrees) / 2) ** 2)
+    # R tan²(β/2), three times a turn in the sense of rotation
+    size, chi = radius * np.tan(np.radians(degrees) / 2) ** 2, PHI - np.pi
+    predicted = size * np.stack([np.cos(3 * chi), np.sin(3 * chi)])
     # to leading order: off by tan²(β/2) of itself, and by what the shaft's tilt moves it
     assert np.abs(centres[:, :2].T - predicted).max() < 0.05 * size
 
@@ -176,7 +176,7 @@ def test_double_cardan_without_centring():
     first, second = double_cardan.halves(0.6, 1.3)
     assert np.sin(first) / 1.0 == pytest.approx(np.sin(second) / 1.3, rel=1e-14)
     chi = np.linspace(0, 7, 40)
-    composed = hooke.output_angle(hooke.output_angle(chi, first) + np.pi / 2, second) - np.pi / 2
+    composed = hooke.law(second).at(hooke.law(first).at(chi).output + np.pi / 2).output - np.pi / 2
     law = double_cardan.law(0.6, 1.3)
     assert np.allclose(law.at(chi).output, composed, atol=1e-14)
     line = tn.Driveline([tn.ConstantSpeed(), tn.DoubleCardanJoint(angle=0.6, distance_ratio=1.3), tn.Disk(inertia=1)])
@@ -188,10 +188,10 @@ def test_double_cardan_without_centring():
 def test_tripod_derivatives():
     chi = np.linspace(0, 7, 40)
     step = 1e-6
-    around = tripod.output_angle(np.stack([chi - step, chi + step]), 0.5, 0.2)
-    assert np.allclose((around[1] - around[0]) / (2 * step), tripod.ratio(chi, 0.5, 0.2), atol=1e-8)
-    around = tripod.ratio(np.stack([chi - step, chi + step]), 0.5, 0.2)
-    assert np.allclose((around[1] - around[0]) / (2 * step), tripod.ratio_slope(chi, 0.5, 0.2), atol=1e-8)
+    law = tripod.law(0.5, 0.2)
+    below, here, above = (law.at(chi + by) for by in (-step, 0.0, step))
+    assert np.allclose((above.output - below.output) / (2 * step), here.ratio, atol=1e-8)
+    assert np.allclose((above.ratio - below.ratio) / (2 * step), here.slope, atol=1e-8)
     assert tripod.amplitude(0.0, 0.2) == 0
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.driveline.cardan_angles import initial_phases
+from trunnion.laws import hooke
 
 
 def test_equal_angles_cancel():
@@ -76,6 +76,14 @@ def test_straight_joint_keeps_the_plane_before_it():
     assert list(through.straight) == [False, True, False, False]
     assert np.allclose(through.planes[[0, 2, 3]], drawn.planes, atol=1e-12)
     assert tn.kinetostatics(through.driveline()).irregularity < 1
+
+
+def initial_phases(alpha, nu, beta, start=0.0):
+    """φ⁰_i1 of every joint [rad] by S2's relation (2), unwrapped: what it starts from at input angle 0."""
+    phases = [start]
+    for a, v, b in zip(alpha[:-1], nu, beta, strict=True):
+        phases.append(b + float(hooke.law(a).at(phases[-1]).output) - v - np.pi / 2)
+    return phases
 
 
 def test_initial_phases_of_the_cardan_literature():

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 import trunnion as tn
-from trunnion.numerics.curves import extremes, extremes_in, extremes_of_samples, fourier
+from trunnion.numerics.curves import extremes, extremes_in, fourier
 
 Array = NDArray[np.float64]
 MESH_ORDERS = Path(__file__).parents[1] / "data" / "mesh_orders.toml"
@@ -34,12 +34,6 @@ def test_extremes_between_samples_and_on_both_sides_of_a_jump() -> None:
     for i in range(3):
         kept = swings[(fine >= edges[i]) & (fine <= edges[i + 1])]
         np.testing.assert_allclose([inside.low[i, 0], inside.high[i, 0]], [kept.min(), kept.max()], rtol=0, atol=1e-8)
-
-
-def test_extremes_of_a_sampled_period_are_those_of_its_series() -> None:
-    t = np.arange(40) / 40
-    found = extremes_of_samples(np.stack([np.cos(2 * np.pi * (t - 0.111)), np.cos(4 * np.pi * t + 1) + 3], axis=1))
-    np.testing.assert_allclose(found.span, [2, 2], rtol=1e-12)
 
 
 @pytest.mark.parametrize("highest", [0, 3, 60, 700])

@@ -15,7 +15,7 @@ from typing import Any
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.field_text import label_of, text_of
-from trunnion.driveline.files import FORMAT, dumps, loads
+from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, Kind, parse
@@ -368,11 +368,6 @@ def _kept(text: str | float, old: Any, kind: Kind) -> Any:
         return short if abs(parse(short, kind) - value) <= ROUNDING * abs(value) else text
     except InputError:
         return text
-
-
-def empty() -> str:
-    """The smallest file there is, to start from nothing."""
-    return f'format = {FORMAT}\n\n[[element]]\ntype = "ConstantSpeed"\n'
 
 
 def _names(tables: list[Any]) -> list[str]:

@@ -10,7 +10,6 @@ relation (2), φ⁰_j1 = β_ij + φ⁰_i2 − ν_ij − 90°, is χ_j = ψ_i + 9
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import pi
 from numbers import Real
 from typing import Any
 
@@ -83,13 +82,3 @@ def _numbers(values: Any, key: str, kind: Kind = ANGLE) -> list[float]:
         return [parse(value, kind) for value in values]
     except InputError as error:
         raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
-
-
-def initial_phases(alpha: Angles, nu: Angles, beta: Angles, start: float | str = 0.0) -> list[float]:
-    """φ⁰_i1 of every joint [rad] by S2's relation (2), unwrapped: what it starts from at input angle 0."""
-    from trunnion.laws import hooke
-
-    phases = _numbers([start], "start")
-    for a, v, b in zip(_numbers(alpha, "alpha")[:-1], _numbers(nu, "nu"), _numbers(beta, "beta"), strict=True):
-        phases.append(b + float(hooke.output_angle(phases[-1], a)) - v - pi / 2)
-    return phases

@@ -14,7 +14,6 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk
@@ -28,7 +27,6 @@ from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-Array = NDArray[np.float64]
 MOST_ORDER = 200
 """Highest harmonic of the common frequency of all torques and errors."""
 Parts = list[tuple[float, complex]]

@@ -92,39 +92,3 @@ class CrossLaw:
 def law(angle: ArrayLike) -> CrossLaw:
     """One cross bent by ``angle`` β [rad]."""
     return CrossLaw(np.tan(np.asarray(angle, dtype=float) / 2) ** 2)
-
-
-def output_angle(chi: ArrayLike, angle: ArrayLike) -> Array:
-    """ψ(χ) [rad], continuous in χ, with ψ(0) = 0."""
-    return law(angle).at(np.asarray(chi)).output
-
-
-def ratio(chi: ArrayLike, angle: ArrayLike) -> Array:
-    """η = dψ/dχ [1], between cos β and 1/cos β."""
-    return law(angle).at(np.asarray(chi)).ratio
-
-
-def ratio_slope(chi: ArrayLike, angle: ArrayLike) -> Array:
-    """dη/dχ [1/rad] = −cos β sin²β sin 2χ / D², D = 1 − sin²β cos²χ."""
-    return law(angle).at(np.asarray(chi)).slope
-
-
-def ratio_curvature(chi: ArrayLike, angle: ArrayLike) -> Array:
-    """d²η/dχ² [1/rad²] = −2 cos β sin²β (cos 2χ / D² − sin²β sin²2χ / D³)."""
-    return law(angle).at(np.asarray(chi)).curvature
-
-
-def irregularity(angle: ArrayLike) -> Array:
-    """U = η_max − η_min = tan β sin β [1]."""
-    return np.tan(angle) * np.sin(angle)
-
-
-def mean_square_ratio(angle: ArrayLike) -> Array:
-    """⟨η²⟩ over a turn of the input = (cos β + 1/cos β)/2 [1]."""
-    c = np.cos(angle)
-    return (c + 1 / c) / 2
-
-
-def largest_lead(angle: ArrayLike) -> Array:
-    """Largest |ψ − χ| [rad]: sin δ = tan²(β/2)."""
-    return np.arcsin(np.tan(np.asarray(angle, dtype=float) / 2) ** 2)

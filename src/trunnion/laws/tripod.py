@@ -30,32 +30,3 @@ def amplitude(angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
 def law(angle: ArrayLike, radius_over_length: ArrayLike) -> FourierLaw:
     """ψ = χ + A sin 3χ; of a driving spider take −A."""
     return FourierLaw((3,), (amplitude(angle, radius_over_length),), (np.zeros(()),))
-
-
-def output_angle(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
-    """ψ(χ) [rad], continuous in χ, with ψ(0) = 0."""
-    return law(angle, radius_over_length).at(np.asarray(chi)).output
-
-
-def ratio(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
-    """η = dψ/dχ [1] = 1 + 3A cos 3χ."""
-    return law(angle, radius_over_length).at(np.asarray(chi)).ratio
-
-
-def ratio_slope(chi: ArrayLike, angle: ArrayLike, radius_over_length: ArrayLike) -> Array:
-    """dη/dχ [1/rad] = −9A sin 3χ."""
-    return law(angle, radius_over_length).at(np.asarray(chi)).slope
-
-
-def orbit_radius(angle: ArrayLike, radius: ArrayLike) -> Array:
-    """Radius [m] of the circle on which the spider's centre runs, R tan²(β/2), three times a turn."""
-    return np.asarray(radius) * np.tan(np.asarray(angle) / 2) ** 2
-
-
-def orbit(chi: ArrayLike, angle: ArrayLike, radius: ArrayLike) -> Array:
-    """Spider centre [m] over the housing angle χ: (toward the bend, along the plane's normal), shape (2, …).
-
-    To leading order in β and R/L; three circles a turn, in the sense of rotation.
-    """
-    chi = np.asarray(chi, dtype=float)
-    return orbit_radius(angle, radius) * np.stack([np.cos(3 * chi), np.sin(3 * chi)])

@@ -18,8 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from trunnion.numerics import harmonics
-
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Integers = NDArray[np.int64]
@@ -81,12 +79,6 @@ def extremes(curves: Curves, cuts: Array) -> Extremes:
     cuts : rising; between neighbours the curves are smooth and eight parts of a cell show each of their swings.
     """
     return extremes_in(curves, cuts, cuts[[0, -1]]).of(0)
-
-
-def extremes_of_samples(values: Array) -> Extremes:
-    """The same of periodic curves given by equidistant samples (m, curves), on the Fourier series through them."""
-    rows = harmonics.rows_of(values.T, (len(values) - 1) // 2)
-    return extremes(lambda phases: harmonics.at(rows, phases).T, harmonics.cuts(harmonics.order(rows)))
 
 
 def extremes_in(curves: Curves, cuts: Array, edges: Array) -> Extremes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.chaos.bifurcation_diagram import BifurcationDiagram
 from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 PORTRAIT = 60
 """Periods of a motion in its portrait."""
 FEW = 6

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
@@ -21,7 +20,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 POINTS = 6000
 """Points of a curve, about three per pixel of a printed figure."""
 DENSE = 400

@@ -15,14 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.chaos.chaos_subject import phases
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import REACH, STEP
 
-Array = NDArray[np.float64]
 EXACT, DIFFERENCED = 1e-14, 1e-11
 """Divergence over the size of ∂f/∂x (differenced: times that of the state, too) that rounding may give."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Status
@@ -21,7 +20,6 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
-Array = NDArray[np.float64]
 Values = dict[str, tuple[str, float, str, float]]
 """By name: kind, value, unit, input speed."""
 

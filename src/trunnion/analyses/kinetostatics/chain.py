@@ -15,7 +15,6 @@ from math import lcm
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
@@ -29,8 +28,6 @@ from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.errors import InputError
 from trunnion.laws import double_cardan, hooke
 from trunnion.laws.joint import JointLaw
-
-Array = NDArray[np.float64]
 
 
 class Link(Enum):

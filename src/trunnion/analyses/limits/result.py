@@ -38,14 +38,6 @@ class LimitKind(IntEnum):
     UNKNOWN = 3
 
 
-MEANING = {
-    LimitKind.CROSSING: "unstable just above the limit",
-    LimitKind.BEYOND: "no instability found up to the end of the range",
-    LimitKind.AT_ONCE: "unstable from the start of the range",
-    LimitKind.UNKNOWN: "could not be computed, or not closely enough to tell",
-}
-
-
 @dataclass(frozen=True)
 class OtherLimit:
     """A limit of the description, and the value (speed,) of the parameter at which it is reached first.

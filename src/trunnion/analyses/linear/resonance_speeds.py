@@ -35,7 +35,6 @@ from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
-KINDS = ("harmonic", "subharmonic", "sum", "difference")
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 

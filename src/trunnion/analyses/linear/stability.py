@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from trunnion.numerics.chain.dense_monodromy import Propagation
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1

@@ -26,7 +26,6 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 MOST_EVENTS = 100_000
 SAMPLES = 1024
-SIDES = {-1: "lower", 0: "none", 1: "upper"}
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import assess, subject_of
 from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
@@ -21,7 +20,6 @@ from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
-Array = NDArray[np.float64]
 POINTS = 21
 """Points of a front at most."""
 AT_BOUND = 1e-4

@@ -17,7 +17,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.analyses.orbits.free_play import require_contact, require_forced
@@ -48,7 +48,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     pass
 
-Array = NDArray[np.float64]
 METHODS = (
     "exact",
     "harmonic balance",

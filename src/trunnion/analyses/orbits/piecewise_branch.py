@@ -7,7 +7,7 @@ in ``analyses/branch``. It is what the other methods are measured against.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.branch import STEP, Names, PeriodicBranch, Progress, followed
@@ -23,8 +23,6 @@ from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
-
-Array = NDArray[np.float64]
 
 
 def check_range(low: float, high: float) -> None:

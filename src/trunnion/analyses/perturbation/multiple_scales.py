@@ -20,7 +20,7 @@ B₀* drops out at this order: the static deflection is not seen. Nor does ε ma
 from __future__ import annotations
 
 import cmath
-from math import cos, sin, sqrt
+from math import sqrt
 
 from trunnion.analyses.perturbation.fitted_slow_flow import FittedSlowFlow
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -59,14 +59,6 @@ class MultipleScales(FittedSlowFlow):
         turned = 2 * self.solvability(A, 0.0, sigma) * cmath.exp(1j * phase)
         slow = self.epsilon / self.T
         return turned.real * self.U * slow, (sigma - turned.imag / a) * slow
-
-    def printed_rates(self, amplitude: float, phase: float, frequency: float) -> tuple[float, float]:
-        """The same from (42) and (43)."""
-        sigma = (frequency * self.T - 1) / self.epsilon
-        a, slow = amplitude / self.U, self.epsilon / self.T
-        a_ = -self.mu * a + 0.5 * self.B_1 * sin(phase)
-        beta_ = sigma - self.softening * 0.375 * a**2 + 0.5 * self.B_1 * cos(phase) / a
-        return a_ * self.U * slow, beta_ * slow
 
     def frequencies(self, amplitude: float) -> tuple[float, float] | None:
         """σ from (49)."""

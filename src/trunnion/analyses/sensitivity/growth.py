@@ -26,7 +26,6 @@ from trunnion.equations.linear import line_matrices, periodic_linear_system, rig
 from trunnion.numerics.spectrum import spectral_radius
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 TOLERANCE = 1e-12
 COALESCE = 1e-5
 """Relative error of a derivative by that of the monodromy matrix, from which two multipliers count as one."""

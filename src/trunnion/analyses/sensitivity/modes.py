@@ -24,8 +24,6 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 COINCIDE = 1e-7
 """Relative distance below which two modes count as one frequency, which has no derivative of its own."""
-ROUNDING = 1e-11
-"""Relative error of a derivative, by rounding."""
 
 
 @dataclass(frozen=True)

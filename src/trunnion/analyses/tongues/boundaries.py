@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-NAMES = ("at 1", "at −1", "complex pair")
 MOST = 6
 """Coefficients up to which these functions are used; beyond, coefficients are too ill-conditioned."""
 

@@ -28,11 +28,7 @@ import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 from scipy.integrate._ivp import dop853_coefficients as _published
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 A = np.ascontiguousarray(_published.A)
 B = np.ascontiguousarray(_published.B)

@@ -62,11 +62,10 @@ def kernel() -> ModuleType:
 
 @dataclass(frozen=True)
 class Passage:
-    """A stretch of motion: state (2,) at its end, the regimes it begins and ends in, tangents (2, 3) = ∂(x, x′)
+    """A stretch of motion: state (2,) at its end and its regime there, tangents (2, 3) = ∂(x, x′)
     by x₀, x₀′ and ω; events (count, 4): time, x, x′, regime begun (−1: an extremum, where they were asked for)."""
 
     state: Array
-    first_regime: int
     regime: int
     tangents: Array
     events: Array
@@ -114,7 +113,7 @@ def move(
             f"(the last at {record[max(events - 1, 0), 0]:g} s, x = {x[0]:g}); "
             "ask for less time at once or raise damping"
         )
-    return Passage(x, first, int(last), w, record[:events].copy())
+    return Passage(x, int(last), w, record[:events].copy())
 
 
 def states(
