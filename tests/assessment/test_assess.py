@@ -19,7 +19,9 @@ from trunnion.analyses.assessment.couplings import frequency_factor
 from trunnion.analyses.assessment.joint_angles import allowed_angle
 from trunnion.analyses.assessment.ship_shafts import barred_range, permissible_stress
 from trunnion.cli import app
+from trunnion.reporting.binding import binding_picture, binding_words
 from trunnion.reporting.overview import overview
+from trunnion.reporting.tables import with_signs
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
 
@@ -331,6 +333,67 @@ def test_the_result_shows_itself():
     assert order == sorted(order)
 
 
+def limited():
+    """A line with every kind of limit whose value runs over the speeds."""
+    tube = tn.Shaft(
+        name="tube", outer_diameter="60 mm", length="0.5 m", material="steel", damping=C, tensile_strength="600 MPa"
+    )
+    soft = tn.Coupling(
+        stiffness=K, damping=C, name="coupling", nominal_torque=100.0, maximum_torque=1000.0, vibratory_torque=900.0,
+        heat_rating=5000.0,
+    )  # fmt: skip
+    teeth = tn.GearPair(name="gears", teeth_in=20, teeth_out=40, module="3 mm", mesh_stiffness=2e8, mesh_damping=500.0)
+    parts = [
+        tn.Disk(name="engine", inertia=J1, drive_share=1.0, excitation=[{"order": 2, "amplitude": T}]), tube,
+        tn.Disk(name="pinion", inertia=0.01), teeth, tn.Disk(name="wheel", inertia=J2), soft,
+        tn.Disk(name="load", inertia=J2, load_torque=60.0),
+    ]  # fmt: skip
+    limits = [
+        tn.Limit(
+            of="tube", max_torque=900.0, vibratory_torque=400.0, transient_vibratory_torque=800.0, max_stress="50 MPa",
+            max_twist="1 deg", ship_shaft="flange",
+        ),
+        tn.Limit(of="load", max_acceleration=1000.0, max_speed_fluctuation="20 rpm"),
+    ]  # fmt: skip
+    return tn.Driveline(parts, limits=limits, operation=tn.Operation(speed=100.0, speed_range=[60.0, 105.0]))
+
+
+def test_the_course_of_a_check_passes_through_what_it_says():
+    checks = [check for check in tn.assess(limited()).checks if check.course is not None]
+    assert len(checks) == 13
+    for check in checks:
+        course = check.course
+        limit, at = next(iter(course.limits.values())), int(np.argmin(np.abs(course.speed - check.speed)))
+        assert course.speed[at] == check.speed, check.name
+        assert (course.value[at], limit[at]) == (pytest.approx(check.value), pytest.approx(check.limit)), check.name
+        assert np.all(1 - course.value / limit >= check.margin - 1e-12), check.name
+        if "max" not in check.name and course.by_order.size:  # one order alone shakes this line
+            factor = check.value / course.by_order[at].max()
+            assert factor == pytest.approx(1.0, rel=1e-3) or "rating" in check.name, check.name
+
+
+@pytest.mark.parametrize(
+    ("of", "limit", "label"),
+    [
+        ("load", {"max_speed_fluctuation": "1 rpm"}, "speed fluctuation [rpm]"),
+        ("load", {"max_acceleration": 1.0}, "acceleration [rad/s²]"),
+        ("tube", {"max_stress": "1 MPa"}, "stress [MPa]"),
+    ],
+)
+def test_the_report_draws_what_binds(of, limit, label):
+    """With its limit: not the torque of some shaft where motion or stress is limited."""
+    line = tn.Driveline(
+        limited().elements,
+        limits=[tn.Limit(of=of, **limit)],
+        operation=tn.Operation(speed=100.0, speed_range=[90.0, 105.0]),
+    )
+    seen = overview(line)
+    drawn = binding_picture(seen)["binding"].figure.axes[0]
+    assert drawn.get_ylabel() == label and drawn.get_title().endswith(f"of {of}")
+    assert next(iter(limit)).replace("_", " ") in " ".join(one.get_label() for one in drawn.lines)
+    assert binding_words(seen).startswith(label.partition(" [")[0].capitalize())
+
+
 PAGE = Path(__file__).parents[2] / "docs" / "assess.md"
 
 
@@ -374,3 +437,8 @@ def test_findings_of_an_overview_rank_by_margin_and_look_beyond_the_range():
     free = overview(two_mass(), speed=125.0).findings
     assert not any("exceeded" in str(f) for f in free)
     assert any("torque without limit" in str(f).lower() for f in free)
+
+
+def test_sentences_of_the_report_have_the_signs_of_units():
+    said = with_signs("12.5 deg, 3 N*m*s/rad, 2 kg*m^2 and 300 rad/s^2 of Shaft *.damping, 5 degrees")
+    assert said == "12.5°, 3 N·m·s/rad, 2 kg·m² and 300 rad/s² of Shaft *.damping, 5 degrees"

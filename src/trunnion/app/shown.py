@@ -43,11 +43,31 @@ def assessment(result: Any) -> Plain:
         "element": bind.element if bind else "",
         "limit": bind.limit if bind else math.nan,
         "quantity": bind.unit if bind else "",
+        "course": _course(bind.course) if bind and bind.course else {},
         "rows": result.table(),
         "rules": [_rule(c) for c in result.checks],
         "margin": [c.margin for c in result.checks],
         "required": [c.required_margin for c in result.checks],
         "findings": [str(f) for f in result.findings],
+    }
+
+
+def _course(course: Any) -> Plain:
+    """What a check compares over speed: limits, the value, and its largest orders, in a unit for the eye."""
+    from trunnion.analyses.orders.result import order_name
+    from trunnion.driveline.quantities import eye_unit
+
+    symbol, size = eye_unit(max(float(one.max()) for one in course.limits.values()), course.kind)
+    strongest = np.sort(np.argsort(-np.nan_to_num(course.by_order).max(axis=0, initial=0.0))[:3])
+    orders = {order_name(course.order[k], course.frequency[k]): course.by_order[:, k] for k in strongest}
+    curves = {f"all together ({course.says})": course.value, **orders, **course.limits}
+    return {
+        "quantity": course.quantity,
+        "unit": symbol.replace("*", "·").replace("^2", "²"),
+        "speed": course.speed,
+        "names": list(curves),
+        "values": [values / size for values in curves.values()],
+        "limits": len(course.limits),
     }
 
 

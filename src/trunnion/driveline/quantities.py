@@ -254,7 +254,7 @@ def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
 
     `unit` prefers one of the units of `kind` over the usual choice.
     """
-    symbol, size = _pick(value, kind, unit)
+    symbol, size = eye_unit(value, kind, unit)
     if size != 1.0:
         for digits in (12, 15):
             text = f"{value / size:.{digits}g}"
@@ -265,14 +265,14 @@ def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
 
 def shown(value: float, kind: Kind, unit: str | None = None, digits: int = 6) -> str:
     """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
-    symbol, size = _pick(value, kind, unit)
+    symbol, size = eye_unit(value, kind, unit)
     return _plain(value / size, digits) + ("" if kind is RATIO else f" {symbol}")
 
 
 def against(value: float, limit: float, kind: Kind, digits: int = 4) -> str:
     """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
     small = min(abs(value), abs(limit))
-    symbol, size = _pick(small if small > SAME_UNIT * abs(limit) else limit, kind, None)
+    symbol, size = eye_unit(small if small > SAME_UNIT * abs(limit) else limit, kind)
     left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
     return f"{left} against {right}"
 
@@ -287,7 +287,8 @@ SAME_UNIT = 1e-3
 """Share of a limit from which a value is shown in the unit that suits it, and the limit with it."""
 
 
-def _pick(value: float, kind: Kind, unit: str | None) -> tuple[str, float]:
+def eye_unit(value: float, kind: Kind, unit: str | None = None) -> tuple[str, float]:
+    """The unit that suits ``value``, or ``unit``, and its size in SI."""
     for symbol, size, smallest in (*kind.shown, *(SPEED.shown + FREQUENCY.shown if unit else ())):
         if symbol == unit or (unit is None and abs(value) >= smallest):
             return symbol, size

@@ -8,7 +8,8 @@ import numpy as np
 
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.driveline.operation import Operation
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.order_response import mark_operating
+from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -30,9 +31,7 @@ def draw(found: StabilityAlong, axes: Axes | None = None, *, unit: str, operatin
     low, high = float(np.nanmin(rate, initial=0.0)), float(np.nanmax(rate, initial=0.0))
     room = 0.08 * max(high - low, 1e-12)
     axes.set_ylim(low - room, high + room)
-    if operating and operating.speed and x[0] <= operating.speed * speed_factor(unit) <= x[-1]:
-        at = operating.speed * speed_factor(unit)
-        axes.axvline(at, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
+    mark_operating(axes, x, operating, unit)
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
     axes.set_ylabel("growth rate [1/s]", fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)

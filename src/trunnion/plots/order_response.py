@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,21 +59,9 @@ def draw(
     x = result.speed * speed_factor(unit)
     whole = result.vibratory_torque[:, column]
     size = np.abs(result.torque[:, :, column])
-    strongest = np.argsort(-np.nan_to_num(size).max(axis=0, initial=0.0))[:MOST_ORDERS]
-    peaks = np.nanmax(np.nan_to_num(size), axis=0, initial=0.0)
-    largest = float(np.nanmax(np.nan_to_num(whole), initial=0.0))
     words = "all together, at most" if result.sum_is_bound else "all together (half peak to peak)"
-    axes.plot(x, whole, color=INK, lw=2.2, label=words, marker="o" if len(x) == 1 else None)
-    drawn = [int(k) for k in sorted(strongest) if peaks[k] > largest / 10**DECADES]
-    for i, k in enumerate(drawn, start=1):
-        look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.5}
-        axes.plot(
-            x,
-            size[:, k],
-            label=order_name(float(result.order[k]), float(result.frequency[k])),
-            marker="o" if len(x) == 1 else None,
-            **look,
-        )
+    names = [order_name(float(o), float(f)) for o, f in zip(result.order, result.frequency, strict=True)]
+    low, largest = order_curves(axes, x, whole, size, names, words)
     stated = result.limits[result.springs[column]] if limits is None and limit is None else limits
     known = ({} if limit is None else {"limit": limit}) | dict(stated or {})
     for i, (name, value) in enumerate(known.items()):
@@ -84,15 +72,11 @@ def draw(
         axes.plot(x, peak, color=INK, lw=1.2, ls=(0, (1, 1)), label="largest torque, mean and all")
         largest = max(largest, float(np.nanmax(np.nan_to_num(peak), initial=0.0)))
     if largest > 0:
-        low = min([float(np.nanmin(whole)), *(float(peaks[k]) for k in drawn)])
-        _logarithmic(axes, max(low / 2, largest / 10 ** (DECADES + 0.5)), 2 * max([largest, *known.values()]))
+        logarithmic(axes, low / 2, 2 * max([largest, *known.values()]))
     if len(x) > 1:
         axes.set_xlim(x[0], x[-1])
     _beyond_the_linear_range(axes, x, result)
-    if operating and operating.speed and x[0] <= operating.speed * speed_factor(unit) <= x[-1]:
-        axes.axvline(
-            operating.speed * speed_factor(unit), color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"
-        )
+    mark_operating(axes, x, operating, unit)
     axes.set_title(result.springs[column].replace("$", r"\$"), fontsize=TEXT, color=INK)
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
     axes.set_ylabel("vibratory torque [N·m]", fontsize=TEXT, color=INK)
@@ -105,7 +89,31 @@ def draw(
     return axes
 
 
-def _logarithmic(axes: Axes, low: float, high: float) -> None:
+def order_curves(
+    axes: Axes, x: Array, whole: Array, size: Array, names: Sequence[str], words: str
+) -> tuple[float, float]:
+    """``whole`` (speed,) over its largest orders ``size`` (speed, order); between which values they lie."""
+    marker = "o" if len(x) == 1 else None
+    strongest = np.argsort(-np.nan_to_num(size).max(axis=0, initial=0.0))[:MOST_ORDERS]
+    peaks = np.nan_to_num(size).max(axis=0, initial=0.0)
+    largest = float(np.nan_to_num(whole).max(initial=0.0))
+    axes.plot(x, whole, color=INK, lw=2.2, label=words, marker=marker)
+    drawn = [int(k) for k in sorted(strongest) if peaks[k] > largest / 10**DECADES]
+    for i, k in enumerate(drawn, start=1):
+        look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.5}
+        axes.plot(x, size[:, k], label=names[k], marker=marker, **look)
+    least = min([float(np.nanmin(whole, initial=largest)), *(float(peaks[k]) for k in drawn)])
+    return max(least, 2 * largest / 10 ** (DECADES + 0.5)), largest
+
+
+def mark_operating(axes: Axes, x: Array, operating: Operation | None, unit: str) -> None:
+    """A line at the operating speed, where the picture shows it."""
+    at = operating.speed * speed_factor(unit) if operating and operating.speed else None
+    if at is not None and x[0] <= at <= x[-1]:
+        axes.axvline(at, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
+
+
+def logarithmic(axes: Axes, low: float, high: float) -> None:
     """Numbers as a reader writes them, 0.1 and 20 rather than powers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 

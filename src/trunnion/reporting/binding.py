@@ -18,19 +18,20 @@ OF_TORQUE = {
     "max torque of": "max_torque",
 }
 """How checks are called whose value is a torque, and the limit that they compare with."""
-OF_SPRING = (*OF_TORQUE, "rating:", "gear hammer in", "IACS UR M68 of", "max stress of", "max twist of")
-"""How checks are called that the torque of their element decides."""
 
 
 def binding_picture(seen: Overview) -> dict[str, Picture]:
     """``{"binding": …}``, or nothing where no response and no stability along the range exist."""
-    from trunnion.plots import growth_over_speed, order_response
+    from trunnion.plots import course, growth_over_speed, order_response
 
     check, unit = seen.assessment.binding, seen.unit
     along = seen.answer.stability
     if check is not None and check.name == PARAMETRIC and along is not None:
         drawn = growth_over_speed.draw(along, unit=unit, operating=seen.operation)
         return {"binding": picture(drawn.figure.figure, "Decay of the slowest disturbance over speed")}
+    if check is not None and check.course is not None and not _of_torque(check):
+        drawn = course.draw(check.course, unit=unit, operating=seen.operation)
+        return {"binding": picture(drawn.figure.figure, f"{check.course.quantity} over speed, with its limit")}
     response = _case(seen, check).response
     if response is not None and response.torque.size and np.nanmax(np.abs(response.torque), initial=0.0) > 0:
         spring, limits = _spring(seen, check, response)
@@ -52,7 +53,11 @@ def binding_words(seen: Overview) -> str:
             "speed judged, the named resonance speeds among them."
         )
     case = f", load case {check.load_case}" if check is not None and check.load_case else ""
-    which = "whose limit binds" if check is not None and _limited(check) else "that is loaded most"
+    if check is not None and check.course is not None and not _of_torque(check):
+        orders = " by order, and of all orders together" if check.course.by_order.size else ""
+        words = check.course.quantity
+        return f"{words[:1].upper()}{words[1:]} over speed{orders}, with its limit{case}."
+    which = "whose limit binds" if check is not None and _of_torque(check) else "that is loaded most"
     return f"Torque over speed by order, and all orders together, of the spring {which}{case}."
 
 
@@ -61,8 +66,8 @@ def _case(seen: Overview, check: Check | None) -> Case:
     return next((case for case in cases if check is not None and case.name == check.load_case), cases[0])
 
 
-def _limited(check: Check) -> bool:
-    return check.name.startswith(OF_SPRING)
+def _of_torque(check: Check) -> bool:
+    return check.name.startswith(tuple(OF_TORQUE))
 
 
 def _spring(seen: Overview, check: Check | None, response: OrderResponse) -> tuple[str | None, dict[str, float]]:
@@ -70,7 +75,7 @@ def _spring(seen: Overview, check: Check | None, response: OrderResponse) -> tup
     case = _case(seen, check)
     stated = [one for one in seen.line.limits_by_element if one.key in OF_TORQUE.values()]
     places = {one.element: spring_of(case.assembly, one.element) for one in stated}
-    if check is not None and _limited(check):
+    if check is not None and _of_torque(check):
         column = spring_of(case.assembly, check.element)
     else:
         column = int(np.argmax(np.nan_to_num(response.vibratory_torque).max(axis=0)))

@@ -105,6 +105,7 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["signs"] = tables.with_signs
     seen = contents.overview
     unit, frequency_unit = seen.unit, reading_of_frequencies(seen.unit)
     made = datetime.now().astimezone()
@@ -112,12 +113,12 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         "title": seen.line.name or "Driveline",
         "description": seen.line.description or "",
         "made": made.strftime("%Y-%m-%d"),
-        "verdict": tables.with_signs(seen.assessment.sentence),
+        "verdict": seen.assessment.sentence,
         "status": str(seen.assessment.verdict).replace(" ", "-"),
         "checks": tables.checks(seen.assessment),
         "not_applicable": tables.not_applicable(seen.assessment),
         "binding": binding_words(seen),
-        "helped": [tables.with_signs(one) for one in contents.helped.sentences] if contents.helped else (),
+        "helped": contents.helped.sentences if contents.helped else (),
         "verified": contents.helped.verified if contents.helped else "",
         "chart_to_come": seen.chartable and seen.chart is None,
         "findings": contents.findings,

@@ -92,8 +92,9 @@ def _listed(values: tuple[object, ...], kind: Kind | None) -> str:
 
 
 def with_signs(sentence: str) -> str:
-    """A sentence with the signs of units, "N·m" and "kg·m²"; stars in names stay."""
-    return re.sub(r"(?<=[ms])\^2\b", "²", re.sub(r"(?<=[Ngtm])\*(?=[ms](?:\b|\^))", "·", sentence))
+    """A sentence with the signs of units, "N·m", "kg·m²" and "5°"; stars in names stay."""
+    squared = re.sub(r"(?<=[ms])\^2\b", "²", re.sub(r"(?<=[Ngtm])\*(?=[ms](?:\b|\^))", "·", sentence))
+    return re.sub(r"(?<=[0-9]) deg\b", "°", squared)
 
 
 def _signs(text: str) -> str:

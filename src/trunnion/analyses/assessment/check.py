@@ -6,11 +6,12 @@ The margin is the distance of the value to its limit over the limit: 0.2 keeps 2
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from math import inf, isfinite, nan
 
 from trunnion.analyses.assessment.cause import Cause
+from trunnion.analyses.assessment.course import Course
 
 
 class Status(Enum):
@@ -41,7 +42,7 @@ class Check:
     margin and required_margin [1], NaN where nothing is judged; value and limit in ``unit`` (SI); speed: of the input
     where it binds [rad/s]; because: one sentence; inputs: the numbers that went in; load_case: "" for the line as
     stated; barred: speed ranges [rad/s] to pass quickly; guideline: a rule of practice, not a limit or rating; cause:
-    the order that leads there and the mode that it is nearest to.
+    the order that leads there and the mode that it is nearest to; course: value and limit at all speeds judged.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Check:
     guideline: bool = False
     element: str = ""
     cause: Cause | None = None
+    course: Course | None = field(default=None, repr=False, compare=False)
 
     @property
     def spare(self) -> float:

@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.own_limits import spring_of
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
-from trunnion.driveline.quantities import POWER, TORQUE, against
+from trunnion.driveline.quantities import POWER, TORQUE, against, shown
 from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
 
@@ -34,6 +35,12 @@ RATINGS = {
     "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
     "vibratory_torque": "T_W S_t S_f ≤ T_KW, S_f = √(f/10 Hz), at least 1",
     "heat_rating": "P_W S_t ≤ P_KV",
+}
+TAKEN = {
+    "nominal_torque": "mean, by S_t",
+    "maximum_torque": f"{WHOLE}, by S_t S_z",
+    "vibratory_torque": f"{SWING}, by S_t S_f",
+    "heat_rating": "mean over the cycle, by S_t",
 }
 
 
@@ -68,17 +75,23 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
     value = float(values[at]) if np.isfinite(values[at]) else np.inf
     margin, required = below(value, rating), subject.required(name)
     why = cause(case, at, by_order[at]) if key != "nominal_torque" else None
+    kind, words = TORQUE if unit == "N*m" else POWER, key.replace("_", " ")
     numbers = (
-        against(value, rating, TORQUE if unit == "N*m" else POWER)
+        against(value, rating, kind)
         if np.isfinite(value)
         else f"no steady state (undamped resonance) against {rating:.4g} {unit}"
     )
     because = f"{numbers} at {subject.shown(case.speeds[at])}, {percent(margin)}"
+    seen = course(
+        response, f"{words.removesuffix(' rating')} of {name}", kind, TAKEN[key], values,
+        {f"{words} {shown(rating, kind, digits=4)}": rating},
+        by_order if key in ("maximum_torque", "vibratory_torque") else None,
+    )  # fmt: skip
     return Check(
-        f"rating: {key.replace('_', ' ')} of {name}", judged(margin, required), rule,
+        f"rating: {words} of {name}", judged(margin, required), rule,
         because + (f", {why}" if why else "") + case.suffix, margin, required, value, rating, unit,
         float(case.speeds[at]), said, case.name, element=name,
-        cause=why,
+        cause=why, course=seen,
     )  # fmt: skip
 
 

@@ -12,9 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.course import SWING, course
 from trunnion.analyses.assessment.own_limits import bands, spring_of
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.quantities import TORQUE
 
 RULE = Rule("half of peak-to-peak ≤ |mean torque|", "loss of contact", "known")
 NOTHING = 1e-3
@@ -43,10 +45,14 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
         said = cause(case, at, np.abs(case.answer.torque[at, :, c]))
         because = f"±{swing[at]:.4g} N*m about a mean of {mean[at]:.4g} N*m at {subject.shown(case.speeds[at])}, "
         because += percent(margin) + (f", {said}" if said else "") + case.suffix
+        seen = course(
+            case.answer, f"torque of {name}", TORQUE, SWING, swing, {"mean torque": mean},
+            np.abs(case.answer.torque[:, :, c]),
+        )  # fmt: skip
         yield Check(
             title, judged(margin, required), RULE, because, margin, required, float(swing[at]), float(mean[at]), "N*m",
             float(case.speeds[at]), "", case.name, bands(case.speeds, swing, mean * (1 - required)), element=name,
-            cause=said,
+            cause=said, course=seen,
         )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.orders.totals import extremes
@@ -25,17 +26,17 @@ from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.results.counts import counted
 
 Array = NDArray[np.float64]
-WHOLE = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
-SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
+OF_ALL = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
+OF_SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
 HELD = "a ConstantSpeed holds its rotation"
 JUDGED = {
-    "max_torque": WHOLE,
-    "vibratory_torque": SWING,
-    "transient_vibratory_torque": SWING,
-    "max_stress": WHOLE,
-    "max_twist": WHOLE,
-    "max_speed_fluctuation": SWING,
-    "max_acceleration": SWING,
+    "max_torque": OF_ALL,
+    "vibratory_torque": OF_SWING,
+    "transient_vibratory_torque": OF_SWING,
+    "max_stress": OF_ALL,
+    "max_twist": OF_ALL,
+    "max_speed_fluctuation": OF_SWING,
+    "max_acceleration": OF_SWING,
 }
 
 
@@ -104,11 +105,15 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
         because += f"; {100 * limit.margin:.3g} % must stay free"
     if barred:
         because += f"; beyond it {_listed(subject, barred)}"
+    seen = course(
+        case.answer, name.removeprefix("max "), kind, WHOLE if rule is OF_ALL else SWING, values,
+        {f"{limit.key.replace('_', ' ')} {shown(limit.value, kind, digits=4)}": limit.value}, by_order,
+    )  # fmt: skip
     return Check(
         name, judged(margin, limit.margin), rule, because, margin, limit.margin, value, limit.value, kind.unit,
         float(case.speeds[at]), f"{counted(len(values), 'speed')}, {subject.shown(case.speeds[0])} to "
         f"{subject.shown(case.speeds[-1])}", case.name, barred, element=limit.element,
-        cause=said,
+        cause=said, course=seen,
     )  # fmt: skip
 
 

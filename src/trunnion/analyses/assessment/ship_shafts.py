@@ -19,9 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.course import SWING, course
 from trunnion.analyses.assessment.own_limits import bands, spring_of, stress_factor
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.driveline.limits import SHIP_SHAFTS
+from trunnion.driveline.quantities import PRESSURE
 from trunnion.driveline.shafts import Shaft
 
 Array = NDArray[np.float64]
@@ -77,7 +79,13 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
     exceeded = bands(speeds, stress, allowed * (1 - required))
     at = int(np.argmax(stress / allowed))
     margin = below(float(stress[at]), float(allowed[at]))
-    said = cause(case, at, np.abs(case.answer.torque[at, :, c]))
+    by_order = np.abs(case.answer.torque[inside, :, c])
+    said = cause(case, at, by_order[at])
+    seen = course(
+        case.answer, f"stress of {name}", PRESSURE, SWING, 1e6 * stress,
+        {"continuous, τ_C": 1e6 * allowed, "passing quickly, τ_T": 1e6 * _transient(allowed, ratio, factor)},
+        by_order * stress_factor(shaft), inside,
+    )  # fmt: skip
     inputs = (
         f"σ_B = {strength:g} N/mm², d = {diameter:g} mm, C_K = {factor:g} ({feature}), "
         f"n₀ = {subject.shown(subject.speed)}"
@@ -90,6 +98,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
     yield Check(
         title, judged(margin, required), RULE, because, margin, required, float(stress[at]) * 1e6,
         float(allowed[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name, barred, element=name, cause=said,
+        course=seen,
     )  # fmt: skip
     if barred:
         yield _passing(subject, case, title, (speeds, ratio, stress), allowed, factor, inputs)
@@ -103,12 +112,17 @@ def _range(speeds: Array, share: Array, ends: tuple[float, float], rated: float)
     return min(low, ends[0]), max(high, ends[1])
 
 
+def _transient(allowed: Array, ratio: Array, factor: float) -> Array:
+    """±τ_T of ±τ_C, λ and C_K."""
+    return np.where(ratio < NO_BAR, 1.7 * allowed / np.sqrt(factor), allowed)
+
+
 def _passing(
     subject: Subject, case: Case, title: str, seen: tuple[Array, Array, Array], allowed: Array, factor: float,
     inputs: str,
 ) -> Check:  # fmt: skip
     speeds, ratio, stress = seen
-    transient = np.where(ratio < NO_BAR, 1.7 * allowed / np.sqrt(factor), allowed)
+    transient = _transient(allowed, ratio, factor)
     at = int(np.argmax(stress / transient))
     margin = below(float(stress[at]), float(transient[at]))
     where = "" if ratio[at] < NO_BAR else " (no barred range at λ ≥ 0.8)"

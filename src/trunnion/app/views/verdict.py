@@ -109,17 +109,21 @@ class _Side(Side):
             margin=0,
         )
         self.binding = ""
+        self.course: Any = {}
 
     def show(self, name: str, data: Any) -> None:
         """The verdict, or the torque of what binds."""
         if name == "assessment":
             self._verdict(data)
-        else:
+        elif not self.course:
             self._torque(data)
 
     def _verdict(self, data: Any) -> None:
         self.binding = data["element"]
         self.limit = (data["limit"], data["quantity"])
+        self.course = data["course"] if data["quantity"] != "N*m" else {}
+        if self.course:
+            self._binding_course(self.course)
         kind = html.escape(data["verdict"].replace(" ", "-"))
         self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{html.escape(data['sentence'])}</p>"
         judged = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True)
@@ -150,6 +154,22 @@ class _Side(Side):
         self.table.object = _table(data)
         self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.keywords())
 
+    def _binding_course(self, data: Any) -> None:
+        """What binds over speed, with its limits, where that is not a torque."""
+        unit, factor = unit_of(self.view.line_of(self))
+        x = data["speed"] * factor
+        curves = [(name, x, values) for name, values in zip(data["names"], data["values"], strict=True)]
+        free = len(curves) - data["limits"]
+        quantity = data["quantity"]
+        self.torque.set(
+            curves,
+            colours=[figures.COLOURS[k % len(figures.COLOURS)] for k in range(free)] + [figures.INK] * data["limits"],
+            dashes=["solid"] + ["dashed"] * (free - 1) + ["dotted", "dotdash"][: data["limits"]],
+            x=f"input speed [{unit}]",
+            y=f"{quantity.rpartition(' of ')[0]} [{data['unit']}]",
+            title=f"{quantity} over speed, with its limit",
+        )
+
     def _torque(self, data: Any) -> None:
         unit, factor = unit_of(self.view.line_of(self))
         springs = data["springs"]
@@ -165,7 +185,9 @@ class _Side(Side):
             colours, dashes = [*colours, figures.ORANGE], [*dashes, "dotted"]
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
         title = f"torque of {whose}: vibratory (solid), largest (dashed)"
-        self.torque.set(curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", title=title)
+        self.torque.set(
+            curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", y="torque [N·m]", title=title
+        )
 
 
 def _words(status: str, margin: float) -> str:
