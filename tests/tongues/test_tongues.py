@@ -165,6 +165,22 @@ def test_damping_as_the_second_axis() -> None:
     assert two_shafts.radius(one.tip[0], 0.3, zeta=0.001 * one.tip[1]) == pytest.approx(1.0, abs=1e-9)
 
 
+def test_undamped_regions_have_no_tip_but_an_angle_from_which_on_they_are_known() -> None:
+    """They reach down to the straight line, however little they grow there; one comes in through a side of the box."""
+    undamped = tn.catalogue("two-shaft-cardan", damping_ratio=0.0)
+    found = tn.tongues(undamped, ("speed", 0.7, 1.9), ("HookeJoint 1.angle", 0.0, 1.0), rows=9)
+    by_name = {t.name: t for t in found}
+    assert set(by_name) == {"subharmonic ω₂", "sum (ω₁+ω₂)/2", "subharmonic ω₁", "harmonic ω₂/2"}  # no shreds
+    assert all(t.tip is None for t in found) and "without damping" in found.search
+    aside = by_name.pop("subharmonic ω₁")
+    assert not aside.fades and "low speed" in aside.cut and aside.low[0] == aside.high[0] == 0.7
+    assert two_shafts.radius(0.7, aside.y[0] - 1e-4, zeta=0.0) < 1 + 1e-9
+    assert two_shafts.radius(0.7, aside.y[0] + 1e-4, zeta=0.0) > 1 + 1e-5
+    for tongue in by_name.values():
+        assert tongue.fades == ("below",) and f"{tongue.name}: known from" in str(found)
+        assert two_shafts.radius(float(tongue.low[0]), float(tongue.y[0]), zeta=0.0) < 1 + 1e-5
+
+
 def row_of(line: tn.Driveline, low: float, high: float, angle: float) -> tuple[np.ndarray, np.ndarray]:
     """Unstable intervals of speed (intervals, 2) at one angle of all joints, and a point inside each."""
     task = task_of(line, ("speed", low, high), ("HookeJoint *.angle", 0.9 * angle, 1.1 * angle), None, True, "tongues")

@@ -57,6 +57,13 @@ def test_minimum_damping() -> None:
     assert found.data["from"].attrs["units"] == "1" and "subharmonic ω₂" in str(found)
 
 
+def test_undamped_no_angle_is_known_to_keep_a_resonance_stable() -> None:
+    """ω₂ lies among the speeds: its region reaches down to the straight line, though its growth cannot be told."""
+    line = tn.catalogue("two-shaft-cardan", damping_ratio=0.0)
+    found = tn.stable_windows(line, "HookeJoint 1.angle", 0.0, 0.5, (1.4, 1.8), rows=5)
+    assert not len(found.windows) and found.largest is None and "is known to keep" in found.sentence
+
+
 def test_no_window_at_all() -> None:
     line = tn.catalogue("two-shaft-cardan", angle=0.5)
     found = tn.minimum_damping(line, (1.5, 1.6), maximum=2.0, rows=5)

@@ -100,14 +100,21 @@ def _middle(tongue: Tongue) -> tuple[float, float]:
     return float(tongue.low[k] + tongue.high[k]) / 2, float(tongue.y[k])
 
 
+def _beginning(tongue: Tongue) -> tuple[float, float] | None:
+    """Its tip, or from where on it is known."""
+    faint = float(tongue.low[0] + tongue.high[0]) / 2, float(tongue.y[0])
+    return faint if tongue.tip is None and "below" in tongue.fades else tongue.tip
+
+
 def _names(axes: Axes, tongues: Tongues, across: float, up: float, most: int) -> None:
     """Names under the tips, leaving out those that would stand on another."""
     wide = abs(tongues.x_range[1] - tongues.x_range[0]) * across
     tall = abs(tongues.y_range[1] - tongues.y_range[0]) * up
     taken: list[tuple[float, float]] = []
-    for tongue in [t for t in tongues if t.resonance is not None and t.tip is not None][:most]:
-        assert tongue.resonance is not None and tongue.tip is not None
-        x, y = tongue.tip[0] * across, tongue.tip[1] * up
+    named = [(t.resonance, _beginning(t)) for t in tongues]
+    for resonance, place in [one for one in named if None not in one][:most]:
+        assert resonance is not None and place is not None
+        x, y = place[0] * across, place[1] * up
         if any(abs(x - a) < 0.13 * wide and abs(y - b) < 0.06 * tall for a, b in taken):
             continue
         taken.append((x, y))
@@ -116,7 +123,7 @@ def _names(axes: Axes, tongues: Tongues, across: float, up: float, most: int) ->
             x > tongues.x_range[1] * across - 0.08 * wide,
         )
         axes.annotate(
-            tongue.resonance.label,
+            resonance.label,
             (x, y),
             xytext=(0, -3),
             textcoords="offset points",

@@ -23,6 +23,8 @@ SHARPEST = 1e-13
 COARSE, UNDAMPED = 1e-10, 1e-6
 """Errors of ρ above this are looked into where they leave the verdict open; without damping, where every stable point
 is open, only above the second."""
+FAINT = UNDAMPED
+"""Growth ρ − 1 over a period that is told from none without damping."""
 NODES = 48
 """Samples of a piece of a row that no patch covers."""
 EASIER = (1.0, 30.0, 1000.0)
@@ -116,6 +118,13 @@ class Region:
         found = judge_matrices(matrix, error, trace)
         self._settle(found, self._undamped(trace), x, y)
         return found
+
+    def undamped(self, u: Array, v: Array) -> NDArray[np.bool_]:
+        """Where nothing damps (points,)."""
+        x, y = self.x(u), self.y(v)
+        if self.family.in_numpy(x, y) is not None:  # which damped lines alone are
+            return np.zeros(len(x), dtype=bool)
+        return self._undamped(self._matrices(x, y)[2])
 
     def _undamped(self, trace: Array) -> NDArray[np.bool_]:
         """Where nothing damps, by ∫ tr(M⁻¹C) dτ (points,)."""

@@ -35,7 +35,8 @@ class Tongue:
 
     kind: how the multipliers leave the unit circle where it begins; resonance: the one its growing mode names (None
     where the mode is mixed, or for a family of one's own). tip: (x, y) at which it closes below, or else above; top:
-    where it closes above as well. growth_rate [1/s, or per unit of a family's τ]: the largest found inside, at
+    where it closes above as well. fades: ends, "below" and "above", beyond which it goes on, but without damping grows
+    too little to be told. growth_rate [1/s, or per unit of a family's τ]: the largest found inside, at
     ``growth_at``. joins, parts: numbers of the tongues it runs into above or comes out of below. cut: sides of the
     box that cut it off.
     """
@@ -53,6 +54,7 @@ class Tongue:
     joins: int | None
     parts: int | None
     cut: tuple[str, ...]
+    fades: tuple[str, ...] = ()
     find: Intervals | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -175,6 +177,7 @@ class Tongues(Result):
             yield over("tongue", f"tip_{part}", np.array([(t.tip or none)[k] for t in every]), unit)
             yield over("tongue", f"top_{part}", np.array([(t.top or none)[k] for t in every]), unit)
             yield over("tongue", f"growth_{part}", np.array([t.growth_at[k] for t in every]), unit)
+        yield over("tongue", "fades", [" ".join(t.fades) for t in every])
         yield over("tongue", "growth_rate", np.array([t.growth_rate for t in every]), self.rate_unit)
         yield over("tongue", "widest", np.array([t.widest for t in every]), self.x_unit)
         yield axis("point", np.arange(sum(len(t.boundary) for t in every)))
@@ -244,6 +247,8 @@ class Tongues(Result):
 def _tip_words(tongue: Tongue, across: QuantityAxis, up: QuantityAxis) -> str:
     if tongue.tip is None:
         first = up.value(float(tongue.y[0]))
+        if "below" in tongue.fades:
+            return f"known from {first} on, below it grows too little to be told"
         return f"goes on outside the box from {first}" if tongue.parts is None else f"parts from region {tongue.parts}"
     closes = "above" if tongue.top is None and tongue.tip[1] >= tongue.y[-1] else "below"
     return f"closes {closes} at {across.value(tongue.tip[0])}, {up.value(tongue.tip[1])}"

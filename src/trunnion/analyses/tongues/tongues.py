@@ -9,21 +9,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.charts.stability_chart import Task, line_task, own_task
 from trunnion.analyses.linear.resonance_speeds import Resonance
-from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.from_resonances import followed, in_words
 from trunnion.analyses.tongues.joining import Search, Strand, joined
 from trunnion.analyses.tongues.naming import resonances
-from trunnion.analyses.tongues.region import Region, patched
+from trunnion.analyses.tongues.region import FAINT, Region, patched
 from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
-from trunnion.analyses.tongues.ridges import TIP, ridge, tips
+from trunnion.analyses.tongues.ridges import ridge
 from trunnion.analyses.tongues.rows import Kind, Row, unstable_intervals
+from trunnion.analyses.tongues.shapes import Shape, shapes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -34,16 +34,11 @@ from trunnion.systems.family import PeriodicLinearFamily
 Array = NDArray[np.float64]
 Range = Sequence[object]
 Progress = Callable[[float], None]
-Points = tuple[Array, Array, Array, Array]
-"""v, low, high and a point inside, each (rows,)."""
 
 ROWS = 65
 PATCH_TOLERANCE = 1e-11
 FASTEST = 5
 """Rows of a tongue that grow fastest in their middle, on which its largest growth rate is looked for."""
-NEAR_TIP = (1 / 64, 1 / 16, 1 / 4)
-"""Shares of the way from a tip to the next row at which its edges are solved for: edges part there like a square
-root."""
 
 
 def tongues(
@@ -83,7 +78,7 @@ def tongues(
     levels = np.sort(task.family.to_patch(np.linspace(task.y.values[0], task.y.values[-1], int(rows)), False))
     search, words = _search(task, region, line, statically_twisted)
     strands, searched = joined(search, levels, lambda s: tell(0.3 + 0.5 * s))
-    shaped = _shapes(region, strands)
+    shaped = shapes(region, strands)
     tell(0.9)
     places = {id(s.strand): k for k, s in enumerate(shaped)}
     growths, names = _growths(task, region, shaped), _names(task, region, shaped, line, statically_twisted)
@@ -107,7 +102,8 @@ def tongues(
         float(np.abs(steps).max()),
         region.by_coefficients and not region.uncovered,
         _search_words(region, len(searched), up.number(float(np.abs(steps).max()), 3))
-        + words(strands)
+        + words([shape.strand for shape in shaped])
+        + _faint_words(shaped)
         + _unknown_words(unknown, across, up),
         unknown,
         task.line,
@@ -172,6 +168,12 @@ def _unknown_words(unknown: tuple[Unknown, ...], across: QuantityAxis, up: Quant
     )
 
 
+def _faint_words(shaped: list[Shape]) -> str:
+    if not any(any(shape.fades) for shape in shaped):
+        return ""
+    return f"; without damping, what grows by less than {FAINT:g} a period cannot be told from what does not grow"
+
+
 def _search(
     task: Task, region: Region, line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
 ) -> tuple[Search, Callable[[list[Strand]], str]]:
@@ -197,124 +199,7 @@ def _finder(region: Region, search: Search) -> Callable[[float], Array]:
     return find
 
 
-@dataclass
-class _Shape:
-    """A strand with its tips (u, v), and its intervals with those near the tips added; rising in v."""
-
-    strand: Strand
-    below: tuple[float, float] | None
-    above: tuple[float, float] | None
-    v: Array
-    low: Array
-    high: Array
-    inside: Array
-
-
-def _shapes(region: Region, strands: list[Strand]) -> list[_Shape]:
-    """Close every strand that ends inside the box at its tip."""
-    ends = [(k, end) for k, s in enumerate(strands) for end in (0, -1) if _ends_alone(s, end)]
-    found = dict(zip(ends, _tips(region, [(strands[k], end) for k, end in ends]), strict=True))
-    closed = [(key, tip) for key, tip in found.items() if tip is not None]
-    rows = [(tip, strands[k].v[end], strands[k].low[end], strands[k].high[end]) for (k, end), tip in closed]
-    near = dict(zip([key for key, _ in closed], _near_tips(region, rows), strict=True))
-    at_sides = [key for key, tip in found.items() if tip is None]
-    near |= dict(zip(at_sides, _corners(region, [(strands[k], end) for k, end in at_sides]), strict=True))
-    return [
-        _closed(s, [found.get((k, end)) for end in (0, -1)], [near[k, end] for end in (0, -1) if (k, end) in near])
-        for k, s in enumerate(strands)
-    ]
-
-
-def _ends_alone(strand: Strand, end: int) -> bool:
-    """Whether the strand simply ends there: not at the box, and not in another tongue."""
-    return (
-        strand.below is not None and strand.parts is None
-        if end == 0
-        else strand.above is not None and strand.joins is None
-    )
-
-
-def _tips(region: Region, ends: list[tuple[Strand, int]]) -> list[tuple[float, float] | None]:
-    if not ends:
-        return []
-    outside, inside, centre, slope, width, walls = [], [], [], [], [], []
-    for strand, end in ends:
-        missing = strand.below if end == 0 else strand.above
-        assert missing is not None
-        at, further = (0, min(1, len(strand.v) - 1)) if end == 0 else (-1, max(-2, -len(strand.v)))
-        outside.append(missing.v)
-        inside.append(strand.v[at])
-        centre.append((strand.low[at] + strand.high[at]) / 2)
-        beyond = (strand.low[further] + strand.high[further]) / 2
-        run = strand.v[further] - strand.v[at]
-        slope.append((beyond - centre[-1]) / run if run else 0.0)
-        width.append(strand.high[at] - strand.low[at])
-        left = [float(h) for h in missing.high if h <= centre[-1]]
-        right = [float(a) for a in missing.low if a >= centre[-1]]
-        walls.append((max(left, default=region.box.u0), min(right, default=region.box.u1)))
-    u, v, good = tips(region, *(np.array(part) for part in (outside, inside, centre, slope, width, walls)))
-    # A tongue that shrinks to nothing at a side of the box goes on outside.
-    edge = 1e-9 * (region.box.u1 - region.box.u0)
-    good &= (u > region.box.u0 + edge) & (u < region.box.u1 - edge)
-    return [(a, b) if ok else None for a, b, ok in zip(u.tolist(), v.tolist(), good.tolist(), strict=True)]
-
-
-def _corners(region: Region, ends: list[tuple[Strand, int]]) -> list[Points]:
-    """Where strands that leave through a side of the box cross it, beyond their last row; nothing for the others."""
-    sides = [(k, side) for k, (strand, end) in enumerate(ends) for side in (0, 1) if strand.clipped[end][side]]
-    u = np.array([region.box.u1 if side else region.box.u0 for _, side in sides])
-    inside = np.array([ends[k][0].v[ends[k][1]] for k, _ in sides])
-    missing = [ends[k][0].below if ends[k][1] == 0 else ends[k][0].above for k, _ in sides]
-    outside = np.array([row.v for row in missing if row is not None])
-    exact = TIP * (region.box.v1 - region.box.v0)
-    v = bracketed(lambda at, own: region.above_one(u[own], at), outside, inside, exact) if sides else inside
-    crossed: list[Points] = []
-    for k in range(len(ends)):
-        own = [place for place, (end, _) in enumerate(sides) if end == k]
-        # Of two sides, the one that it crosses further out.
-        best = max(own, key=lambda place: abs(v[place] - inside[place]), default=None)
-        at, place = (v[[best]], u[[best]]) if best is not None else (np.zeros(0), np.zeros(0))
-        crossed.append((at, place, place, place))
-    return crossed
-
-
-def _closed(strand: Strand, tips: list[tuple[float, float] | None], near: list[Points]) -> _Shape:
-    own = tuple(np.array(part) for part in (strand.v, strand.low, strand.high, strand.inside))
-    whole = [np.concatenate(column) for column in zip(own, *near, strict=True)]
-    order = np.argsort(whole[0], kind="stable")
-    return _Shape(strand, tips[0], tips[1], *(column[order] for column in whole))
-
-
-def _near_tips(region: Region, ends: list[tuple[tuple[float, float], float, float, float]]) -> list[Points]:
-    """Edges between tips (u, v) and the rows next to them (v, low, high), where they can be bracketed; tip included."""
-    if not ends:
-        return []
-    tip = np.repeat(np.array([end[0] for end in ends]), len(NEAR_TIP), axis=0)
-    v, low, high = np.repeat(np.array([end[1:] for end in ends]), len(NEAR_TIP), axis=0).T
-    share = np.tile(NEAR_TIP, len(ends))
-    at = tip[:, 1] + share * (v - tip[:, 1])
-    middle = tip[:, 0] + share * ((low + high) / 2 - tip[:, 0])
-    reach = 0.75 * np.sqrt(share) * (high - low) + 2 * np.abs(middle - tip[:, 0])
-    top, height = ridge(region, middle - reach, middle + reach, at)
-    outer = np.stack([np.maximum(top - 2 * reach, region.box.u0), np.minimum(top + 2 * reach, region.box.u1)])
-    over = region.above_one(outer.ravel(), np.tile(at, 2)).reshape(2, -1)
-    good = np.flatnonzero((height > 0) & (over < 0).all(axis=0))
-    exact = 1e-13 * (region.box.u1 - region.box.u0)
-
-    def above(u: Array, own: NDArray[np.intp]) -> Array:
-        return region.above_one(u, at[good[own]])
-
-    left, right = (bracketed(above, side[good], top[good], exact) for side in outer)
-    found = []
-    for k, end in enumerate(ends):
-        own = np.flatnonzero(good // len(NEAR_TIP) == k)
-        rows = (at[good[own]], left[own], right[own], top[good[own]])
-        point = (end[0][1], end[0][0], end[0][0], end[0][0])
-        found.append(tuple(np.append(row, place) for row, place in zip(rows, point, strict=True)))
-    return found  # type: ignore[return-value]
-
-
-def _growths(task: Task, region: Region, shapes: list[_Shape]) -> list[tuple[float, tuple[float, float]]]:
+def _growths(task: Task, region: Region, shapes: list[Shape]) -> list[tuple[float, tuple[float, float]]]:
     """The largest growth rate on the rows of each tongue and where it is."""
     owner = np.concatenate([np.full(len(s.v), k) for k, s in enumerate(shapes)] or [np.zeros(0)])
     v, low, high = (
@@ -342,7 +227,7 @@ def _tongue(
     task: Task,
     region: Region,
     find: Callable[[float], Array],
-    shape: _Shape,
+    shape: Shape,
     growth: tuple[float, tuple[float, float]],
     named: Resonance | None,
     places: dict[int, int],
@@ -352,7 +237,8 @@ def _tongue(
     ends = _snapped(np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0), task.x.values)
     tip, top = (_point(region, t) for t in (shape.below, shape.above))
     order = np.argsort(y, kind="stable")
-    if y[0] > y[-1]:
+    falling = bool(y[0] > y[-1])
+    if falling:
         tip, top = top, tip
     return Tongue(
         places[id(strand)],
@@ -364,11 +250,17 @@ def _tongue(
         tip if tip is not None else top,
         top if tip is not None else None,
         *growth,
-        None if strand.joins is None else places[id(strand.joins)],
-        None if strand.parts is None else places[id(strand.parts)],
+        places.get(id(strand.joins)),
+        places.get(id(strand.parts)),
         _cut(task, region, strand),
+        _fades(shape, falling),
         find,
     )
+
+
+def _fades(shape: Shape, falling: bool) -> tuple[str, ...]:
+    ends = shape.fades[::-1] if falling else shape.fades
+    return tuple(name for name, fades in zip(("below", "above"), ends, strict=True) if fades)
 
 
 def _snapped(y: Array, box: Array) -> Array:
@@ -406,21 +298,19 @@ def _speed(task: Task, x: Array, y: Array) -> Array | float:
 
 
 def _names(
-    task: Task, region: Region, shapes: list[_Shape], line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
+    task: Task, region: Region, shapes: list[Shape], line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
 ) -> list[Resonance | None]:
     """The resonance of each tongue, at its tip where it has one."""
     if isinstance(line, PeriodicLinearFamily):
         return [None] * len(shapes)
     assembly = line if isinstance(line, Assembly) else assemble(line)
-    begins = np.array([s.below or s.above or (s.inside[0], s.v[0]) for s in shapes]).reshape(-1, 2)
+    begins = np.array([s.below or s.above or (s.strand.inside[0], s.strand.v[0]) for s in shapes]).reshape(-1, 2)
     kinds = np.array([s.strand.kind[0 if s.below or not s.above else -1] for s in shapes])
     return resonances(task, assembly, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, twisted, region.threads)
 
 
 def _numbered(found: list[Tongue]) -> tuple[Tongue, ...]:
     """By falling growth rate, numbered from 1, references to others with them."""
-    from dataclasses import replace
-
     ordered = by_growth(found)
     number = {t.number: k for k, t in enumerate(ordered, start=1)}
     return tuple(

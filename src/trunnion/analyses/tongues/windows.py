@@ -90,7 +90,8 @@ class StableWindows(Result):
         span = f"from {show_speed(self.speeds[0], unit)} to {show_speed(self.speeds[1], unit)}"
         if not len(self.windows):
             asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
-            known = "is known to keep" if self.tongues.unknown else "keeps"
+            told = not self.tongues.unknown and not any(t.fades for t in self.tongues)
+            known = "keeps" if told else "is known to keep"
             return f"No {asked} {known} every speed {span} stable."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
@@ -260,6 +261,13 @@ def _untold(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
     for place in found.unknown:
         end = End(sum(place.x) / 2, UNKNOWN)
         yield *place.between, end, end
+    for tongue in found:
+        # Without damping a region goes on, however little it grows.
+        for side, at in (("below", 0), ("above", -1)):
+            if side in tongue.fades:
+                end = End(_end(tongue, at).speed, UNKNOWN)
+                low, high = sorted((found.y_range[at], float(tongue.y[at])))
+                yield low, high, end, end
 
 
 def _end(tongue: Tongue, place: int) -> End:
