@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +22,6 @@ from trunnion.equations.topology import Topology
 from trunnion.errors import ComputationError
 from trunnion.results.declared import Held, Result, axis, over, remark
 
-if TYPE_CHECKING:
-    pass
-
 Array = NDArray[np.float64]
 
 LINEAR_RANGE = 0.1
@@ -37,6 +33,8 @@ MOST_NUMBERS = 20_000_000
 """Of all channels over the period: 160 MB an array."""
 TURNS = 10
 """Length of the wave form where nothing is common."""
+NOTHING = 1e-12
+"""Share of its amplitude below which a mean is rounding."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,7 +85,7 @@ class LinearResponse(Result):
 
     def __str__(self) -> str:
         rows = [
-            f"  {name}: twist ±{t:.4g} rad, torque ±{f:.4g} N m about {m:.4g} N m"
+            f"  {name}: twist ±{t:.4g} rad, torque ±{f:.4g} N m about {m if abs(m) > NOTHING * f else 0.0:.4g} N m"
             for name, t, f, m in zip(
                 self.shafts, self.twist_amplitude, self.torque_amplitude, self.torque_mean, strict=True
             )
