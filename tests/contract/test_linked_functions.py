@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from trunnion.numerics import linked
 from trunnion.numerics.jit import njit
-from trunnion.numerics.linked import LinkedLibrary
+from trunnion.numerics.linked import OVERRIDDEN, LinkedLibrary
 
 SCRIPT = """
 import numpy as np
@@ -55,6 +56,45 @@ def test_a_caller_computes_with_what_has_no_machine_code_of_its_own():
     (caller,) = _twice_shifted.overloads.values()
     assert not isinstance(caller.library, LinkedLibrary)
     assert not any("_shifted" in f.name and "twice" not in f.name for f in caller.library.get_defined_functions())
+
+
+def test_where_linking_fails_it_is_compiled_as_any_other(monkeypatch):
+    def of_other_insides(self: LinkedLibrary) -> None:
+        raise AttributeError("_finalize_dynamic_globals")
+
+    monkeypatch.setattr(LinkedLibrary, "_finalize_final_module", of_other_insides)
+    inner, caller = _pair()
+    assert caller(1.0) == 4.0
+    (made,) = inner.overloads.values()
+    assert not isinstance(made.library, LinkedLibrary) and made.library._finalized
+
+
+@pytest.mark.parametrize("name", OVERRIDDEN)
+def test_where_numba_has_other_insides_nothing_is_linked(monkeypatch, name):
+    class Other:
+        """numba's library without one of those names."""
+
+    for known in set(OVERRIDDEN) - {name}:
+        setattr(Other, known, None)
+    monkeypatch.setattr(linked, "LIBRARY", Other)
+    inner, caller = _pair()
+    assert caller(1.0) == 4.0
+    (made,) = inner.overloads.values()
+    assert not isinstance(made.library, LinkedLibrary)
+
+
+def _pair():  # type: ignore[no-untyped-def]
+    """A function of compiled code alone and one that calls it, neither compiled before."""
+
+    @njit(cache=False, inner=True)
+    def doubled(x):  # type: ignore[no-untyped-def]
+        return 2 * x
+
+    @njit(cache=False)
+    def twice(x):  # type: ignore[no-untyped-def]
+        return doubled(doubled(x))
+
+    return doubled, twice
 
 
 def test_called_from_python_it_is_an_error_and_no_crash():

@@ -3,6 +3,9 @@
 numba optimises a function with all that it calls, and makes machine code of the whole, for that function and again in
 every caller, level by level. Of what Python never calls, that is work for nothing: it is handed to its callers as it
 is, and optimised and made machine code where it is used. Nothing of it is kept: what is kept is the caller.
+
+That rests on numba's insides. Where they are others than those known here, such functions are compiled as any other,
+which takes longer.
 """
 
 from __future__ import annotations
@@ -21,6 +24,8 @@ DISPATCHER: Any = dispatcher.Dispatcher
 registered: Any = compiler_machinery.register_pass
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options of numba's ``njit`` by which such a function is known: it has no entrance for Python."""
+OVERRIDDEN = ("_optimize_functions", "_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals")
+"""What ``LinkedLibrary`` takes the place of, or calls."""
 
 
 class LinkedLibrary(LIBRARY):  # type: ignore[misc]
@@ -45,6 +50,14 @@ class LinkedLowering(LOWERING):  # type: ignore[misc]
 
     def run_pass(self, state: Any) -> bool:
         """See numba."""
+        try:
+            self._link(state)
+        except Exception:
+            state.library, state.flags.no_compile = None, False
+            super().run_pass(state)
+        return True
+
+    def _link(self, state: Any) -> None:
         library = state.library = LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         super().run_pass(state)
@@ -53,7 +66,6 @@ class LinkedLowering(LOWERING):  # type: ignore[misc]
         state.targetctx.insert_user_function(entrance, state.cr.fndesc, [library])
         state.reload_init.extend(getattr(library, "_reload_init", ()))  # numba before 0.61 has none
         state.cr = state.cr._replace(cfunc=entrance)
-        return True
 
 
 class LinkedCompiler(COMPILER):  # type: ignore[misc]
@@ -71,9 +83,10 @@ class LinkedCompiler(COMPILER):  # type: ignore[misc]
 
 
 def link_only(function: Any) -> None:
-    """Make a compiled function, not yet used, one that is only linked into its callers."""
-    function._compiler.pipeline_class = LinkedCompiler
-    function._cache = caching.NullCache()
+    """Make a compiled function, not yet used, one that is only linked into its callers, if numba is as known here."""
+    if all(hasattr(LIBRARY, name) for name in OVERRIDDEN):
+        function._compiler.pipeline_class = LinkedCompiler
+        function._cache = caching.NullCache()
 
 
 def link_inner_ones(module: ModuleType) -> None:
