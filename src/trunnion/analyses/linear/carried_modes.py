@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 STEPS_PER_CYCLE = 4
-FEWEST = 64
+FEWEST = 32
 """Steps of a period to begin with."""
 MEANS = 64
 """Times over which the coefficients are averaged."""

@@ -11,7 +11,7 @@ state is carried from step to step, so a long line needs little more memory than
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -194,26 +194,19 @@ class _Problem:
     looked: dict[int, Parts]
     held: dict[int, tuple[Array, Array, Array, Array]] = field(default_factory=dict, repr=False)
 
-    def march(
-        self, start: Array, steps: int, kept: Array | None = None, begin: int = 0, end: int | None = None
-    ) -> _March:
-        """Carry ``start`` (2n, columns) from one step of a period to another, by default over all of it.
+    def march(self, start: Array, steps: int, kept: Array | None = None) -> _March:
+        """Carry ``start`` (2n, columns) over a period.
 
         The last column is forced, and kept in ``kept`` if given.
         """
         state, largest, trace = start.copy(), 0.0, 0.0
         record = np.empty((0, 2 * self.size)) if kept is None else kept
-        at_once = max(1, CHUNK // (8 * STAGES * self.size**2))
         step = self.period / steps
-        frequency = self.scale[self.size :] / self.scale[: self.size]
-        end = steps if end is None else end
-        for first in range(begin, end, at_once):
-            count = min(at_once, end - first)
+        for first, count in self._pieces(steps, 1):
             q, d, g, damping = self._slopes(first, count, steps)
             trace += float(step * np.sum(damping * B))
             rows = record[first : first + count + 1]
-            run = _march if self.size <= SMALL else _march_by_products
-            largest = max(largest, run(q, d, g, frequency, step, A, B, state, rows))
+            largest = max(largest, self._run(q, d, g, self._frequency, step, A, B, state[None], rows))
         return _March(state, largest, trace)
 
     def follow(self, start: Array, least: int, steps: int) -> Array:
@@ -228,13 +221,30 @@ class _Problem:
         """Rows (count + 1, 2n) of the adjoint motion that ends as ``last`` (2n,), in the user's units."""
         steps = max(steps, count)
         size, each = 2 * self.size, steps // count
+        over, nothing = np.zeros((count, size, size + 1)), np.empty((0, size))
+        over[:, np.arange(size), np.arange(size)] = 1.0
+        for first, part in self._pieces(steps, each):
+            q, d, g, _ = self._slopes(first, part, steps)
+            some = over[first // each : (first + part) // each]
+            self._run(q, d, g, self._frequency, self.period / steps, A, B, some, nothing)
         rows = np.empty((count + 1, size), dtype=complex)
         rows[count] = last * self.scale
-        for part in reversed(range(count)):
-            identity = np.concatenate([np.eye(size), np.zeros((size, 1))], axis=1)
-            over = self.march(identity, steps, begin=part * each, end=(part + 1) * each).state[:, :-1]
-            rows[part] = rows[part + 1] @ over
+        for k in reversed(range(count)):
+            rows[k] = rows[k + 1] @ over[k, :, :-1]
         return np.asarray(rows / self.scale)
+
+    @property
+    def _frequency(self) -> Array:
+        return self.scale[self.size :] / self.scale[: self.size]
+
+    @property
+    def _run(self) -> Callable[..., float]:
+        return _march if self.size <= SMALL else _march_by_products
+
+    def _pieces(self, steps: int, each: int) -> Iterator[tuple[int, int]]:
+        """First step and number of steps of what is done together, a multiple of ``each``."""
+        at_once = each * max(1, CHUNK // (8 * STAGES * self.size**2 * each))
+        return ((first, min(at_once, steps - first)) for first in range(0, steps, at_once))
 
     def _slopes(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:
         """Q/ν, D, g and tr D at the stages of ``count`` of the ``steps`` of a period, in the problem's units."""
@@ -270,14 +280,18 @@ class _Problem:
 
 
 @njit(cache=True, nogil=True)
-def _march(q, d, g, frequency, step, a, b, state, kept):  # type: ignore[no-untyped-def]
-    """Carry ``state`` (2n, columns) in place; the last column is forced, and kept (steps + 1, 2n) unless empty."""
-    steps, stages, n, wide = q.shape[0], q.shape[1], q.shape[2], state.shape[1]
+def _march(q, d, g, frequency, step, a, b, states, kept):  # type: ignore[no-untyped-def]
+    """Carry each of ``states`` (part, 2n, columns) in place over as many of the steps, one part after the other.
+
+    The last column is forced, and kept (steps + 1, 2n) unless empty.
+    """
+    stages, n, wide = q.shape[1], q.shape[2], states.shape[2]
     # Rows one behind the other: sums of stages then run over one long row.
-    whole = 2 * n * wide
-    flat, here, slopes = state.reshape(whole), np.empty(whole), np.empty((stages, whole))
+    whole, each = 2 * n * wide, q.shape[0] // len(states)
+    here, slopes = np.empty(whole), np.empty((stages, whole))
     largest = 0.0
-    for s in range(steps):
+    for s in range(q.shape[0]):
+        flat = states[s // each].reshape(whole)
         for m in range(stages):
             slope = slopes[m]
             _weighted(flat, slopes, step, a[m], m, here)
@@ -314,13 +328,14 @@ def _weighted(state, slopes, step, weights, stages, out):  # type: ignore[no-unt
 
 
 def _march_by_products(
-    q: Array, d: Array, g: Array, frequency: Array, step: float, a: Array, b: Array, state: Array, kept: Array
+    q: Array, d: Array, g: Array, frequency: Array, step: float, a: Array, b: Array, states: Array, kept: Array
 ) -> float:
     """``_march`` for many coordinates, where matrix products are all that counts."""
     steps, stages, n = q.shape[:3]
-    slopes = np.zeros((stages, *state.shape))
+    slopes = np.zeros((stages, *states.shape[1:]))
     largest = 0.0
     for s in range(steps):
+        state = states[s * len(states) // steps]
         for m in range(stages):
             here = state.copy()
             for p in np.flatnonzero(a[m, :m]).tolist():
