@@ -311,7 +311,7 @@ def test_patches_that_do_not_converge_fall_back(monkeypatch: pytest.MonkeyPatch)
 def test_slabs_that_do_not_converge_fall_back(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patches, "MOST_EVALUATIONS", 1000)
     chart = tn.stability_chart(
-        tn.catalogue("two-shaft-cardan"), ("speed", 0.05, 2.0, 160), ("HookeJoint 1.angle", 0.0, 1.4, 130)
+        tn.catalogue("two-shaft-cardan"), ("speed", 0.02, 2.0, 160), ("HookeJoint 1.angle", 0.0, 1.5, 130)
     )
     assert chart.function.stubborn > 0
     check(chart, 2000)

@@ -21,7 +21,7 @@ from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, put_better
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.patches import patches
-from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction, between
 from trunnion.numerics.threads import on_threads
 from trunnion.results.chart import SpotCheck
 from trunnion.results.verdict import Verdict
@@ -277,12 +277,6 @@ def decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> Non
     if not 0 < len(rows) <= FEW or (found := family.settled(x[columns], y[rows])) is None:
         return
     put_better(found, pixels, rows, columns)
-
-
-def between(axis: Array, low: float, high: float) -> slice:
-    """Places of a monotonic axis that lie between two values."""
-    inside = np.flatnonzero((axis >= low) & (axis <= high))
-    return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
 
 
 def _strips(rows: slice, per_row: int, limit: int = 200_000) -> list[slice]:

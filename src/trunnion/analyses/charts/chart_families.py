@@ -35,13 +35,13 @@ from trunnion.numerics.chain.chain_monodromy import (
     symmetry_phase,
 )
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
-from trunnion.numerics.chain.characteristic import LARGEST, RADII, coefficients_from_matrices
+from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices, radii_on_rows
 from trunnion.numerics.chain.exponential_lanes import integrate_exponentials
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.jit import at_hand
-from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction
+from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction, halved_across
 from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
 from trunnion.results.verdict import verdicts
 
@@ -234,7 +234,8 @@ class LineFamily:
             ]
 
         # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
-        return Sampler(evaluate, -1, self._first_boxes(box, swiftest))
+        strips, along_u = self._strips(box, swiftest), self.x.is_speed
+        return Sampler(evaluate, -1, halved_across(evaluate, strips, along_u, tolerance) if len(strips) > 1 else strips)
 
     def leading(
         self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
@@ -277,7 +278,7 @@ class LineFamily:
         ends = self.lanes(self.x.values[[0, -1]], self.y.values[[0, -1]])
         integrator = integrate_stages if has_extra(self.program, ends) else integrate_series
         by_steps = (integrate_exponentials,) if 2 * self.size > LARGEST else ()
-        return not at_hand(integrator, *by_steps, *RADII)
+        return not at_hand(integrator, *by_steps, radii_on_rows)
 
     def _by_halving(self, rates: LineRates, points: int) -> Pixels:
         found = exponential_monodromies(
@@ -307,16 +308,18 @@ class LineFamily:
         speeds = np.abs(base_motion(topo, coefficients, tau, ratio_values(topo)).speed)
         return tau, np.maximum(speeds.max(axis=(0, 2)), 1.0)
 
-    def _first_boxes(self, box: Box, frequency: float) -> list[Box]:
+    def _strips(self, box: Box, frequency: float) -> list[Box]:
         """Strips of 1/Ω across which the quantities oscillate as often as one patch resolves.
 
-        The fastest is the product of n multipliers: a phase of at most n ν T at the lowest speed.
+        Of coefficients the fastest is the product of n multipliers, a phase of at most n ν T at the lowest speed; of
+        entries of the matrix the highest mode, √n ν T.
         """
         if not (self.x.is_speed or self.y.is_speed):
             return [box]
         low, high = (box.u0, box.u1) if self.x.is_speed else (box.v0, box.v1)
-        phase = self.size * frequency * self.period * (1 - low / high) / 2
-        edges = np.linspace(low, high, max(1, int(np.ceil(phase / (NODES - 4)))) + 1)
+        fastest = frequency * (self.size if 2 * self.size <= LARGEST else np.sqrt(self.size))
+        phase = fastest * self.period * (1 - low / high) / 2
+        edges = np.linspace(low, high, max(1, int(np.ceil(phase / RESOLVED))) + 1)
         pairs = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
         if self.x.is_speed:
             return [Box(a, b, box.v0, box.v1) for a, b in pairs]
@@ -357,6 +360,8 @@ class LineFamily:
 
 AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
 """How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
+RESOLVED = 20.0
+"""Radians to either side of a patch's middle that its nodes resolve, with as many again for what is not a wave."""
 FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 

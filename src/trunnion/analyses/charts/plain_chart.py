@@ -19,7 +19,6 @@ from trunnion.analyses.charts.building import (
     SPOTS,
     Built,
     Spots,
-    between,
     compared,
     decide_stiff,
     sharply,
@@ -36,7 +35,7 @@ from trunnion.equations.first_order import LineRates
 from trunnion.equations.linear import periodic_linear_system
 from trunnion.errors import ComputationError
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies, marched
-from trunnion.numerics.patches.patches import Box, PatchedFunction
+from trunnion.numerics.patches.patches import Box, PatchedFunction, between
 from trunnion.results.verdict import Verdict, verdicts
 
 Array = NDArray[np.float64]

@@ -62,26 +62,15 @@ def radii(values: Array, bounds: Array) -> tuple[Array, Array, Complex]:
     values, bounds (m, count) with m = 2, 4 or 6. Columns that are not finite give NaN.
     """
     count = values.shape[1]
-    radius, error, critical = np.empty(count), np.empty(count), np.empty((count, 2))
-    _radii_of_columns(values, bounds, radius, error, critical)
-    return radius, error, critical.view(np.complex128)[:, 0]
-
-
-@njit(nogil=True)
-def _radii_of_columns(values, bounds, radius, error, critical):  # type: ignore[no-untyped-def]
-    m, count = values.shape
-    e, off, work = np.ones((m, CHUNK)), np.ones((m, CHUNK)), np.ones(ROWS * CHUNK)
-    for at in range(0, count, CHUNK):
-        end = min(at + CHUNK, count)
-        for k in range(m):
-            for p in range(at, end):
-                e[k, p - at], off[k, p - at] = values[k, p], bounds[k, p]
-        _chunk(e, off, work, radius[at:end], error[at:end], critical[at:end])
+    radius, error, critical = np.empty((1, count)), np.empty((1, count)), np.empty((1, count, 2))
+    each, row = (np.ascontiguousarray(part)[:, None] for part in (values, bounds)), np.zeros(1, dtype=np.intp)
+    radii_on_rows(np.ones((1, 1)), *each, row, np.arange(count), radius, error, critical)
+    return radius[0], error[0], critical.view(np.complex128)[0, :, 0]
 
 
 @njit(nogil=True)
 def radii_on_rows(up, along, errors, row_block, column_block, radius, error, critical):  # type: ignore[no-untyped-def]
-    """The same on rows of pixels whose coefficients are Σ_i up[v, i] along[k, i, u], with errors by block.
+    """``radii`` on rows of pixels whose coefficients are Σ_i up[v, i] along[k, i, u], with errors by block.
 
     up (v, i), along (m, i, u), errors (m, blocks, blocks), row_block (v,), column_block (u,); radius, error (v, u)
     and critical (v, u, 2), real and imaginary part, are filled. Nothing but the results passes through memory.
@@ -89,7 +78,7 @@ def radii_on_rows(up, along, errors, row_block, column_block, radius, error, cri
     m, across = along.shape[0], along.shape[2]
     e, off, work = np.ones((m, CHUNK)), np.ones((m, CHUNK)), np.ones(ROWS * CHUNK)
     found, bound, root = np.empty(CHUNK), np.empty(CHUNK), np.empty((CHUNK, 2))
-    high = max(1, CHUNK // across)  # rows of a narrow patch share a chunk
+    high = max(1, CHUNK // max(1, across))  # rows of a narrow patch share a chunk
     for low in range(0, up.shape[0], high):
         top = min(low + high, up.shape[0])
         for at in range(0, across, CHUNK):
@@ -109,10 +98,6 @@ def radii_on_rows(up, along, errors, row_block, column_block, radius, error, cri
                 for u in range(at, end):
                     radius[v, u], error[v, u] = found[first + u], bound[first + u]
                     critical[v, u, 0], critical[v, u, 1] = root[first + u, 0], root[first + u, 1]
-
-
-RADII = (_radii_of_columns, radii_on_rows)
-"""What is compiled to find radii."""
 
 
 @njit(nogil=True, inner=True)

@@ -64,10 +64,7 @@ def _at_both_ends(program, block, begin, half, ends):
         for lane in range(LANES):
             near[i * ROWS + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
     for end in range(2):
-        if block.alike:
-            couplings(program, block, bent, begin + end * half, 0.0, series, start, near, 0.0)
-        else:
-            couplings(program, block, bent, begin + end * half, 0.0, series, start, near, spread(0.0))
+        couplings(program, block, LANES, bent, begin + end * half, 0.0, series, start, near, spread(0.0))
         for i in range(n):
             for lane in range(LANES):
                 ends[(end * n + i) * LANES + lane] = near[i * ROWS + lane]

@@ -47,9 +47,8 @@ def empty_series(program):
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
-def joint_series(program, block, begin, unit, series, start, like):
-    """Fill ``series`` and ``start`` of all joints at the input angle ``begin``."""
-    used = 1 if block.alike else LANES
+def joint_series(program, block, used, begin, unit, series, start, like):
+    """Fill ``series`` and ``start`` of all joints at the input angle ``begin``; ``like`` stands for ``used`` lanes."""
     wound = False
     for j in range(len(program.joint_rate)):
         wound = wound or (program.joint_speed_source[j] >= 0 and abs(program.joint_rate[j]) != 1.0)
@@ -76,9 +75,9 @@ def joint_series(program, block, begin, unit, series, start, like):
 
 
 @njit(nogil=True, inner=True)
-def couplings(program, block, bent, begin, unit, series, start, near, like):
+def couplings(program, block, used, bent, begin, unit, series, start, near, like):
     """Series ``near`` of e, the scaled speed ratio at the near end of every shaft behind a joint (``bent``)."""
-    joint_series(program, block, begin, unit, series, start, like)
+    joint_series(program, block, used, begin, unit, series, start, like)
     for i in range(len(bent)):
         if bent[i]:
             factor = load(block.unknown, i * PER_UNKNOWN + NEAR_SCALE * LANES, spread(0.0))

@@ -67,9 +67,9 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
     while done < length and count < most_steps:
         count += 1
         if block.alike:
-            couplings(program, block, bent, begin + done, h, joints, start, near, 0.0)
+            couplings(program, block, 1, bent, begin + done, h, joints, start, near, 0.0)
         else:
-            couplings(program, block, bent, begin + done, h, joints, start, near, spread(0.0))
+            couplings(program, block, LANES, bent, begin + done, h, joints, start, near, spread(0.0))
         begin_step(parent, bent, near, squares)
         for c in range(0, wide, 2):
             column = c * wide * ROWS

@@ -29,6 +29,8 @@ BLOCKS = 8
 """Blocks per variable in which the errors of samples are kept; divides every number of nodes used."""
 TAIL = 4
 """Trailing coefficients that must be small."""
+NEARLY = 0.3
+"""Of an allowed tail, what one row may show of that of a patch."""
 DEEPEST = 14
 """Halvings after which a patch counts as not converging."""
 
@@ -47,7 +49,7 @@ class Box:
     v1: float
 
     def halves(self, along_u: bool, along_v: bool) -> Iterator[Box]:
-        """The two or four parts."""
+        """The two or four parts, or the whole."""
         um, vm = (self.u0 + self.u1) / 2, (self.v0 + self.v1) / 2
         for ua, ub in ((self.u0, um), (um, self.u1)) if along_u else ((self.u0, self.u1),):
             for va, vb in ((self.v0, vm), (vm, self.v1)) if along_v else ((self.v0, self.v1),):
@@ -78,10 +80,9 @@ class Patch:
     def columns(self, u: Array) -> Array:
         """Coefficients of T_i(v) along each column ``u``; shape (quantity, i, u)."""
         across = _chebyshev(_to_unit(u, self.box.u0, self.box.u1), self.coefficients.shape[2])
-        out = np.empty((*self.coefficients.shape[:2], len(u)))
-        for weights, own in zip(self.coefficients, out, strict=True):
-            weighted_sums(weights, across[None], own[None])
-        return out
+        out = np.empty((1, self.coefficients.shape[0] * self.coefficients.shape[1], len(u)))
+        weighted_sums(self.coefficients.reshape(out.shape[1], -1), across[None], out)
+        return out.reshape(*self.coefficients.shape[:2], len(u))
 
     def weights(self, v: Array) -> Array:
         """T_i(v) of rows ``v``; shape (v, i)."""
@@ -178,6 +179,26 @@ def _sample(evaluate: Evaluate, boxes: list[tuple[Box, int]], nodes: int) -> Ite
             yield box, depth, values, errors
 
 
+def halved_across(evaluate: Evaluate, strips: list[Box], along_u: bool, tolerance: float) -> list[Box]:
+    """Strips side by side along u (or v), halved in the other direction where a row of samples there asks for it.
+
+    The row stands at each strip's upper end. It costs a fiftieth of a patch, which would be sampled for nothing where
+    it turns out too wide.
+    """
+    first, unit = strips[0], np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+    if along_u:
+        grid = (np.array([box.u1 for box in strips]), _from_unit(unit, first.v0, first.v1))
+    else:
+        grid = (_from_unit(unit, first.u0, first.u1), np.array([box.v1 for box in strips]))
+    ((values, _),) = evaluate([grid])
+    samples = np.moveaxis(values.reshape(len(grid[1]), len(grid[0]), -1), 0 if along_u else 1, 0)
+    tail = np.abs(dct(samples, type=2, axis=0)[-TAIL:]).max(axis=0) / NODES
+    wide = (tail > NEARLY * tolerance * np.maximum(np.abs(samples).max(axis=0), 1.0)).any(axis=1)
+    return [
+        part for box, two in zip(strips, wide, strict=True) for part in box.halves(two and not along_u, two and along_u)
+    ]
+
+
 def _transform(values: Array, errors: Array, nodes: int, tolerance: float) -> tuple[Array, float, float, Array]:
     """Chebyshev coefficients, the tails along u and v over what they may be, and the error of each quantity.
 
@@ -214,6 +235,12 @@ def _trimmed(box: Box, coefficients: Array, error: Array, tolerance: float) -> P
     j = max(1, int(np.count_nonzero((columns > tolerance * scale).any(axis=0))))
     dropped = 2 * tolerance * scale[:, 0]
     return Patch(box, np.ascontiguousarray(coefficients[:, :i, :j]), error + dropped[:, None, None])
+
+
+def between(axis: Array, low: float, high: float) -> slice:
+    """Places of a monotonic axis that lie between two values."""
+    inside = np.flatnonzero((axis >= low) & (axis <= high))
+    return slice(int(inside[0]), int(inside[-1]) + 1) if len(inside) else slice(0, 0)
 
 
 def _inside(pixels: Array, low: float, high: float) -> int:

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from trunnion.numerics.chain.chain_tables import LANES
+from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
-from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, build
+from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, between, build
 from trunnion.numerics.threads import on_threads
 
 Array = NDArray[np.float64]
@@ -37,14 +39,17 @@ class Slabs:
     size: int
 
     def propagators(self, grid: Grid) -> tuple[Array, Array, Array]:
-        """Propagator over all slabs on a grid, its error and trace; shapes (rows · columns, …), rows slow."""
+        """Propagator over all slabs on a grid of a multiple of ``LANES`` points, its error and trace; shapes
+        (rows · columns, …), rows slow."""
         m, count = self.size, len(grid[0]) * len(grid[1])
-        phi = np.broadcast_to(np.eye(m), (count, m, m)).copy()
+        phi = np.zeros((count // LANES, m * m, LANES))
+        phi[:, :: m + 1] = 1.0
         largest, error, trace = np.ones(count), np.zeros(count), np.zeros(count)
+        room = np.empty(2 * m * m * LANES + LANES)
         for function in self.functions:
             values, bounds = _on_grid(function, grid, m * m + 1)
-            _multiply(values, bounds, phi, largest, error, trace)
-        return phi, error * largest**2, trace
+            _multiply(values, bounds, m, phi, largest, error, trace, room)
+        return phi.transpose(0, 2, 1).reshape(count, m, m), error * largest**2, trace
 
 
 def slab_edges(frequency: float, tau: Array, weight: Array) -> Array:
@@ -62,7 +67,7 @@ def slab_edges(frequency: float, tau: Array, weight: Array) -> Array:
 def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, tolerance: float) -> Slabs | None:
     """Patch the slabs between ``edges`` over ``box``, together to ``tolerance``; None if one resists."""
     nowhere = np.zeros(0)
-    functions = []
+    functions = list[PatchedFunction]()
     count = len(edges) - 1
     for at, end in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
 
@@ -76,7 +81,9 @@ def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, toleran
             cuts = np.cumsum([a * b for a, b in shapes])[:-1]
             return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
 
-        functions.append(build(evaluate, [box], nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
+        # What had to be divided for one slab has to be for its neighbour.
+        boxes = [patch.box for patch in functions[-1].patches] if functions else [box]
+        functions.append(build(evaluate, boxes, nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
         if functions[-1].stubborn:
             return None
     return Slabs(tuple(functions), size)
@@ -88,37 +95,42 @@ def on_grids(slabs: Slabs, grids: list[Grid], threads: int) -> list[tuple[Array,
 
 
 def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Array, Array]:
-    """Values (quantity, rows · columns) and Frobenius error bounds (rows · columns,) from the patches."""
+    """Values (quantity, point) and Frobenius error bounds (point,) from the patches, rows slow."""
     u, v = grid
     values = np.full((quantities, len(v), len(u)), np.nan)
     bounds = np.full((len(v), len(u)), np.nan)
     for patch in function.patches:
-        rows = np.flatnonzero((v >= patch.box.v0) & (v <= patch.box.v1))
-        columns = np.flatnonzero((u >= patch.box.u0) & (u <= patch.box.u1))
-        if len(rows) and len(columns):
-            values[:, rows[:, None], columns] = patch.grid(u[columns], v[rows])
-            entries = patch.error_grid(u[columns], v[rows])[:-1]
-            bounds[np.ix_(rows, columns)] = np.sqrt(np.sum(entries**2, axis=0))
+        rows, columns = between(v, patch.box.v0, patch.box.v1), between(u, patch.box.u0, patch.box.u1)
+        here = (rows, columns)
+        if len(v[rows]) and len(u[columns]):
+            values[:, *here] = patch.grid(u[columns], v[rows])
+            of_u, of_v = patch.blocks(u[columns], v[rows])
+            bounds[here] = np.sqrt(np.sum(patch.error[:-1] ** 2, axis=0))[of_v[:, None], of_u]
     return values.reshape(quantities, -1), bounds.ravel()
 
 
-@njit(cache=True, nogil=True, fastmath=True)
-def _multiply(values, bounds, phi, largest, error, trace):  # type: ignore[no-untyped-def]
-    m = phi.shape[1]
-    spare = np.empty((m, m))
-    for p in range(phi.shape[0]):
-        square = 0.0
-        for i in range(m):
-            for j in range(m):
-                spare[i, j] = 0.0
-            for k in range(m):
-                a = values[i * m + k, p]
-                for j in range(m):
-                    spare[i, j] += a * phi[p, k, j]
-        for i in range(m):
-            for j in range(m):
-                phi[p, i, j] = spare[i, j]
-                square += spare[i, j] * spare[i, j]
-        largest[p] = max(largest[p], np.sqrt(square / m))
-        error[p] += bounds[p]
-        trace[p] += values[m * m, p]
+@njit(nogil=True, fastmath=True)
+def _multiply(values, bounds, m, phi, largest, error, trace, room):  # type: ignore[no-untyped-def]
+    """phi (block, m², lane) times the slab's, ``values`` (m² + 1, point) with its trace; room (2m² + 1) lanes."""
+    size, every, zero = m * m * LANES, values.shape[1], spread(0.0)  # type: ignore[call-arg, var-annotated]
+    flat, left, product, squares = values.reshape(-1), room[:size], room[size : 2 * size], room[2 * size :]
+    for block in range(len(phi)):
+        right, at = phi[block].reshape(-1), block * LANES
+        for entry in range(m * m):
+            store(left, entry * LANES, load(flat, entry * every + at, zero))
+        square = zero
+        for i in range(0, size, m * LANES):
+            for j in range(0, m * LANES, LANES):
+                total = zero
+                for k in range(m):
+                    total = total + load(left, i + k * LANES, zero) * load(right, k * m * LANES + j, zero)
+                store(product, i + j, total)
+                square = square + total * total
+        for entry in range(0, size, LANES):  # setting slices to each other takes two seconds to compile
+            store(right, entry, load(product, entry, zero))
+        store(squares, 0, square)
+        for lane in range(LANES):
+            p = at + lane
+            largest[p] = max(largest[p], np.sqrt(squares[lane] / m))
+            error[p] += bounds[p]
+            trace[p] += values[m * m, p]
