@@ -7,7 +7,7 @@ What stays unclear between rows that cannot be told apart is a tongue that joins
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -62,18 +62,20 @@ class Strand:
         self.of = row.of[k]
 
     def moved(self, v: float) -> tuple[float, float]:
-        """Its interval as it would be at ``v`` if it went on as it came."""
+        """Its interval as it would be at ``v`` if it went on as it came: as the edge that moved less, since the other
+        may have leapt where another tongue joined or parted."""
         if len(self.v) < 2:
             return self.low[-1], self.high[-1]
         share = (v - self.v[-1]) / (self.v[-1] - self.v[-2])
-        middle = (self.low[-1] + self.high[-1]) / 2
-        shift = share * (middle - (self.low[-2] + self.high[-2]) / 2)
+        shift = share * min(self.low[-1] - self.low[-2], self.high[-1] - self.high[-2], key=abs)
         return self.low[-1] + shift, self.high[-1] + shift
 
 
-def joined(search: Search, v: Array, tell: Callable[[float], None]) -> tuple[list[Strand], list[Row]]:
-    """All tongues that meet the rows ``v`` (rising) or rows put between them; and all these rows."""
-    rows = search(v)
+def joined(
+    search: Search, v: Array, tell: Callable[[float], None], known: Sequence[Row] = ()
+) -> tuple[list[Strand], list[Row]]:
+    """All tongues that meet the rows ``v``, those ``known`` or rows put between them; and all these rows."""
+    rows = sorted([*known, *search(v)], key=lambda row: row.v)
     for depth in range(HALVINGS + 1):
         strands, unclear = _strung(rows, final=depth == HALVINGS)
         tell((depth + 1) / (HALVINGS + 2))

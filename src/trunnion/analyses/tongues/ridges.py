@@ -16,6 +16,8 @@ ROUNDS = 3
 """Rounds of looking, each a quarter as wide as the one before."""
 TIP = 1e-13
 """How closely the height of a tip is solved, as a share of the box."""
+ASIDE = 1e-3
+"""How far inside its window a tip must lie, as a share of it."""
 _T = np.linspace(-1.0, 1.0, LOOKS)
 _FIT = np.linalg.pinv(np.vander(_T, 5, increasing=True))
 
@@ -85,5 +87,8 @@ def tips(
     if len(pick):
         exact = TIP * (region.box.v1 - region.box.v0)
         v[pick] = bracketed(lambda at, own: height(at, pick[own]), outside[pick], inside[pick], exact)
-    u, top = ridge(region, *window(v, everyone), v)
-    return u, v, found & np.isfinite(top)
+    low, high = window(v, everyone)
+    u, top = ridge(region, low, high, v)
+    # Highest at an end of the window is the flank of a neighbour that came in.
+    inner = np.minimum(u - low, high - u) > ASIDE * (high - low)
+    return u, v, found & np.isfinite(top) & inner

@@ -63,6 +63,20 @@ def shapes(region: Region, strands: list[Strand]) -> list[Shape]:
     return [shape for shape in every if not _too_faint(region, shape)]
 
 
+def lost(shaped: list[Shape]) -> Array:
+    """Rows between those where a strand ends inside the box and those next to it, where no tip was found there: it is
+    another tongue, joined or parted, that stands in its place."""
+    between = []
+    for shape in shaped:
+        s = shape.strand
+        for end, tip in ((0, shape.below), (-1, shape.above)):
+            missing = s.below if end == 0 else s.above
+            if tip is None and _ends_alone(s, end) and not any(s.clipped[end]) and not shape.fades[end]:
+                assert missing is not None
+                between.append((s.v[end] + missing.v) / 2)
+    return np.unique(between)
+
+
 def _undamped(region: Region, ends: list[tuple[Strand, int]]) -> list[bool]:
     """Whether nothing damps where strands end."""
     u, v = (np.array([getattr(s, part)[end] for s, end in ends]) for part in ("inside", "v"))

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from trunnion.analyses.charts.stability_chart import Task, line_task, own_task
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.analyses.tongues.from_resonances import followed, in_words
-from trunnion.analyses.tongues.joining import Search, Strand, joined
+from trunnion.analyses.tongues.joining import HALVINGS, Search, Strand, joined
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import FAINT, Region, patched
 from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
 from trunnion.analyses.tongues.ridges import ridge
 from trunnion.analyses.tongues.rows import Kind, Row, unstable_intervals
-from trunnion.analyses.tongues.shapes import Shape, shapes
+from trunnion.analyses.tongues.shapes import Shape, lost, shapes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -79,6 +79,11 @@ def tongues(
     search, words = _search(task, region, line, statically_twisted)
     strands, searched = joined(search, levels, lambda s: tell(0.3 + 0.5 * s))
     shaped = shapes(region, strands)
+    for _ in range(HALVINGS):
+        if not len(between := lost(shaped)):
+            break
+        strands, searched = joined(search, between, lambda s: None, searched)
+        shaped = shapes(region, strands)
     tell(0.9)
     places = {id(s.strand): k for k, s in enumerate(shaped)}
     growths, names = _growths(task, region, shaped), _names(task, region, shaped, line, statically_twisted)
