@@ -185,7 +185,7 @@ def test_figures(draw, result):
 @pytest.mark.parametrize("joint", [tn.HookeJoint(angle=0.3), tn.IdealJoint()])
 def test_a_line_without_shafts_still_shows_itself(joint, tmp_path):
     result = tn.kinetostatics(tn.Driveline([tn.ConstantSpeed(), joint, tn.Disk(inertia=1)]))
-    assert "irregularity" in str(result)
+    assert ("turns uniformly" if result.irregularity == 0 else "irregularity") in str(result)
     assert result.data["speed"].shape == (0, 720)
     result.to_csv(tmp_path / "turn.csv")
     for draw in (plots.draw, plots.draw_polar):
@@ -266,3 +266,15 @@ def test_names_in_the_package():
     ):
         assert getattr(tn, name) is not None
         assert name in tn.__all__
+
+
+def test_joints_that_cancel_turn_uniformly_at_the_operating_speed():
+    """Rounding is no irregularity, and the speed is the one that the description operates at."""
+    parts = [
+        tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=1e4), tn.HookeJoint(angle=0.2),
+        tn.Disk(inertia=1.0, load_torque=5.0),
+    ]  # fmt: skip
+    result = tn.kinetostatics(tn.Driveline(parts, operation=tn.Operation(speed="900 rpm")))
+    assert (result.irregularity, result.equivalent_angle) == (0.0, 0.0) and "turns uniformly" in str(result)
+    assert result.input_speed == pytest.approx(tn.rpm(900))
+    assert tn.kinetostatics(tn.Driveline(parts)).input_speed == 1.0

@@ -13,7 +13,7 @@ import pytest
 import trunnion as tn
 from trunnion.driveline.starter import starter
 from trunnion.reporting.report import Report
-from trunnion.reporting.tables import TIED, checks
+from trunnion.reporting.tables import TIED, checks, with_signs
 
 TEXT = """
 format = 1
@@ -156,7 +156,7 @@ def test_findings_come_gravest_first(made: Report) -> None:
     gravities = [f.gravity for f in made.contents.findings]
     assert gravities == sorted(gravities)
     text = Page(made.html).text
-    places = [text.index(f.sentence) for f in made.contents.findings]
+    places = [text.index(with_signs(f.sentence)) for f in made.contents.findings]
     assert places == sorted(places)
 
 

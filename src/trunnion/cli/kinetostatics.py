@@ -74,7 +74,7 @@ def kinetostatics(
     """  # fmt: skip
     line = read_line(file, load_case)
     unit = read_unit(line, unit)
-    at = read_speed(speed, unit) or (line.operation.speed if line.operation else None) or 1.0
+    at = read_speed(speed, unit)
     from trunnion.analyses.kinetostatics import check_limits, phase_forks
     from trunnion.analyses.kinetostatics import kinetostatics as compute
     from trunnion.cli.files import check_folder, check_outputs

@@ -65,7 +65,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     jointed = bool(hooke_joints(seen.line))
     turn = sweep = None
     if jointed:
-        turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line, speed=1.0))
+        turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
         speeds = sweep_speeds(assembly, low, high)
         sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
@@ -162,7 +162,7 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
     found = [
         Finding(
             Gravity.NOTE,
-            f"Where linear theory holds, the joints force a torque amplitude of up to {most:.10g} N·m, in "
+            f"Where linear theory holds, the joints force a torque amplitude of up to {most:.10g} N*m, in "
             f"{sweep.shafts[j]} at {at}.",
         )
     ]

@@ -171,6 +171,6 @@ def _new(findings: tuple[Finding, ...], known: tuple[Finding, ...]) -> list[Find
 
 def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:
     try:
-        return kinetostatics(line, speed or 1.0)
+        return kinetostatics(line, speed)
     except InputError:  # a line clamped at both ends
         return None

@@ -145,7 +145,7 @@ def response_findings(
     if not grave[which, shaft] > 0:
         return
     r, at = forced[which], float(places[which])
-    how = f"to ±{torque[which, shaft]:.4g} N·m" if sweep.linear[which] else "beyond linear theory"
+    how = f"to ±{torque[which, shaft]:.4g} N*m" if sweep.linear[which] else "beyond linear theory"
     outside = max(r.speed / high, low / r.speed) - 1
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
     yield Finding(

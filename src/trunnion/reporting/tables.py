@@ -128,16 +128,14 @@ def irregularity(contents: Contents) -> Table | None:
     turn = contents.turn
     if turn is None:
         return None
-    from trunnion.analyses.kinetostatics.measures import equivalent_angle, extremes
+    from trunnion.analyses.kinetostatics.measures import equivalent_angle
+    from trunnion.analyses.kinetostatics.measures import irregularity as uneven
 
     rows = []
     for name, speed, ratio in zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True):
-        low, high = extremes(speed)
-        u = float(high - low) / abs(turn.input_speed * float(ratio))
-        u = 0.0 if u < 1e-12 else u
+        u = uneven(speed, turn.input_speed * float(ratio))
         rows.append((name, four(100 * u), four(float(np.rad2deg(equivalent_angle(u))))))
-    output = turn.irregularity if turn.irregularity > 1e-12 else 0.0
-    rows.append(("output of the line", four(100 * output), four(float(np.rad2deg(equivalent_angle(output))))))
+    rows.append(("output of the line", four(100 * turn.irregularity), four(float(np.rad2deg(turn.equivalent_angle)))))
     return Table(("shaft, as assembled", "irregularity [%]", "as one joint of [°]"), tuple(rows))
 
 

@@ -17,9 +17,8 @@ import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, above, below, judged, percent
 from trunnion.analyses.assessment.subject import Subject
-from trunnion.analyses.assessment.uniformity import ROUNDING
 from trunnion.analyses.kinetostatics import Kinetostatics
-from trunnion.analyses.kinetostatics.measures import largest
+from trunnion.analyses.kinetostatics.measures import ROUNDING, largest
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.quantities import DEGREE, RPM
 from trunnion.equations.coefficients import Assembly

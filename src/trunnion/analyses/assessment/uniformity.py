@@ -16,8 +16,6 @@ from trunnion.analyses.kinetostatics.limits import EVEN_RUNNING
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.quantities import DEGREE
 
-ROUNDING = 1e-12
-"""Irregularity that is rounding of joints that cancel."""
 RULE = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical")
 
 
@@ -31,9 +29,9 @@ def uniformity(subject: Subject, turn: Kinetostatics | None) -> Iterator[Check]:
         return
     for branch in turn.branches:
         end = turn.on_branch(branch)
-        u = float(end.irregularity) if end.irregularity > ROUNDING else 0.0
+        u = end.irregularity
         margin = below(u, EVEN_RUNNING)
-        angle = float(end.equivalent_angle) / DEGREE if u else 0.0
+        angle = end.equivalent_angle / DEGREE
         because = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg, {percent(margin)}"
         title = "uniformity" if len(turn.branches) == 1 else f"uniformity of {branch}"
         yield Check(title, judged(margin), RULE, because, margin, 0.0, u, EVEN_RUNNING, "1", inputs="rigid shafts",

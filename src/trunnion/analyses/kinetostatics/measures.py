@@ -9,6 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+ROUNDING = 1e-12
+"""Irregularity that is rounding."""
+
+
+def irregularity(speed: Array, mean: float) -> float:
+    """(largest − smallest)/mean of speeds over the turns computed [1]; 0 where it is only rounding."""
+    low, high = extremes(speed)
+    uneven = float((high - low) / abs(mean))
+    return uneven if uneven > ROUNDING else 0.0
 
 
 def equivalent_angle(irregularity: ArrayLike) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.contents import contents
-from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, largest, parts
+from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, irregularity, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -159,8 +159,7 @@ class Kinetostatics(Result):
     @cached_property
     def irregularity(self) -> float:
         """U = (largest − smallest output speed)/mean [1], over the turns computed."""
-        low, high = extremes(self.output_speed)
-        return float((high - low) / abs(self.input_speed * self.mean_ratio))
+        return irregularity(self.output_speed, self.input_speed * self.mean_ratio)
 
     @property
     def equivalent_angle(self) -> float:

@@ -43,6 +43,8 @@ def _title(r: Kinetostatics, unit: str) -> str:
 def _output(r: Kinetostatics) -> list[str]:
     low, high = r.speed_ratio
     output = "output" if len(r.branches) == 1 else f"output {r.branch}"
+    if not r.irregularity:
+        return [f"  {output} turns uniformly at {low:.5f} of the input speed"]
     return [
         f"  {output} speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
         f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",

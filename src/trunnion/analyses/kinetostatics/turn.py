@@ -30,7 +30,7 @@ FEWEST_POINTS = 8
 
 def kinetostatics(
     line: Driveline,
-    speed: float | str = 1.0,
+    speed: float | str | None = None,
     acceleration: float = 0.0,
     *,
     rigid: bool = True,
@@ -52,7 +52,8 @@ def kinetostatics(
     Parameters
     ----------
     line : the driveline; its first element is driven, whatever it is.
-    speed, acceleration : of the input, the same at every angle [rad/s, rad/s²].
+    speed, acceleration : of the input, the same at every angle [rad/s, rad/s²]; by default the speed that the
+        description operates at, 1 rad/s where it says none.
     rigid : shafts do not twist; False solves the twist under the torque at every angle.
     output_torque : at the end of the line [N m], beside the Disks' own loads; positive resists rotation. With
         branches: at the end of ``branch``, or by name of an element on each branch.
@@ -69,6 +70,8 @@ def kinetostatics(
     InputError : an argument out of its range, a prescribed output, bearings that cannot carry the load.
     ComputationError : shafts so soft that the twist does not settle.
     """
+    if speed is None:
+        speed = (line.operation.speed if line.operation else None) or 1.0
     drive_speed = _number(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")

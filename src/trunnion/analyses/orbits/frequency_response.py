@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from inspect import signature
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,9 +44,6 @@ from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    pass
 
 METHODS = (
     "exact",
