@@ -156,13 +156,15 @@ def test_orders_of_teeth_without_a_common_divisor_are_those_of_the_mesh_and_the_
 
 @pytest.mark.slow
 def test_a_transmission_error_makes_no_line_unstable() -> None:
-    """It is no part of the equations of disturbances; that it is not in the amplitudes is said."""
+    """It is no part of the equations of disturbances, but of the amplitudes."""
     for teeth in ((12, 24), (13, 29)):
         for angle in (0.05, 0.5):
             quiet, loud = (tn.stability(geared(e, teeth, angle), 60.0) for e in (0.0, 1e-5))
             assert loud.verdict is quiet.verdict
             assert loud.spectral_radius == pytest.approx(quiet.spectral_radius, abs=1e-7)
-            assert "without what motor, mesh excite" in str(loud)
+            with_error = tn.order_response(geared(1e-5, teeth, angle), [60.0]).vibratory_torque[0]
+            assert loud.response.torque_amplitude == pytest.approx(with_error, rel=1e-6)
+            assert np.any(with_error > 1.01 * quiet.response.torque_amplitude)
 
 
 def lossy(angle: float, scale: float = 1.0, eta: float = 0.1) -> tn.Driveline:

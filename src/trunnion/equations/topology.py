@@ -98,7 +98,8 @@ class Topology:
     ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
     where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
     an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station; ``meshes`` are those that
-    vary with their phase. What follows from these is found once: a topology does not change.
+    vary with their phase. ``names`` are those of the unknowns; ``points`` are station and name of what is seen to move:
+    each disk where it is, ends of tubes where none is. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -111,6 +112,7 @@ class Topology:
     speed_ratio: tuple[Fraction, ...]
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
+    points: tuple[tuple[int, str], ...]
 
     @cached_property
     def size(self) -> int:
@@ -294,6 +296,11 @@ class _Draft:
         self.speed_ratio.append(ratio)
         return len(self.stations) - 1
 
+    def jointed(self, station: int) -> bool:
+        """Whether a joint stands between a station and the first one of its group."""
+        one = self.stations[station]
+        return one.link in TIED and (one.link is Link.JOINT or self.jointed(one.before))
+
 
 def _walk(line: Driveline) -> _Draft:
     draft = _Draft([], [], [], [], [], [], [])
@@ -367,7 +374,18 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         tuple(draft.speed_ratio),
         tuple(_names(line, draft, coordinate)),
         tuple(_meshes(line, draft, compliances)),
+        tuple(_points(line, draft, coordinate)),
     )
+
+
+def _points(line: Driveline, draft: _Draft, coordinate: list[int]) -> Iterable[tuple[int, str]]:
+    """Disks that move unevenly, held ones behind a joint among them, and the first ends of tubes without a disk."""
+    found = [(s, line.names[i]) for s, i in draft.disks if coordinate[draft.stations[s].group] >= 0 or draft.jointed(s)]
+    with_disk = {draft.stations[s].group for s, _ in draft.disks}
+    bare = [g for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
+    names = _names(line, draft, coordinate)
+    found += [(draft.reference[g], names[coordinate[g]]) for g in bare]
+    return sorted(found, key=lambda point: point[0])
 
 
 def _meshes(line: Driveline, draft: _Draft, compliances: list[Compliance]) -> Iterable[Mesh]:

@@ -21,7 +21,6 @@ from trunnion.analyses.orders.totals import extremes
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import against, shown
 from trunnion.driveline.shafts import Shaft
-from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.results.counts import counted
 
@@ -85,7 +84,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
         return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
     found = limited_values(case.assembly, case.answer, limit, case.assembly.table(1))
     if isinstance(found, str):
-        return Check(name, Status.NOT_APPLICABLE if found == HELD else Status.NOT_JUDGED, rule, found)
+        return Check(name, Status.NOT_APPLICABLE, rule, found)
     values, by_order = found
     kind = LIMIT_KINDS[limit.key]
     at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
@@ -149,7 +148,7 @@ def limited_values(
     ``table`` (1 or speed, column): the packed numbers that ``response`` was computed with.
     """
     if limit.key in ("max_speed_fluctuation", "max_acceleration"):
-        return _of_disk(assembly, response, limit)
+        return _of_disk(response, limit)
     c = spring_of(assembly, limit.element)
     torque = np.abs(response.torque[:, :, c])
     if limit.key in ("vibratory_torque", "transient_vibratory_torque"):
@@ -189,17 +188,11 @@ def _share(assembly: Assembly, table: Array, element: str, compliance: int) -> A
     return np.asarray(soft[element] / sum(soft.values()))
 
 
-def _of_disk(assembly: Assembly, response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
-    topo, place = assembly.topology, assembly.line.index(limit.element)
-    station = next(s for s, element in topo.disks if element == place)
-    group = topo.group_of(station)
-    i = topo.coordinate[group]
-    if i < 0:
+def _of_disk(response: OrderResponse, limit: OneLimit) -> tuple[Array, Array] | str:
+    if limit.element not in response.inertias:
         return HELD
-    if any(topo.group_of(j) == group for j in topo.joints) and station != topo.reference[group]:
-        return "it hangs on a joint without a shaft between; put a Shaft there to see its own motion"
-    ratio = abs(relative_ratio(topo, station))
+    i = response.inertias.index(limit.element)
     rates = 1 if limit.key == "max_speed_fluctuation" else 2
     values = response.speed_fluctuation if rates == 1 else response.acceleration
     turning = np.abs(response.order * response.speed[:, None] + response.frequency) ** rates
-    return values[:, i] * ratio, np.abs(response.rotation[:, :, i]) * turning * ratio
+    return values[:, i], np.abs(response.rotation[:, :, i]) * turning

@@ -15,10 +15,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.totals import common_turns, extremes, wave
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import base_motion, ratio_values
-from trunnion.equations.linear import stiffness_waves
-from trunnion.equations.topology import Topology
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
 from trunnion.results.declared import Held, Result, axis, over, remark
 
@@ -138,40 +135,3 @@ def shaft_names(assembly: Assembly) -> tuple[str, ...]:
     """Names of the compliances; massless shafts in series count as one."""
     names = assembly.line.names
     return tuple(" + ".join(names[i] for i in c.shafts) for c in assembly.topology.compliances)
-
-
-def shaft_motion(
-    topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array, rate: Array
-) -> tuple[Array, Array]:
-    """Twist [rad] and torque [N m], (case, time, shaft), of deviations x and their rates [1/s] (case, time, n)."""
-    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
-    wave = stiffness_waves(topo, coefficients, tau)
-    speed = coefficients.speed[:, None]
-    twist = np.empty((*x.shape[:2], len(topo.compliances)))
-    torque = np.empty_like(twist)
-    for e, compliance in enumerate(topo.compliances):
-        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
-        q, q_dot = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
-        if far >= 0:
-            q, q_dot = q + x[..., far], q_dot + rate[..., far]
-        if near >= 0:
-            reference = topo.reference[topo.group_of(compliance.near)]
-            r = motion.relative[..., compliance.near]
-            slope = motion.relative_slope[..., compliance.near] * motion.speed[..., reference] * speed
-            q, q_dot = q - r * x[..., near], q_dot - r * rate[..., near] - slope * x[..., near]
-        k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
-        twist[..., e] = coefficients.twist[:, e, None] + q
-        torque[..., e] = wave[..., e] * (coefficients.torque[:, e, None] + k * q) + c * q_dot
-    return twist, torque
-
-
-def joint_rotation(topo: Topology, coefficients: LineCoefficients, tau: Array, x: Array) -> Array:
-    """Largest deviation at each joint's input [rad], (case, joint), of deviations x (case, time, n)."""
-    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
-    largest = np.zeros((len(x), len(topo.joints)))
-    for k, j in enumerate(topo.joints):
-        before = topo.stations[j].before
-        i = topo.coordinate[topo.group_of(before)]
-        if i >= 0:
-            largest[:, k] = np.abs(x[..., i] * motion.relative[..., before]).max(axis=1)
-    return largest

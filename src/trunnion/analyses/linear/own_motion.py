@@ -2,7 +2,7 @@
 
 About the motion of rigid shafts at constant input speed, which is no motion of a free line, its rigid-body pair
 grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks and transmission errors, whose
-periods are others, are left out, which ``stability`` says.
+periods are others, are left out: they do not change how a small disturbance grows.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.linear.forced_response import LinearResponse
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
@@ -26,7 +25,6 @@ from trunnion.equations.linear import line_matrices
 from trunnion.equations.linear_clutches import with_mean_clutches
 from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
-from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import integrate
 
 Array = NDArray[np.float64]
@@ -37,11 +35,10 @@ PER_CYCLE = 8
 
 @dataclass(frozen=True)
 class OwnMotion:
-    """The motion at ``speed`` [rad/s], its twists and torques over one period, and the torque [N m at the input]
-    beyond the balance; ``assembly`` is the line without excitations."""
+    """The motion at ``speed`` [rad/s], and the torque [N m at the input] beyond the balance; ``assembly`` is the line
+    without excitations."""
 
     orbit: PeriodicOrbit
-    response: LinearResponse
     extra_torque: float
     assembly: Assembly
     speed: float
@@ -100,29 +97,4 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     orbit = found.orbit
     if not orbit.outcome.ok:
         raise ComputationError(f"no periodic motion of the free line was found to judge: {orbit.outcome}")
-    times = orbit.period * np.arange(SAMPLES + 1) / SAMPLES
-    states = orbit.trajectory.at(times)
-    motion = prepared.observe(orbit.system, times, states)
-    topo = prepared.assembly.topology
-
-    def curves(at: Array) -> Array:
-        seen = prepared.observe(orbit.system, at, orbit.trajectory.at(at))
-        return np.hstack([seen.twist, seen.torque])
-
-    cuts = orbit.trajectory.time_of_state
-    twist, torque = np.split(extremes(curves, cuts).span / 2, 2)
-    response = LinearResponse(
-        tau=times * speed,
-        twist=motion.twist,
-        torque=motion.torque,
-        rotation=states[:, : topo.size],
-        # Nothing is cut off here, so no rotation of a joint's input counts as a deviation from what is known.
-        joint_rotation=np.zeros(len(topo.joints)),
-        twist_amplitude=twist,
-        torque_amplitude=torque,
-        torque_mean=np.split(fourier(curves, cuts, 0)[0].real, 2)[1],
-        shafts=prepared.shafts,
-        joints=tuple(prepared.assembly.line.names[topo.stations[j].element] for j in topo.joints),
-        names=topo.names,
-    )
-    return OwnMotion(orbit, response, found.extra_torque, prepared.assembly, speed)
+    return OwnMotion(orbit, found.extra_torque, prepared.assembly, speed)

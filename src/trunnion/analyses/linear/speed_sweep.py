@@ -1,14 +1,4 @@
-"""Torque amplitudes over speed: the linear forced response of a line at many speeds at once.
-
-The periodic solution is sought as x(τ) = Σ X_h e^{ihbτ}, b = 2π/period, so that M ẍ + C ẋ + K x = F becomes
-one linear system per speed (Hill's infinite system, cut off):
-
-    Σ_h [−(hbΩ)² M_{m−h} + i hbΩ C_{m−h} + K_{m−h}] X_h = F_m,
-
-with M_k … the Fourier coefficients over the input angle. Of a line that starts free the mean drive torque is one
-more unknown, and its mean deviation has no part of a rigid turn. A second solution with fewer harmonics tells how
-far the series has converged. ``stability(...).response`` finds the same by integration, at one speed.
-"""
+"""Torque amplitudes over speed: all that ``order_response`` finds, taken together, without the orders."""
 
 from __future__ import annotations
 
@@ -20,22 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trunnion.analyses.features import left_out
-from trunnion.analyses.linear.forced_response import LINEAR_RANGE, joint_rotation, shaft_motion, shaft_names
+from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.orders.response import order_response, without_excitation
+from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import relative_ratio, rigid_rotation
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble, joint_laws
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import exciters
-from trunnion.equations.linear import LineMatrices, line_matrices
-from trunnion.equations.loads import drive_places, drive_torques
-from trunnion.equations.steady_base import bent, require_steady_base
-from trunnion.equations.topology import Topology, require_period
-from trunnion.errors import InputError
-from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -50,18 +31,6 @@ if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-FINE = 4096
-"""Times in a period at which extremes are looked for: good to 3e-7 h² of the harmonic h."""
-FEWEST, MOST = 6, 14
-"""Harmonics of the joint excitation kept, by the largest joint angle: they fall off as tan^2h(β/2)."""
-MESH_HARMONICS = (5, 4, 3, 2)
-"""Multiples kept of the fastest harmonic of a mesh's stiffness: as many of these as there is room for."""
-SMALL_ENOUGH = 1e-9
-MOST_UNKNOWNS = 3000
-BATCH = 40
-"""Speeds solved together: bounded memory, and steps of progress."""
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
 """Extra speeds about each resonance of the forced response, in half-widths of its peak."""
 
@@ -73,8 +42,8 @@ class SpeedSweep(Result):
     speed (speed,) of the input [rad/s]; twist_amplitude (speed, shaft) [rad] and torque_amplitude (speed,
     shaft) [N m], half peak to peak; torque_mean (speed, shaft) [N m], negative where power flows from input
     to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
-    stays within the range in which the linear response can be trusted; cut_off (speed,): relative change of
-    the amplitudes when a third of the harmonics is left out; ``findings`` say what of the line is left out.
+    stays within the range in which the linear response can be trusted; cut_off (speed,): size of the
+    outermost harmonics kept, of the largest torque; ``findings`` say what of the line is left out.
     ``judged`` gives the stability of the motion at every speed, None where it is not judged.
     """
 
@@ -158,56 +127,20 @@ def speed_sweep(
     ------
     InputError : speeds that are not positive; a line without steady base motion or with too long a period.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
-    if not (assembly.topology.free and bent(assembly)):
-        found = order_response(assembly, speeds, statically_twisted=statically_twisted, progress=progress)
-        return SpeedSweep(
-            found.speed,
-            found.vibratory_twist,
-            found.vibratory_torque,
-            found.mean_torque,
-            found.joint_rotation,
-            found.cut_off,
-            found.springs,
-            found.remarks,
-            found.unit,
-            found.judged,
-            bool(found.spectrum.loss.any()),
-        )
-    speed = np.atleast_1d(np.asarray(speeds, dtype=float))
-    if speed.ndim != 1 or not len(speed) or not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
-        raise InputError(
-            "must be positive and finite", key="speeds", remedy="np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
-        )
-    every = assembly.table(len(speed))
-    every[:, 0] = speed
-    require_steady_base(assembly, every)
-    topo = assembly.topology
-    half_turns = 2 * require_period(assembly.line, topo)
-    # In half turns of the fastest joint: behind a reduction, fewer in the period than of one at input speed.
-    turning = float(max((rate for j in topo.joints for rate in topo.joint_rates(j)), default=2.0)) / 2
-    joints, mesh = _harmonics(assembly) * turning * float(half_turns), topo.fastest * float(half_turns) / 2
-    tried = (int(np.ceil(joints) + np.ceil(kept * mesh)) for kept in (MESH_HARMONICS if mesh else (0,)))
-    harmonics = next((count for count in tried if (2 * count + 1) * topo.size <= MOST_UNKNOWNS), None)
-    if harmonics is None:
-        raise InputError(
-            "repeats only after too many turns for a sweep over speed",
-            element="driveline",
-            remedy="use stability at single speeds",
-        )
-    period = np.pi * float(half_turns)
-    parts = []
-    for start in range(0, len(speed), BATCH):
-        table = assembly.table(len(speed[start : start + BATCH]))
-        table[:, 0] = speed[start : start + BATCH]
-        coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
-        parts.append(_amplitudes(topo, coefficients, period, harmonics, _border(assembly)))
-        if progress:
-            progress(min(1.0, (start + BATCH) / len(speed)))
-    twist, torque, mean, rotation, cut_off = (np.concatenate(p) for p in zip(*parts, strict=True))
-    said = (*left_out("speed_sweep", assembly.line), *without_excitation(assembly))
-    unit = speed_unit(assembly.line)
-    return SpeedSweep(speed, twist, torque, mean, rotation, cut_off, shaft_names(assembly), said, unit)
+    found = order_response(line, speeds, statically_twisted=statically_twisted, progress=progress)
+    return SpeedSweep(
+        found.speed,
+        found.vibratory_twist,
+        found.vibratory_torque,
+        found.mean_torque,
+        found.joint_rotation,
+        found.cut_off,
+        found.springs,
+        found.remarks,
+        found.unit,
+        found.judged,
+        bool(found.spectrum.loss.any()),
+    )
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:
@@ -228,94 +161,3 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
             found.append(frequency / order * (1 + width * CLUSTER))
     every = np.unique(np.concatenate(found))
     return every[(every >= low) & (every <= high)]
-
-
-def _harmonics(assembly: Assembly) -> int:
-    """As many as the largest bend asks for."""
-    share = max((law.spread for law in joint_laws(assembly, assembly.table(1))), default=0.0)
-    return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))), FEWEST, MOST))
-
-
-def _amplitudes(
-    topo: Topology, coefficients: LineCoefficients, period: float, harmonics: int, border: Border | None
-) -> tuple[Array, Array, Array, Array, Array]:
-    times = max(64, 8 * harmonics)
-    tau = period * np.arange(times) / times
-    matrices = line_matrices(topo, coefficients, tau)
-    x, rate = _periodic(matrices, coefficients.speed, period, harmonics, border)
-    twist, torque = shaft_motion(topo, coefficients, tau, x, rate)
-    coarse = shaft_motion(
-        topo, coefficients, tau, *_periodic(matrices, coefficients.speed, period, max(1, 2 * harmonics // 3), border)
-    )[1]
-    amplitude = _span(torque) / 2
-    largest = np.maximum(amplitude.max(axis=1), 1e-300)
-    cut_off = np.abs(_span(coarse) / 2 - amplitude).max(axis=1) / largest
-    rotation = joint_rotation(topo, coefficients, tau, x).max(axis=1, initial=0.0)
-    return _span(twist) / 2, amplitude, torque.mean(axis=1), rotation, cut_off
-
-
-def _span(curves: Array) -> Array:
-    """Largest minus smallest value of periodic ``curves`` (case, time, curve), between their samples too: as Fourier
-    series they are evaluated at FINE times at least."""
-    times = curves.shape[1]
-    fine = times * int(np.ceil(FINE / times))
-    spectrum = np.fft.rfft(curves, axis=1) * (fine / times)
-    return np.asarray(np.ptp(np.fft.irfft(spectrum, fine, axis=1), axis=1))
-
-
-@dataclass(frozen=True)
-class Border:
-    """What determines the mean rotation of a free line: generalised forces (n,) of a unit torque of its drives, which
-    is an unknown beside the motion, and the rigid rotation (n,) that the mean deviation has no part of."""
-
-    drive: Array
-    turn: Array
-
-
-def _border(assembly: Assembly) -> Border | None:
-    topo = assembly.topology
-    if not topo.free:
-        return None
-    share = drive_places(topo, assembly.packed.column, assembly.table(1))
-    torque = -drive_torques(topo, share, np.ones(1))[0]
-    drive = np.zeros(topo.size)
-    for s, ratio in enumerate(topo.speed_ratio):
-        i = topo.coordinate[topo.group_of(s)]
-        drive[i] += torque[s] * relative_ratio(topo, s) * np.sign(float(ratio))
-    return Border(drive, rigid_rotation(topo))
-
-
-def _periodic(
-    matrices: LineMatrices, speed: Array, period: float, harmonics: int, border: Border | None
-) -> tuple[Array, Array]:
-    """x and dx/dt (case, time, n) of the periodic solution."""
-    mass, damping, stiffness, forcing = (
-        np.fft.fft(part, axis=1) / part.shape[1]
-        for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.forcing)
-    )
-    cases, times, n = forcing.shape
-    h = np.arange(-harmonics, harmonics + 1)
-    x, rate = np.zeros((2, cases, times, n), dtype=complex)
-    for case in range(cases):
-        s = 1j * h * (2 * np.pi / period) * speed[case]
-        parts = [part[[case]] for part in (stiffness, damping, mass)]
-        matrix = fourier.hill_blocks(s[None], h, parts).reshape(len(h) * n, len(h) * n)
-        right = forcing[case, h % times].reshape(-1)
-        if border is not None:
-            matrix, right = _bordered(matrix, right, border, harmonics * n)
-        found = np.linalg.solve(matrix, right)[: len(h) * n]
-        found = found.reshape(len(h), n)
-        x[case, h % times], rate[case, h % times] = found, found * s[:, None]
-    return tuple((np.fft.ifft(part, axis=1) * times).real for part in (x, rate))  # type: ignore[return-value]
-
-
-def _bordered(matrix: Complex, right: Complex, border: Border, place: int) -> tuple[Complex, Complex]:
-    """The equations with an unknown torque and a condition more, both at the mean: its block begins at ``place``."""
-    n, size = len(border.turn), len(right)
-    wide = np.zeros((size + 1, size + 1), dtype=complex)
-    wide[:size, :size] = matrix
-    # In the units of the mean block, so that the condition of the whole stays that of its parts.
-    unit = float(np.abs(matrix[place : place + n, place : place + n]).max()) or 1.0
-    wide[place : place + n, size] = -unit * border.drive / np.linalg.norm(border.drive)
-    wide[size, place : place + n] = unit * border.turn / np.linalg.norm(border.turn)
-    return wide, np.append(right, 0.0)

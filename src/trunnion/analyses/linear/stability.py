@@ -28,7 +28,6 @@ from trunnion.analyses.linear.mode_content import (
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.orbit_result import speed_in_words
-from trunnion.analyses.orders.response import without_excitation
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -263,8 +262,7 @@ def stability(
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
-        said = without_excitation(assembly)
-        return replace(found, left_out=(*left_out("stability", assembly.line), *said), unit=speed_unit(assembly.line))
+        return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = propagated(system, tolerance)
     topo = assembly.topology
@@ -309,7 +307,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
         period=2 * np.pi * float(turns),
         speed=speed,
         resonance=named,
-        forced=Found(motion.response),
+        forced=Forced(assembly, speed, statically_twisted=True),
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
         set_aside=1,

@@ -249,17 +249,15 @@ def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
     linear = result.linear
     assert linear is not None
     line, topo = result.nonlinear.line.assembly.line, result.nonlinear.line.assembly.topology
-    for station, ratio in zip(topo.stations, topo.speed_ratio, strict=True):
-        element = line.elements[station.element]
-        if not getattr(element, "quadratic_load", 0.0):
+    for station, place in topo.disks:
+        name = line.names[place]
+        if not getattr(line.elements[place], "quadratic_load", 0.0) or name not in linear.inertias:
             continue
-        i = topo.coordinate[topo.group_of(topo.stations.index(station))]
-        if i < 0:
-            continue
-        share = float(linear.speed_fluctuation[0, i]) / (abs(float(ratio)) * result.speed)
+        fluctuation = float(linear.speed_fluctuation[0, linear.inertias.index(name)])
+        share = fluctuation / (abs(float(topo.speed_ratio[station])) * result.speed)
         if share > FLUCTUATION:
             yield (
-                f"the speed of {line.names[station.element]} fluctuates by {100 * share:.0f} %, so that its load by "
+                f"the speed of {name} fluctuates by {100 * share:.0f} %, so that its load by "
                 "the square of the speed is not its tangent"
             )
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.driveline.driveline import Driveline
+from trunnion.errors import ComputationError
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,8 @@ def compared(
     InputError : the linear equations do not have what the line has.
     """
     static = stability(line, speed)
-    assert static.response is not None
+    if static.response is None:
+        raise ComputationError(f"no linear response: {static.no_response}")
     return LinearComparison(
         growth_rate,
         stability(line, speed, statically_twisted=False),

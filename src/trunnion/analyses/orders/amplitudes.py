@@ -18,12 +18,12 @@ Key = tuple[Fraction, float]
 class OrderSum:
     """Amplitudes by (order, frequency), summed up as they come."""
 
-    def __init__(self, cases: int, channels: int, inertias: int) -> None:
+    def __init__(self, cases: int, channels: int, points: int) -> None:
         self.amplitude: dict[Key, Complex] = {}
         self.base: dict[Key, Complex] = {}
         self.mean = np.zeros((cases, channels))
         self.zero = np.zeros((cases, channels), dtype=complex)
-        self.flat = np.zeros((cases, inertias), dtype=complex)
+        self.flat = np.zeros((cases, points), dtype=complex)
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
         """Take in one part; order 0 is the mean, negative orders are folded onto positive ones."""
@@ -41,7 +41,7 @@ class OrderSpectrum:
     """Amplitudes by order at many speeds.
 
     order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
-    (speed, order, channel) of the deviation from the base motion, base (speed, order, inertia) [rad] of the base
+    (speed, order, channel) of the deviation from the base motion, base (speed, order, point) [rad] of the base
     motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
     damping and loss (1 or speed, spring) [N m s/rad, N m/rad].
     """

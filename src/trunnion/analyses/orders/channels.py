@@ -1,7 +1,8 @@
 """What is read from a steady response: twist and torque of every spring, deviation of every inertia and joint input.
 
 One solution belongs to frequencies ω₀ + hbΩ about one carrier ω₀. All of it stands on one axis of *channels*:
-springs' elastic twist, springs' torque, inertias' deviation from the base motion, deviation at the joints' inputs.
+springs' elastic twist, springs' torque, unknowns' deviation from the base motion, deviation at the joints' inputs, and
+that of the points whose motion is shown: disks, each where it is, behind its joint if there is one.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ class Channels:
     springs: int
     inertias: int
     joints: int
+    points: int
 
     @property
     def twist(self) -> slice:
@@ -37,23 +39,29 @@ class Channels:
 
     @property
     def deviation(self) -> slice:
-        """Deviation [rad] of every inertia from its base motion."""
+        """Deviation [rad] of every unknown, the first station of its group, from its base motion."""
         return slice(2 * self.springs, 2 * self.springs + self.inertias)
 
     @property
     def joint_input(self) -> slice:
         """Deviation [rad] at every joint's input."""
-        return slice(2 * self.springs + self.inertias, self.count)
+        start = self.deviation.stop
+        return slice(start, start + self.joints)
+
+    @property
+    def point(self) -> slice:
+        """Deviation [rad] of every point of ``Topology.points`` from its base motion."""
+        return slice(self.count - self.points, self.count)
 
     @property
     def count(self) -> int:
         """How many there are."""
-        return 2 * self.springs + self.inertias + self.joints
+        return 2 * self.springs + self.inertias + self.joints + self.points
 
 
 def channels_of(topo: Topology) -> Channels:
     """The channels of a line."""
-    return Channels(len(topo.compliances), topo.size, len(topo.joints))
+    return Channels(len(topo.compliances), topo.size, len(topo.joints), len(topo.points))
 
 
 def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -> Complex:
@@ -70,11 +78,10 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
         if near >= 0:
             seen[..., e] -= ratio[..., e] * x[..., near]
     seen[..., places.deviation] = x
-    for k, joint in enumerate(topo.joints):
-        before = topo.stations[joint].before
-        i = topo.coordinate[topo.group_of(before)]
-        if i >= 0:
-            seen[..., places.joint_input.start + k] = relative[..., before] * x[..., i]
+    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
+    for k, station in enumerate(at, start=places.joint_input.start):
+        if (i := topo.unknown_of[station]) >= 0:
+            seen[..., k] = relative[..., station] * x[..., i]
     return seen
 
 

@@ -96,6 +96,7 @@ class OwnOrders:
         seen = np.zeros((len(speeds), len(tau), places.count))
         seen[..., places.twist], seen[..., places.torque] = observed.twist, observed.torque
         seen[..., places.deviation] = observed.rotation[..., topo.firsts]
+        seen[..., places.point] = observed.rotation[..., [station for station, _ in topo.points]]
         before = [topo.stations[joint].before for joint in topo.joints]
         # Equations are linear about the own motion: where the load twists a joint's input to on average is no swing.
         swing = observed.rotation - rigid

@@ -143,21 +143,6 @@ def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderRe
     return _result(assembly, spectrum, lambda: failed, None)
 
 
-def without_excitation(assembly: Assembly) -> tuple[Finding, ...]:
-    """What to say where joints and varying meshes alone are counted: what else excites the line."""
-    row = assembly.table(1)[0]
-    names = dict.fromkeys(e.element for e in exciters(assembly) if row[e.amplitude] and not e.held)
-    if not names:
-        return ()
-    return (
-        Finding(
-            Gravity.CAUTION,
-            "The line starts free and is bent: amplitudes are those that joints and meshes force, without what "
-            f"{', '.join(names)} excite{'' if len(names) > 1 else 's'}; ask periodic_response().",
-        ),
-    )
-
-
 def _assembled(line: Driveline | Assembly, load_case: str | None) -> Assembly:
     if load_case is not None:
         description = line.line if isinstance(line, Assembly) else line
@@ -205,11 +190,11 @@ def _result(
         frequency=frequency,
         torque=amplitude[..., places.torque],
         twist=amplitude[..., places.twist],
-        rotation=amplitude[..., places.deviation] + base,
+        rotation=amplitude[..., places.point] + base,
         mean_torque=spectrum.mean[:, places.torque],
         mean_twist=spectrum.mean[:, places.twist],
         springs=shaft_names(assembly),
-        inertias=topo.names,
+        inertias=tuple(name for _, name in topo.points),
         joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
         stress_factor=_stress_factor(assembly),
         spectrum=spectrum,

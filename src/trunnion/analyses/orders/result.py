@@ -59,7 +59,8 @@ class OrderResponse(Result):
     a column turns with order · speed + frequency. torque (speed, order, spring) [N m], twist (speed, order, spring)
     [rad], rotation (speed, order, inertia) [rad] are one-sided complex amplitudes: Re[Y e^{i(order · Ωt +
     frequency · t)}], the phase that of a cosine at zero rotation of the input. Torque is positive with the twist;
-    rotation is the deviation from uniform rotation, joints' own included. mean_torque (speed, spring) [N m].
+    rotation is the deviation of every disk, where it is, from its uniform rotation, what a joint in front of it adds
+    included; ends of tubes stand for places without a disk. mean_torque (speed, spring) [N m].
 
     The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
     exists: an undamped resonance. ``verdict`` says where the motion is stable; it is computed when asked for first, by
@@ -154,7 +155,7 @@ class OrderResponse(Result):
 
     def _swing(self, rates: int) -> Array:
         spectrum = self.spectrum
-        whole = spectrum.amplitude[..., spectrum.channels.deviation] + spectrum.base
+        whole = spectrum.amplitude[..., spectrum.channels.point] + spectrum.base
         turned = whole * (1j * spectrum.angular_frequency[..., None]) ** rates
         low, high = extremes(spectrum, turned, np.zeros((len(self.speed), len(self.inertias))))
         return np.asarray((high - low) / 2)
@@ -222,8 +223,8 @@ class OrderResponse(Result):
         places = spectrum.channels
         parts = spectrum.amplitude[at], spectrum.mean[at]
         seen = wave(spectrum, at, *parts, time)
-        whole = spectrum.amplitude[at][:, places.deviation] + spectrum.base[at]
-        rotation = wave(spectrum, at, whole, spectrum.mean[at, places.deviation], time)
+        whole = spectrum.amplitude[at][:, places.point] + spectrum.base[at]
+        rotation = wave(spectrum, at, whole, spectrum.mean[at, places.point], time)
         return OrderWave(
             float(self.speed[at]), time, seen[:, places.torque], seen[:, places.twist], rotation,
             self.springs, self.inertias,

@@ -89,10 +89,10 @@ def order_spectrum(
             _require_room(assembly, parts[0][0], len(speed))
         if progress:
             progress(done / len(speed))
-    channels, n = channels_of(assembly.topology), assembly.topology.size
+    channels = channels_of(assembly.topology)
     keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
     amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
-    base = np.zeros((len(speed), len(keys), n), dtype=complex)
+    base = np.zeros((len(speed), len(keys), channels.points), dtype=complex)
     start = 0
     for total, cut_off in parts:
         rows = slice(start, start + len(cut_off))
@@ -137,7 +137,7 @@ def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, tabl
 def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
     numbers = len(set(first.amplitude) | set(first.base)) * (
-        channels_of(assembly.topology).count + assembly.topology.size
+        channels_of(assembly.topology).count + len(assembly.topology.points)
     )
     # Complex, and held twice while the parts are put together.
     require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
@@ -235,7 +235,7 @@ class _Case:
         matrices = line_matrices(topo, co, np.zeros(1))
         loss = loss_matrix(topo, co)
         base = self._base(table, co, np.zeros(1))
-        total = OrderSum(len(speed), channels_of(topo).count, topo.size)
+        total = OrderSum(len(speed), channels_of(topo).count, len(topo.points))
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
         if groups:
             carrier = [[g.frequency if g.frequency else float(e.order) for e, _ in g.members][0] for g in groups]
@@ -286,7 +286,7 @@ class _Case:
         alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
         ratio, relative = matrices.ratio[alike], base.relative[alike]
         places = channels_of(topo)
-        total = OrderSum(len(speed), places.count, topo.size)
+        total = OrderSum(len(speed), places.count, len(topo.points))
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in out.groups:
             carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * table[:, 0]
@@ -314,7 +314,7 @@ class _Case:
 
         topo, cycles, speed, times = self.topo, 1 / self.turns, table[:, 0], len(own.tau)
         places, co = channels_of(topo), own.coefficients
-        total, last = OrderSum(len(speed), places.count, topo.size), np.zeros(len(speed))
+        total, last = OrderSum(len(speed), places.count, len(topo.points)), np.zeros(len(speed))
         add_own(own, cycles, total.add)
         for group in groups_of(self.shaken, self.row, cycles, own.count):
             carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
@@ -421,8 +421,8 @@ class _Case:
 
     def _add_base(self, total: OrderSum, rotation: Array, cycles: Fraction, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
-        topo = self.topo
-        spectrum = np.fft.rfft(rotation[..., topo.firsts], axis=1) / rotation.shape[1]
+        points = [station for station, _ in self.topo.points]
+        spectrum = np.fft.rfft(rotation[..., points], axis=1) / rotation.shape[1]
         least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
