@@ -129,8 +129,8 @@ def advance(t, end, state, regime, omega, force, pieces, guards, then, tangents,
 
     pieces (regimes, 3): c, s, d; guards (regimes, most, 3): a, e, h; then (regimes, most): the next regime or −1.
     force (harmonics + 1,) complex: F₀ and p_k − i q_k. record (rows, 4) receives the events; measure > 0 also
-    records extrema and adds ∫x dt, ∫x cos ωt dt and −∫x sin ωt dt to sums. Returns regime, number of events and
-    how it ended.
+    records extrema and adds ∫x dt, ∫x cos ωt dt and −∫x sin ωt dt to sums; an int64, as for a literal numba compiles
+    anew. Returns regime, number of events and how it ended.
     """
     events, n = 0, len(force)
     response, slope = np.zeros(n, dtype=np.complex128), np.zeros(n, dtype=np.complex128)
@@ -269,7 +269,7 @@ def measure(state, regime, periods, omega, force, pieces, guards, then, side, re
             touched |= 1 if side[regime] > 0 else 2
         before = regime
         after, events, ended = advance(
-            0.0, length, state, regime, omega, force, pieces, guards, then, none, record, 1, sums
+            0.0, length, state, regime, omega, force, pieces, guards, then, none, record, np.int64(1), sums
         )
         for e in range(events):
             x, v, kind = record[e, 1], record[e, 2], int(record[e, 3])
@@ -304,7 +304,7 @@ def settle(state, regime, least, most, tolerance, omega, force, pieces, guards, 
     for count in range(1, most + 1):
         x, v = state[0], state[1]
         regime, _, ended = advance(
-            0.0, length, state, regime, omega, force, pieces, guards, then, none, record, 0, sums
+            0.0, length, state, regime, omega, force, pieces, guards, then, none, record, np.int64(0), sums
         )
         if ended != DONE:
             return regime, count, 0, ended

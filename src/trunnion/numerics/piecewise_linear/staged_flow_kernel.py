@@ -104,7 +104,7 @@ def excite_slope(t, constant_slope, frequencies, frequency_slope, force, force_s
 @njit(cache=True, error_model="numpy")
 def expand(z, stages, g_matrix, drag, pieces, moves, source, push, whole, q, v, f):
     """Taylor coefficients q, v, f (m, ORDER + 1) of the motion from z (2m,) under ``push``; a tangent, for which
-    ``whole`` is 0, does not have the offsets of the stages."""
+    ``whole`` is 0, does not have the offsets of the stages. An int64: for a literal numba compiles anew."""
     m = len(stages)
     for e in range(m):
         q[e, 0], v[e, 0] = z[e], z[m + source[e]]
@@ -175,7 +175,7 @@ def carry(
     while done < span:
         if by_parameter:
             excite_slope(t + done, constant_slope, frequencies, frequency_slope, force, force_slope, push)
-        expand(w, stages, g_matrix, drag, pieces, moves, source, push, 0, q, v, f)
+        expand(w, stages, g_matrix, drag, pieces, moves, source, push, np.int64(0), q, v, f)
         step = min(span - done, length(q), length(v))
         for e in range(m):
             w[e], w[m + e] = polynomial(q[e], step), polynomial(v[e], step)
@@ -329,7 +329,7 @@ def advance(
     g, columns = np.zeros(ORDER + 1), len(tangents)
     while True:
         excite(t, constant, frequencies, force, force_now)
-        expand(z, stages, g_matrix, drag, pieces, moves, source, force_now, 1, q, v, f)
+        expand(z, stages, g_matrix, drag, pieces, moves, source, force_now, np.int64(1), q, v, f)
         step, last = min(length(q), length(v)), False
         if not t + step < end:
             step, last = end - t, True
