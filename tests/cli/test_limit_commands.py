@@ -84,6 +84,8 @@ def test_certificate(run, here):
     assert run(*call).stdout.splitlines()[0].startswith(("undecided within 1 tolerance", "proved stable"))
     shown = json.loads(run(*call, "--json", "-o", "c.nc").stdout)
     assert shown["boxes"] == 1 and shown["variable"] == ["speed", "Shaft 1.stiffness"]
+    assert run(*call, "-o", "c.png").exit_code == 0 and (here / "c.png").exists()
+    assert "is nothing this command writes" in run(*call, "-o", "c.csv").stderr
 
 
 REFUSED = [

@@ -366,3 +366,31 @@ def test_refusals(run, message: str) -> None:
     with pytest.raises(tn.InputError) as caught:
         run()
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
+
+
+def test_drawn_over_the_directions_split_most() -> None:
+    """Boxes, proved and open, fill the volume once; the picture has both, and marks the line that is unstable."""
+    from trunnion.plots.certificate import most_split
+
+    found = tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.5, "Disk 1.inertia": 0.01}, (1.2, 1.25), most_boxes=30)
+    assert found.verdict == "undecided" and len(found.proved_low) and most_split(found) == (0, 1)
+    low, high = found.ends
+    every = [
+        (np.log(h[0] / b[0]), h[1:] - b[1:])
+        for b, h in zip(
+            np.vstack([found.proved_low, found.undecided_low]),
+            np.vstack([found.proved_high, found.undecided_high]),
+            strict=True,
+        )
+    ]
+    volume = sum(speed * sides.prod() for speed, sides in every)
+    assert volume == pytest.approx(np.log(high[0] / low[0]) * (high - low)[1:].prod(), rel=1e-9)
+    axes = found.plot()
+    words = [text.get_text() for text in axes.figure.legends[0].get_texts()]
+    assert words == [f"proved stable ({len(found.proved_low)} boxes)", f"left open ({len(found.undecided_low)} boxes)"]
+    assert axes.get_xlabel() == "input speed [rad/s]" and axes.get_ylabel() == "stiffness of Shaft 1 [N·m/rad]"
+    assert "1 other direction" in axes.get_title(loc="left")
+    line = tn.catalogue("two-shaft-cardan", angle=0.6, damping_ratio=0.002)
+    unstable = tn.certify_stability(line, {"Shaft 1.stiffness": 0.01}, (1.5, 1.7))
+    words = [text.get_text() for text in unstable.plot().figure.legends[0].get_texts()]
+    assert unstable.verdict == "counterexample" and words[-1] == "unstable line"

@@ -10,7 +10,7 @@ import typer
 from trunnion.cli import output
 from trunnion.cli.limits import read_speed_range, written_paths
 from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import check_places, print_result, write_result, write_results
+from trunnion.cli.places import PICTURES_AND_DATA, check_places, print_result, write_results
 from trunnion.errors import InputError
 
 EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
@@ -106,13 +106,12 @@ def certify_stability(
     given = dict(_tolerance(text) for text in tolerance) if tolerance else None
     assembly = assemble(line)
     span = read_speed_range(speeds, assembly, unit)
-    if to and any(path.suffix != ".nc" for path in to):
-        raise InputError("is no picture", key="--output", value=str(to[0]), remedy="end it in .nc")
-    check_places(to)
+    check_places(to, PICTURES_AND_DATA)
     with output.progress("certificate") as advance:
         found = certify(assembly, given, span, most_boxes=boxes, progress=advance)
-    written = [write_result(path, found.data, lambda: None) for path in to or []]
+    found = replace(found, unit=unit)
+    written = write_results(to, file_stem(file), "certificate", found.data, lambda: found.plot())
     if as_json:
         output.write_json("certify-stability", {**found.to_dict(), "written": written_paths(written)})
         return
-    print_result(str(replace(found, unit=unit)), written)
+    print_result(str(found), written)

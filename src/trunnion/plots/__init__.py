@@ -13,6 +13,7 @@ DRAWINGS = {
     "Comparison.plot": "trunnion.plots.comparison:draw",
     "Optimum.plot": "trunnion.plots.optimum:draw",
     "Sensitivities.plot": "trunnion.plots.sensitivity:draw",
+    "StabilityCertificate.plot": "trunnion.plots.certificate:draw",
     "ToleranceStudy.plot": "trunnion.plots.tolerance:draw",
     "Tongues.plot": "trunnion.plots.tongues:draw",
     "Kinetostatics.plot": "trunnion.plots.kinetostatics:draw",

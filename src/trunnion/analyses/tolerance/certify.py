@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +27,13 @@ from trunnion.equations.steady_base import require_steady_base
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 BATCH = {1: 48, 2: 24, 3: 8}
@@ -47,7 +52,8 @@ class StabilityCertificate(Result):
     verdict: "proved stable", "counterexample" or "undecided"; undecided_share: of the volume in ln(speed) and shares of
     tolerances; counterexample: speed and values by parameter of a line that ``stability`` calls unstable; boxes: how
     many were judged; largest_radius: the largest multiplier at the middle of any box (a sample, no bound);
-    undecided_low, undecided_high (boxes, 1 + parameters): what stays open, speed first, SI units.
+    undecided_low, undecided_high (boxes, 1 + parameters): what stays open, speed first, SI units; proved_low,
+    proved_high: what was proved; units of the parameters.
     """
 
     parameters: tuple[str, ...]
@@ -59,6 +65,9 @@ class StabilityCertificate(Result):
     largest_radius: float
     undecided_low: Array
     undecided_high: Array
+    proved_low: Array
+    proved_high: Array
+    units: tuple[str, ...]
     unit: str
     findings: tuple[Finding, ...] = ()
 
@@ -70,11 +79,24 @@ class StabilityCertificate(Result):
         yield axis("open_box", np.arange(len(self.undecided_low)))
         yield over("open_box variable", "low", self.undecided_low)
         yield over("open_box variable", "high", self.undecided_high)
+        yield axis("proved_box", np.arange(len(self.proved_low)))
+        yield over("proved_box variable", "proved_low", self.proved_low)
+        yield over("proved_box variable", "proved_high", self.proved_high)
         yield over("", "largest_radius", self.largest_radius, "1", "largest multiplier at the middle of any box")
         yield remark("verdict", self.verdict)
         yield remark("undecided_share", self.undecided_share)
         yield remark("speeds", list(self.speeds))
         yield remark("boxes", self.boxes)
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Lowest and highest speed [rad/s] and parameters (1 + parameters,), SI units."""
+        low, high = np.vstack([self.proved_low, self.undecided_low]), np.vstack([self.proved_high, self.undecided_high])
+        return low.min(axis=0), high.max(axis=0)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """What is proved and what is left open; see ``plots.certificate.draw``."""
+        return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
         span = f"from {show_speed(self.speeds[0], self.unit)} to {show_speed(self.speeds[1], self.unit)}"
@@ -140,6 +162,9 @@ def certify_stability(
         largest_radius=found.radius,
         undecided_low=space.values(left[:, 0]),
         undecided_high=space.values(left[:, 1]),
+        proved_low=space.values(found.proved[:, 0]),
+        proved_high=space.values(found.proved[:, 1]),
+        units=tuple(s.unit for s in spreads),
         unit=speed_unit(assembly.line),
         findings=left_out("certify_stability", assembly.line),
     )
@@ -197,6 +222,7 @@ class _Space:
 class _Found:
     counterexample: dict[str, float] | None
     open: Array
+    proved: Array
     boxes: int
     radius: float
 
@@ -207,6 +233,7 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
     edges = np.linspace(0.0, 1.0, cells + 1)
     todo = np.tile(np.array([np.zeros(size), np.ones(size)]), (cells, 1, 1))
     todo[:, 0, 0], todo[:, 1, 0] = edges[:-1], edges[1:]
+    proved = [np.zeros((0, 2, size))]
     batch_size, judged, radius = BATCH[space.assembly.topology.size], 0, 0.0
     while len(todo) and judged < most:
         # The largest first: what is left when the budget ends is then as small as can be.
@@ -214,14 +241,15 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
         batch, todo = todo[order[:batch_size]], todo[order[batch_size:]]
         found = judge_boxes(space.assembly, *space.ends(batch))
         judged, radius = judged + len(batch), max(radius, float(np.nanmax(found.radius)))
+        left = batch[~found.proved]
+        proved.append(batch[found.proved])
         for box in batch[found.radius > 1]:
             example = _confirmed(space, box)
             if example is not None:
-                return _Found(example, np.concatenate([batch, todo]), judged, radius)
-        left = batch[~found.proved]
+                return _Found(example, np.concatenate([left, todo]), np.concatenate(proved), judged, radius)
         todo = np.concatenate([todo, _halved(left, space.across(left, found.blame[~found.proved]))])
         tell(min(1 - _volume(todo), 0.999))
-    return _Found(None, todo, judged, radius)
+    return _Found(None, todo, np.concatenate(proved), judged, radius)
 
 
 def _halved(boxes: Array, along: NDArray[np.int64]) -> Array:
