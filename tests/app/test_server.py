@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
+import gc
 import http.client
 import signal
 import socket
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from served import ROOT, Server, start_server
+
+from trunnion.app.serve import left
 
 
 def ask(server: Server, path: str = "/", **headers: str) -> tuple[int, str]:
@@ -128,3 +133,28 @@ def test_a_port_in_use_is_refused(server: Server) -> None:
 def test_bad_arguments_are_refused(arguments: tuple[str, ...]) -> None:
     code, lines = refused("app", "--no-browser", *arguments)
     assert (code, len(lines)) == (2, 1)
+
+
+def test_a_browser_that_goes_away_while_it_is_written_to_leaves_no_traceback() -> None:
+    """Nobody waits for the end of such a write; what else fails unseen is still said."""
+    from tornado.websocket import WebSocketClosedError
+
+    said: list[object] = []
+
+    async def fail(error: Exception) -> None:
+        raise error
+
+    async def work() -> None:
+        loop = asyncio.get_running_loop()
+        monkey = type(
+            "Loop", (), {"default_exception_handler": lambda self, context: said.append(context["exception"])}
+        )
+        loop.set_exception_handler(lambda loop, context: left(monkey(), context))
+        for error in (WebSocketClosedError(), ValueError("seen")):
+            loop.create_task(fail(error))
+        await asyncio.sleep(0.01)
+        gc.collect()
+
+    with ThreadPoolExecutor(1) as thread:  # the browser's driver has a loop of its own in this one
+        thread.submit(asyncio.run, work()).result()
+    assert [str(error) for error in said] == ["seen"]

@@ -96,8 +96,13 @@ def saved(look: Look, name: str, folder: Path) -> Path:
     return path
 
 
-def test_a_click_computes_the_point_alone(look: Look) -> None:
-    """The chart stays as it is, and no coarse one comes before it."""
+PIXELS = """() => Bokeh.documents.flatMap(d => [...d._all_models.values()])
+  .filter(m => m.type === 'ColumnDataSource' && m.data.dw && m.data.dw.length).map(m => m.data.dw[0])[0]"""
+"""How wide the box is that the pixels of the chart fill [rpm]."""
+
+
+def test_a_click_computes_the_point_alone_and_a_zoom_no_chart(look: Look) -> None:
+    """The chart stays as it is, and no coarse one comes before it; moved aside it has its pixels in the rest."""
     look.at(STABILITY)
     look.page.locator("[data-chart='chart']").wait_for()
     said = "e => e.dataset.chart + e.dataset.count"
@@ -105,6 +110,13 @@ def test_a_click_computes_the_point_alone(look: Look) -> None:
     look.type("Look at input speed [rpm]", "707")
     look.page.locator("td[data-value='speed']", has_text="707 rpm").wait_for()
     look.settled()
+    whole = look.page.evaluate(PIXELS)
+    box = look.page.locator(".bk-Canvas").first.bounding_box()
+    look.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    look.page.mouse.down()
+    look.page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"], steps=4)
+    look.page.mouse.up()
+    look.page.wait_for_function(f"whole => ({PIXELS})() < 0.9 * whole", arg=whole)
     assert look.page.locator("[data-count]").evaluate(said) == before
 
 

@@ -14,9 +14,11 @@ from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem, Span
 from trunnion.app import figures
 
 IN_A_ROW, ROW = 3, 28
-"""Names in a row of the legend, and its height in pixels."""
-NARROW = 34
-"""Letters of a title in one line over a picture that has half of the page."""
+"""Most names in a row of the legend, and its height in pixels."""
+PLACE, LETTER, KEY = 420, 6.7, 40
+"""Pixels of a row in the narrowest page, of a letter of a name, and of the line before it."""
+WIDE, NARROW = 52, 34
+"""Letters of a title in one line over the narrowest picture, and over one that has half of the page."""
 MOST = 24
 """Curves that one figure shows."""
 
@@ -77,6 +79,7 @@ class Curves:
         source, item = self.marks[name]
         figures.put(source, {"x": np.asarray(x, dtype=float), "y": np.asarray(y, dtype=float)})
         item.visible = len(source.data["x"]) > 0
+        self._make_room()
 
     def fill(self, areas: Sequence[tuple[Any, Any]]) -> None:
         """Areas (x, y) under the curves, in place of those that are."""
@@ -107,7 +110,7 @@ class Curves:
                 "name": [name for name, _, _ in shown],
             },
         )
-        self._make_room(len(shown))
+        self._make_room()
         self.cursor.location = cursor
         if x:
             self.figure.xaxis.axis_label = x
@@ -119,16 +122,26 @@ class Curves:
     def title(self, text: str) -> None:
         """Words above the figure, in lines that it holds."""
         self.words = text
-        self.figure.title.text = "\n".join(textwrap.wrap(text, NARROW)) if self.is_narrow else text
+        self.figure.title.text = "\n".join(textwrap.wrap(text, NARROW if self.is_narrow else WIDE))
 
-    def _make_room(self, names: int) -> None:
-        """Rows of the legend below the picture, which keeps its height."""
-        self.legend.ncols = 1 if self.is_narrow else IN_A_ROW
-        usual = -(-names // IN_A_ROW)
-        self.figure.height = self.height + (ROW * (names - usual) if self.is_narrow else 0)
+    def _make_room(self) -> None:
+        """Rows of the legend below the picture, which keeps its height and holds every name."""
+        names = [*self.source.data["name"], *(name for name, (_, item) in self.marks.items() if item.visible)]
+        columns = (
+            1 if self.is_narrow else next(n for n in range(IN_A_ROW, 0, -1) if n == 1 or _width(names, n) <= PLACE)
+        )
+        self.legend.ncols = columns
+        rows, usual = (-(-len(names) // n) for n in (columns, IN_A_ROW))
+        self.figure.height = self.height + ROW * (rows - usual)
 
     def narrow(self, narrow: bool) -> None:
         """Half of the page, or all of it."""
         self.is_narrow = narrow
-        self._make_room(len(self.source.data["name"]))
+        self._make_room()
         self.title(self.words)
+
+
+def _width(names: Sequence[str], columns: int) -> float:
+    """Pixels of a legend, which is filled column by column."""
+    rows = -(-len(names) // columns)
+    return sum(KEY + LETTER * max(map(len, names[k : k + rows])) for k in range(0, len(names), max(rows, 1)))

@@ -23,6 +23,7 @@ function element(tag, attributes = {}, ...children) {
   return node
 }
 
+const broken = (name) => name.split(/(?<=[a-z])(?=[A-Z])/).flatMap(part => [part, element("wbr")])
 const idOf = (f) => "field-" + f.path.join("-").replace(/\\s/g, "_")
 
 export function render({ model }) {
@@ -87,7 +88,7 @@ export function render({ model }) {
     for (const group of model.groups) {
       const number = group.path[0] === "element" ? group.path[1] + 1 + "" : ""
       const head = element("div", { class: "head" }, element("span", { class: "number" }, number),
-        element("span", { class: "kind" }, group.kind || group.title), tools(group))
+        element("span", { class: "kind" }, ...broken(group.kind || group.title)), tools(group))
       const fields = element("div", { class: "fields" })
       for (const f of group.fields) fields.append(field(group, f))
       const body = element("div", { class: "body" }, fields, adder(group),
@@ -140,7 +141,7 @@ export function render({ model }) {
 _STYLE = """
 :host { display: block; width: 100%; }
 .group { display: flex; border-top: 1px solid #d5d9de; padding: 4px 0; gap: 8px; }
-.head { flex: 0 0 180px; display: flex; align-items: center; gap: 6px; font-weight: 600; align-self: flex-start; }
+.head { flex: 0 0 210px; display: flex; align-items: center; gap: 6px; font-weight: 600; align-self: flex-start; }
 .number { color: #555; min-width: 1.5em; text-align: right; font-weight: 400; }
 .kind { flex: 1; overflow-wrap: anywhere; }
 .body { flex: 1; min-width: 0; }

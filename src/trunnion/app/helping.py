@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import panel as pn
 
+from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.app.calls import LINE, Call
 from trunnion.app.variants import with_number
+from trunnion.equations.coefficients import assemble
 
 if TYPE_CHECKING:
     from trunnion.app.session import Session
@@ -42,7 +44,7 @@ class Help:
         """A new verdict makes old remedies void."""
         self.keywords = keywords
         self.search.visible = needed
-        self.limits.visible = needed and not self.session.document.line.limits
+        self.limits.visible = needed and bool(unlimited(assemble(self.session.document.line)))
         if self.session.document.toml != self.toml:
             self.list.objects = []
 

@@ -56,7 +56,15 @@ h2 { font-size: 16px; margin: 10px 0 2px; }
 _STYLE = """
 table.plain { border-collapse: collapse; font-size: 14px; }
 table.plain th, table.plain td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid #d5d9de;
-  vertical-align: top; }
+  vertical-align: top; overflow-wrap: break-word; }
+pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
+.held { container-type: inline-size; }
+@container (max-width: 560px) {
+  table.checks tr { display: block; padding: 6px 0; border-bottom: 1px solid #d5d9de; }
+  table.checks th, table.checks td:empty { display: none; }
+  table.checks td { display: block; border: 0 !important; padding: 0 !important; }
+  table.checks td:first-child { font-weight: 600; }
+}
 .refusal, .refusal * { color: #8d0016; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }

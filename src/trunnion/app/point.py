@@ -39,21 +39,11 @@ class Point:
         self.mode.legend.border_line_color = None
         self.mode.add_layout(Span(location=0, dimension="width", line_color=figures.FAINT))
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.pictures = [
+        pictures = (
             pn.pane.Bokeh(self.circle, width=300, height=300),
             pn.pane.Bokeh(self.mode, sizing_mode="stretch_width"),
-        ]
-        self.panel = pn.Column(sizing_mode="stretch_width", margin=0)
-        self.is_narrow: bool | None = None
-        self.narrow(False)
-
-    def narrow(self, narrow: bool) -> None:
-        """Set the pictures below each other, or beside each other."""
-        if self.is_narrow is narrow:
-            return
-        self.is_narrow = narrow
-        kind = pn.Column if narrow else pn.Row
-        self.panel.objects = [self.text, kind(*self.pictures, sizing_mode="stretch_width", margin=0)]
+        )
+        self.panel = pn.Column(self.text, *pictures, sizing_mode="stretch_width", margin=0)
 
     def set(self, data: Any, speed_unit: tuple[str, float]) -> None:
         """Show a point."""

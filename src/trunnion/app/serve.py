@@ -57,6 +57,7 @@ def serve(
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
+    loop.set_exception_handler(left)
 
     from trunnion.app.pool import Pool
 
@@ -66,6 +67,15 @@ def serve(
             _serve_on(listening, toml, pool, loop, interrupts)
     except KeyboardInterrupt:
         say("stopped")
+
+
+def left(loop: Any, context: Any) -> None:
+    """Say what failed in a task that nobody waits for, but nothing of browsers that went away while it wrote."""
+    from tornado.iostream import StreamClosedError
+    from tornado.websocket import WebSocketClosedError
+
+    if not isinstance(context.get("exception"), WebSocketClosedError | StreamClosedError):
+        loop.default_exception_handler(context)
 
 
 class Interrupts:

@@ -13,6 +13,7 @@ import panel as pn
 from panel.io.document import unlocked
 from panel.io.state import set_curdoc
 
+from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.app import address
 from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
@@ -25,6 +26,7 @@ from trunnion.app.views.base import Step, View, links
 from trunnion.app.warming import WARMING
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
+from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError, TrunnionError
 
 QUIET = 0.05
@@ -169,10 +171,18 @@ class Session:
         self.guarded(self._view_changed)
 
     def state_limits(self) -> None:
-        """Give every shaft a limit to fill in, and go where it stands."""
+        """Give every spring without one a limit to fill in, by kind, and go where it stands."""
+        line = self.document.line
+        kinds = {type(line.elements[line.index(name)]).__name__: None for name in unlimited(assemble(line))}
+
+        def change(document: Document) -> None:
+            for kind in kinds:
+                document.add_limit(f"{kind} *")
+
         self.view = self.view_of("driveline")
-        self.edit(lambda document: document.add_limit("Shaft *"))
-        self.page.message("500 N·m stands for every shaft at the end of the table: type what yours may bear.")
+        self.edit(change)
+        whose = " and ".join(f"every {kind}" for kind in kinds)
+        self.page.message(f"500 N·m stands for {whose} at the end of the table: type what yours may bear.")
 
     def _line_changed(self) -> None:
         self.sliders.adapt(self.document.line)

@@ -264,7 +264,7 @@ def limit(result: Any) -> Plain:
     """Largest stable value at some speeds, and what is unstable between them."""
     others = [(o.name, np.where(o.reached <= result.high, o.reached, np.nan)) for o in result.others]
     return windows(result.whole) | {
-        "speed": result.speed, "limit": result.limit, "others": others, "text": str(result)
+        "speed": result.speed, "limit": result.limit, "high": result.high, "others": others, "text": str(result)
     }  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """A process that computes: reads jobs from its standard input, answers on its standard output.
 
-It ends with the server, whose end of the pipe closes. Results stay here, the last few of them, so that a picture, a
-file or another set of pixels of what is on screen computes nothing anew.
+It ends with the server, whose end of the pipe closes. Results stay here, the last few of each function, so that a
+picture, a file or another set of pixels of what is on screen computes nothing anew.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ import signal
 import sys
 import threading
 import warnings
-from collections import OrderedDict
+from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from typing import IO, Any
 
 from trunnion.app.jobs import Answer, Job, Start, Stop, read_frame, write_frame
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
-MOST_KEPT = 6
+MOST_KEPT = 4
+"""Results of a function that stay: a coarse and a full chart of two variants."""
 
 
 class _Stopped(Exception):
@@ -31,7 +32,7 @@ class _Worker:
         self.inward, self.outward, self.threads = inward, outward, threads
         self.jobs: queue.Queue[Start] = queue.Queue()
         self.stopped: set[int] = set()
-        self.kept: OrderedDict[str, Any] = OrderedDict()
+        self.kept: defaultdict[str, OrderedDict[str, Any]] = defaultdict(OrderedDict)
 
     def run(self) -> None:
         threading.Thread(target=self._listen, daemon=True).start()
@@ -91,14 +92,14 @@ class _Worker:
     def _result(self, job: Job, progress: Callable[[float], None]) -> Any:
         from trunnion.driveline.files import loads
 
-        key = repr((job.toml, job.call))
-        if key in self.kept:
-            self.kept.move_to_end(key)
-            return self.kept[key]
+        key, kept = repr((job.toml, job.call)), self.kept[job.call.function]
+        if key in kept:
+            kept.move_to_end(key)
+            return kept[key]
         result = job.call.evaluate(loads(job.toml), {"progress": progress, "threads": self.threads})
-        self.kept[key] = result
-        while len(self.kept) > MOST_KEPT:
-            self.kept.popitem(last=False)
+        kept[key] = result
+        while len(kept) > MOST_KEPT:
+            kept.popitem(last=False)
         return result
 
 

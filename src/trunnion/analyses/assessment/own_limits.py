@@ -27,6 +27,7 @@ from trunnion.results.counts import counted
 Array = NDArray[np.float64]
 OF_ALL = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
 OF_SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
+WITHOUT_LIMIT = "torque without limit"
 HELD = "a ConstantSpeed holds its rotation"
 JUDGED = {
     "max_torque": OF_ALL,
@@ -44,25 +45,25 @@ def own_limits(subject: Subject, case: Case) -> Iterator[Check]:
     for limit in subject.line.limits_by_element:
         if limit.key in JUDGED:
             yield _one(subject, case, limit)
-    without = unlimited(subject, case)
+    without = unlimited(case.assembly)
     if without:
         yield Check(
-            "torque without limit",
+            WITHOUT_LIMIT,
             Status.NOT_JUDGED,
             Rule("", "the description", "yours"),
             f"{', '.join(without)}: no limit of torque or stress is stated; write [[limit]] with of and max_torque",
         )
 
 
-def unlimited(subject: Subject, case: Case) -> list[str]:
+def unlimited(assembly: Assembly) -> list[str]:
     """Springs whose torque nothing judges: no limit of torque, vibratory torque or stress, no rating."""
     keys = ("max_torque", "vibratory_torque", "max_stress", "ship_shaft")
-    limited = {one.element for one in subject.line.limits_by_element if one.key in keys}
-    names, elements = subject.line.names, subject.line.elements
+    limited = {one.element for one in assembly.line.limits_by_element if one.key in keys}
+    names, elements = assembly.line.names, assembly.line.elements
     rated = {
         n for n, e in zip(names, elements, strict=True) if getattr(e, "maximum_torque", None) is not None
     }  # fmt: skip
-    springs = [names[i] for c in case.assembly.topology.compliances for i in c.shafts]
+    springs = [names[i] for c in assembly.topology.compliances for i in c.shafts]
     return [name for name in springs if name not in limited | rated]
 
 

@@ -53,7 +53,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
         gain = abs(here) / max(-2 * here.real, 1e-300)
         said = f"order {order:.4g} {what} {hertz} at {subject.shown(case.speeds[at])}, amplification {gain:.3g}"
-        without = few(unlimited(subject, case))
+        without = few(unlimited(case.assembly))
         status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
         needs = (
             f"{NEEDS}a check of torque or stress: state limits for {without}"

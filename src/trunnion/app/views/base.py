@@ -262,7 +262,7 @@ def tell_default(widget: Any, value: float, word: str = "auto") -> None:
 
 def count(label: str, value: int, start: int, end: int) -> Any:
     """A field for a whole number within bounds."""
-    return pn.widgets.IntInput(label=label, value=value, start=start, end=end, width=110)
+    return pn.widgets.IntInput(label=label, value=value, start=start, end=end, width=100)
 
 
 def unit_of(line: Driveline) -> tuple[str, float]:

@@ -34,7 +34,7 @@ class DrivelineView(View):
 
     def make_controls(self) -> Any:
         """Where a line comes from, undo, and the whole file as text."""
-        self.begin = pn.widgets.Select(label="Begin with", options=_beginnings(), width=300)
+        self.begin = pn.widgets.Select(label="Begin with", options=_beginnings(), width=400)
         load = pn.widgets.Button(label="Begin", width=70, align="end")
         load.on_click(lambda event: self.session.edit(self._begin))
         self.upload = Upload(self._uploaded, LARGEST_FILE, label="Open a TOML file")
@@ -114,7 +114,7 @@ class _Side(Side):
                 f"src='data:image/svg+xml;base64,{picture}' style='width:100%;max-width:1000px'>"
             )
         else:
-            self.modes.object = f"<pre style='font-size:13px'>{html.escape(data)}</pre>"
+            self.modes.object = f"<pre>{html.escape(data)}</pre>"
 
 
 def _beginnings() -> dict[str, str]:

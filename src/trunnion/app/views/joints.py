@@ -207,4 +207,4 @@ class _Side(Side):
         figures.put(self.arms, {"xs": xs, "ys": ys, "colour": colours, "dash": dashes})
         figures.put(self.rings, {"x": [SPACING * k for k in range(len(labels))], "y": [0.0] * len(labels)})
         figures.put(self.labels, {k: [row[i] for row in labels] for i, k in enumerate(("x", "y", "text"))})
-        self.forks.title.text = f"forks at input angle {cursor:g}°, joint plane upright: input solid, output dashed"
+        self.forks.title.text = f"forks at input angle {cursor:g}°, joint plane upright\ninput solid, output dashed"

@@ -59,7 +59,7 @@ DESIGNS = 40
 """Lines computed in the search for one best value."""
 SCATTER = (".stiffness", ".inertia", ".damping", ".angle")
 """What scatters in a study of tolerances, where it is not zero."""
-AT_SPEEDS = "largest stable value at single speeds"
+AT_SPEEDS, AT_END = "largest stable at single speeds", "stable up to the end searched"
 OTHERS = (figures.GREEN, figures.PINK, figures.SKY, figures.YELLOW)
 """Colours of the limits beside stability."""
 SAMPLES = 4096
@@ -206,6 +206,7 @@ class _Side(Side):
         self.view = view
         self.curves = Curves("input speed", "limit")
         self.curves.mark(AT_SPEEDS, "circle", figures.INK)
+        self.curves.mark(AT_END, "triangle", figures.FAINT)
         self.bars = figures.plot("", "", height=200, y_range=[], tools="")
         self.rows = figures.source(name=[], value=[])
         bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
@@ -226,7 +227,7 @@ class _Side(Side):
 
     def show(self, name: str, data: Any) -> None:
         """What was asked for."""
-        self.text.object = f"<pre style='white-space:pre-wrap;font-size:13px'>{figures.text(data['text'])}</pre>"
+        self.text.object = f"<pre>{figures.text(data['text'])}</pre>"
         if name == "best":
             if self.variant == "now":
                 self.view.found(data["value"])
@@ -261,7 +262,7 @@ class _Side(Side):
         The limits at single speeds are marks: a line through them would claim what lies between."""
         span = np.array(data["speeds"]) * factor
         curves = [(name, x * factor, y / size) for name, x, y in data["regions"]]
-        ends = [("end of what is stable at every speed", span, np.full(2, value / size)) for value in data["ends"]]
+        ends = [("end of stable at every speed", span, np.full(2, value / size)) for value in data["ends"]]
         others = [(f"{name} reached", data["speed"] * factor, v / size) for name, v in data.get("others", ())]
         looks = [(figures.ORANGE, "solid")] * len(curves) + [(figures.INK, "dotted")] * len(ends)
         looks += [(OTHERS[k % len(OTHERS)], figures.DASHES[k // len(OTHERS) % 4]) for k in range(len(others))]
@@ -272,4 +273,7 @@ class _Side(Side):
             dashes=[dash for _, dash in looks],
         )
         self.curves.fill([(x, y) for _, x, y in curves])
-        self.curves.put_marks(AT_SPEEDS, data.get("speed", np.zeros(0)) * factor, data.get("limit", np.zeros(0)) / size)
+        speed, limit = (np.asarray(data.get(key, ())) for key in ("speed", "limit"))
+        at_end = limit >= data.get("high", np.inf)
+        for name, which in ((AT_SPEEDS, ~at_end), (AT_END, at_end)):
+            self.curves.put_marks(name, speed[which] * factor, limit[which] / size)

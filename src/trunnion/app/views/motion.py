@@ -249,7 +249,7 @@ class _Side(Side):
             dashes=["solid"] * len(motion) + ["dashed"] * len(linear),
             x="time [ms]",
             y="torque [N·m]",
-            title="torque over one period: true motion (solid), linear theory (dashed)",
+            title="torque over one period",
         )
 
     def _run_up(self, data: Any) -> None:
@@ -268,7 +268,7 @@ class _Side(Side):
             dashes=["solid"] * len(curves) + ["dashed"] * len(steady),
             x=f"input speed [{unit}]",
             y="torque [N·m]",
-            title="largest torque in each turn of the run-up (solid), steady motion (dashed)",
+            title="largest torque in each turn of the run-up",
         )
         self.text.object = _text(data["text"])
 
@@ -296,7 +296,7 @@ class _Side(Side):
             dashes=dashes,
             x=f"input speed [{unit}]",
             y="half peak-to-peak torque [N·m]",
-            title=f"vibration of {self.view.settings['spring']} by every method: stable solid, unstable dashed",
+            title=f"vibration of {self.view.settings['spring']} by every method",
         )
         titles = {step.name: step.title for step in self.view.steps(self.view.line_of(self))}
         self.text.object = "".join(
@@ -321,4 +321,4 @@ def _torques(data: Any) -> list[Any]:
 
 
 def _text(text: str) -> str:
-    return f"<pre style='white-space:pre-wrap;font-size:13px'>{figures.text(text)}</pre>"
+    return f"<pre>{figures.text(text)}</pre>"

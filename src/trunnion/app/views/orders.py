@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, Span
+from bokeh.models import ColumnDataSource, LegendItem, Span
 
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
@@ -107,6 +107,7 @@ class _Side(Side):
         self.crossings = ColumnDataSource(data={"x": [], "y": [], "name": []})
         marks = self.campbell.figure.scatter("x", "y", size=8, color=figures.INK, source=self.crossings)
         figures.hover(self.campbell.figure, [marks], [("", "@name")])
+        self.campbell.legend.items = [*self.campbell.legend.items, LegendItem(label="crossing", renderers=[marks])]
         self.mode = Mode()
         self.said = pn.pane.HTML("", sizing_mode="stretch_width")
         self.panel = pn.Column(
@@ -164,7 +165,7 @@ class _Side(Side):
             colours=colours,
             dashes=dashes,
             x=f"input speed [{unit}]",
-            title="Campbell diagram: modes (blue), excitations (grey), crossings (dots)",
+            title="Campbell diagram",
             cursor=cursor,
         )
         figures.put(

@@ -74,7 +74,7 @@ class StabilityView(View):
             widget.param.watch(lambda event: self.settings.update(look=True) if not self._quiet else None, "value")
         across = self.bind("across", count("Points across", 60, 2, MOST_POINTS))
         up = self.bind("up", count("Points up", 60, 2, MOST_POINTS))
-        x, y = (select(f"Along {k}", options=[]) for k in "xy")
+        x, y = (select(f"Along {k}", options=[], width=200) for k in "xy")
         for key, widget in (("x", x), ("y", y)):
             widget.param.watch(lambda event, key=key: self._other_axis(key, event.new), "value")
             self.bind(key, widget)
@@ -280,11 +280,6 @@ class _Side(Side):
             sizing_mode="stretch_width",
             margin=0,
         )
-
-    def narrow(self, narrow: bool) -> None:
-        """The mode goes below the multipliers."""
-        super().narrow(narrow)
-        self.point.narrow(narrow)
 
     def show(self, name: str, data: Any) -> None:
         """What a step gave."""

@@ -9,6 +9,7 @@ import numpy as np
 import panel as pn
 from bokeh.models import Span
 
+from trunnion.analyses.assessment.own_limits import WITHOUT_LIMIT
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curves
@@ -21,7 +22,7 @@ MOST = 14
 """Bars of checks that are judged, and lines of those that are not."""
 FAR = 2.0
 """Margin at which a bar ends, either way."""
-PLACE = 0.03
+PLACE = 0.04
 """Share of the bars' range that a letter behind the longest bar takes, in the narrowest picture."""
 COLOURS = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
 
@@ -36,7 +37,7 @@ class VerdictView(View):
 
     def make_controls(self) -> Any:
         """The load."""
-        return pn.FlexBox(self.bind("load", select("Load", options=[ALL])))
+        return pn.FlexBox(self.bind("load", select("Load", options=[ALL], width=260)))
 
     def adapt(self, line: Driveline) -> None:
         """Load cases of the line."""
@@ -184,7 +185,7 @@ class _Side(Side):
             curves.append(("limit", x, np.full(len(x), limit)))
             colours, dashes = [*colours, figures.ORANGE], [*dashes, "dotted"]
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
-        title = f"torque of {whose}: vibratory (solid), largest (dashed)"
+        title = f"torque of {whose}"
         self.torque.set(
             curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", y="torque [N·m]", title=title
         )
@@ -194,15 +195,19 @@ def _words(status: str, margin: float) -> str:
     """What stands at the end of a bar."""
     if status == "not judged":
         return status
-    return "exceeded" if status == "exceeded" else f"more than {100 * FAR:g} %" if margin > FAR else ""
+    return "exceeded" if status == "exceeded" else f"> {100 * FAR:g} %" if margin > FAR else ""
 
 
 def _table(data: Any) -> str:
     unit = data["unit"]
-    head = "".join(f"<th>{h}</th>" for h in ("check", "status", "margin", f"speed [{unit}]", "because", "rule"))
-    body = "".join(
-        "<tr>" + "".join(f"<td>{html.escape(str(v))}</td>" for v in row.values()) + f"<td>{html.escape(rule)}</td></tr>"
-        for row, rule in zip(data["rows"], data["rules"], strict=True)
-    )
+    head = "".join(f"<th>{h}</th>" for h in ("check", "status", "margin", "speed", "because", "rule"))
+    body = ""
+    for row, rule in zip(data["rows"], data["rules"], strict=True):
+        if row["check"] == WITHOUT_LIMIT:
+            row = row | {"because": row["because"].partition(";")[0] + "; press State limits and type what they bear"}
+        cells = (
+            f"{v} {unit}" if v and key.startswith("speed") else str(v) for key, v in (row | {"rule": rule}).items()
+        )
+        body += "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
     said = "".join(f"<li>{html.escape(f)}</li>" for f in data["findings"])
-    return f"<table class='plain'><tr>{head}</tr>{body}</table><ul>{said}</ul>"
+    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div><ul>{said}</ul>"
