@@ -85,7 +85,8 @@ class LineSimulation(Result):
         for piece in self.pieces:
             low, high = piece.time_range
             inside = (times >= low) & (times <= high)
-            out[inside] = piece.at(times[inside])
+            if inside.any():
+                out[inside] = piece.at(times[inside])
         return out
 
     def motion_at(self, time: ArrayLike) -> LineMotion:
