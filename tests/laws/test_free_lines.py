@@ -157,7 +157,7 @@ def test_a_drive_beside_its_excitation_keeps_the_speed() -> None:
 
 
 def test_amplitudes_of_a_bent_free_line_hold_what_excites_it_too() -> None:
-    """Sweep and stability give one response: the own motion by itself, with an excitation what the nonlinear one has."""
+    """Sweep and stability give one response: the own motion by itself, and what an excitation adds to it."""
     line = bent_pair(0.3, {"load_torque": 30.0})
     quiet = tn.periodic_response(line, 40.0, compare=False).torque_amplitude
     shaken = line.replace("Disk 1", excitation=[{"order": 3, "amplitude": 4.0}])
