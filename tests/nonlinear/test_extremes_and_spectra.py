@@ -173,3 +173,18 @@ def test_a_simulation_tells_the_extremes_of_the_times_asked_for() -> None:
     at = np.pi * np.arange(8) / np.sqrt(0.99)
     inside = peaks[(at > 11) & (at < 20)]
     assert max(abs(late.range[0][0]), late.range[1][0]) == pytest.approx(inside.max(), rel=1e-8)
+
+
+def test_orders_of_a_long_period_have_bars_that_can_be_seen() -> None:
+    """A period of 26 turns has 313 orders up to 12, most of them empty: the others leave room for wide bars."""
+    from types import SimpleNamespace
+
+    from trunnion.plots.motion import draw_orders
+
+    orders = np.arange(313) / 26
+    amplitude = np.zeros((313, 2))
+    amplitude[[26, 42, 78]] = [[3.0, 1.0], [200.0, 90.0], [20.0, 1e-3]]
+    axes = draw_orders(SimpleNamespace(shafts=("a", "b"), order_spectrum=lambda highest: (orders, amplitude)))
+    widths = [bar.get_width() for bar in axes.patches]
+    assert len(widths) == 6 and min(widths) > 12 / 200
+    assert axes.get_xlim()[0] == 0 and axes.get_xlim()[1] >= 12

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 POINTS = 6000
 """Points of a curve, about three per pixel of a printed figure."""
+MOST_TURNS = 4
+"""Turns of a longer period that are drawn."""
 DENSE = 400
 """Cycles beyond which a history is drawn as its envelope."""
 
@@ -132,13 +134,18 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
                 ls=(0, (1, 2)), label="linear theory" if i == 0 else None,
             )  # fmt: skip
     _labels(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
-    axes.set_xlim(0, degrees[-1])
+    part = result.turns > MOST_TURNS
+    axes.set_xlim(0, 360 * MOST_TURNS if part else degrees[-1])
     at = show_speed(result.speed, unit or result.unit)
-    axes.set_title(f"{result.verdict} periodic motion at {at}", fontsize=SMALL, color=FAINT, loc="left")
+    title = f"{result.verdict} periodic motion at {at}"
+    title += f", {MOST_TURNS} turns of the {result.turns:g} of its period" if part else ""
+    axes.set_title(title, fontsize=SMALL, color=FAINT, loc="left")
     _legend(axes)
     return axes
 
 
+DECADES, MOST_BARS = 1e4, 40
+"""Largest amplitude over the smallest that is drawn; groups of bars that can be told apart side by side."""
 HATCHES = ("", "////", "xxxx", "....", "||||", "----", "\\\\\\\\")
 
 
@@ -147,7 +154,11 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
     axes = axes or new_axes(7.2, 4.0)
     orders, amplitude = result.order_spectrum(highest)
     orders, amplitude = orders[1:], amplitude[1:]
-    count, gap = len(result.shafts), orders[0] if len(orders) else 1.0
+    # Of a long period most orders are empty: bars are as wide as those that are not leave room for.
+    seen = amplitude.max(axis=1, initial=0.0) > amplitude.max(initial=0.0) / DECADES
+    orders, amplitude = orders[seen], amplitude[seen]
+    gap = max(float(np.diff(orders, prepend=0.0).min()), highest / MOST_BARS) if len(orders) else 1.0
+    count = len(result.shafts)
     width = 0.8 * gap / count
     for i, name in enumerate(result.shafts):
         place = orders + (i - (count - 1) / 2) * width
@@ -157,7 +168,8 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
     top = float(amplitude.max()) if amplitude.size else 1.0
     if top > 0:
         logarithmic(axes, "y")
-        axes.set_ylim(top / 1e4, 2 * top)
+        axes.set_ylim(top / DECADES, 2 * top)
+    axes.set_xlim(0, highest + gap / 2)
     _labels(axes, "order [cycles per turn of the input]", "torque amplitude [N·m]")
     _legend(axes)
     return axes

@@ -162,8 +162,7 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
     found = [
         Finding(
             Gravity.NOTE,
-            f"Where linear theory holds, the joints force a torque amplitude of up to {most:.10g} N*m, in "
-            f"{sweep.shafts[j]} at {at}.",
+            f"Where linear theory holds, torques swing by up to ±{most:.10g} N*m, in {sweep.shafts[j]} at {at}.",
         )
     ]
     beyond = ~sweep.linear
@@ -173,8 +172,8 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
         found.append(
             Finding(
                 Gravity.CAUTION,
-                f"Over {100 * share:.2g} % of the speed range the joints force such large twists that torques and "
-                "verdicts there are an indication only.",
+                f"Over {100 * share:.2g} % of the speed range twists are so large that torques and verdicts there are "
+                "an indication only.",
             )
         )
     return found

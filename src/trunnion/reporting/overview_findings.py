@@ -15,6 +15,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.exciters import quiet
 from trunnion.equations.steady_base import bent
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor
@@ -137,7 +138,7 @@ def response_findings(
         return
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
-    sweep = speed_sweep(assembly, np.concatenate([places, usual]))
+    sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
     torque = sweep.torque_amplitude[: len(places)]
     raised = torque / np.maximum(np.median(sweep.torque_amplitude[len(places) :], axis=0), 1e-300)
     grave = np.where(raised >= RAISED, torque, 0.0)
