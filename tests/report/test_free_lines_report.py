@@ -120,3 +120,23 @@ def test_modes_that_need_the_same_check_are_said_together() -> None:
     cautions = [f.sentence for f in answer(line).findings if f.sentence.startswith("Separation of mode")]
     assert len(cautions) == 1 and cautions[0].startswith("Separation of modes 6, 7 and 8 is not judged: order 2 meets")
     assert cautions[0].count("state limits for") == 1
+
+
+def test_lines_without_a_linear_response_are_reported_without_its_findings() -> None:
+    """A bent line that starts free and has play: joints' resonances are left to its own motion, and nothing fails."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=0.3, name="engine", drive_share=1),
+            tn.Shaft(stiffness=6e3, damping=6.0, name="clutch"),
+            tn.Disk(inertia=0.05, name="flange"),
+            tn.HookeJoint(angle=0.1),
+            tn.Shaft(stiffness=2e4, damping=4.0, name="tube"),
+            tn.Disk(inertia=0.04, name="pinion"),
+            tn.GearPair(teeth_in=11, teeth_out=41, module=5e-3, mesh_stiffness=3e8, mesh_damping=2e3, backlash=1e-4),
+            tn.Disk(inertia=1.3, name="wheel", load_torque=140.0),
+        ]
+    )
+    with pytest.raises(tn.InputError, match="stages or play"):
+        tn.speed_sweep(line, [150.0])
+    assembly = assemble(line)
+    assert list(response_findings(assembly, resonance_speeds(assembly), (10.0, 2000.0), "rpm")) == []

@@ -58,7 +58,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     def unless_refused(question: str, answer: Callable[[], object]) -> object:
         try:
             return answer()
-        except InputError as error:
+        except (InputError, ComputationError) as error:
             left_out.append(f"{question}: {error}")
             return None
 

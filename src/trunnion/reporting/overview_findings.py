@@ -17,6 +17,7 @@ from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import quiet
 from trunnion.equations.steady_base import bent
+from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import speed_factor
 from trunnion.results.verdict import Verdict
@@ -138,7 +139,10 @@ def response_findings(
         return
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
-    sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
+    try:
+        sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
+    except (InputError, ComputationError):  # without a linear response, which the checks say
+        return
     torque = sweep.torque_amplitude[: len(places)]
     raised = torque / np.maximum(np.median(sweep.torque_amplitude[len(places) :], axis=0), 1e-300)
     grave = np.where(raised >= RAISED, torque, 0.0)
