@@ -12,9 +12,10 @@ from long_lines import long_line
 import trunnion as tn
 from trunnion.analyses.tongues.boundaries import boundary_functions
 from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.analyses.tongues.joining import joined
 from trunnion.analyses.tongues.meetings import meetings
 from trunnion.analyses.tongues.region import Region, patched
-from trunnion.analyses.tongues.rows import looked_at, unstable_intervals
+from trunnion.analyses.tongues.rows import Row, looked_at, unstable_intervals
 from trunnion.analyses.tongues.series_roots import row_roots
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.results.verdict import Verdict
@@ -343,23 +344,37 @@ def test_refusals(run, message: str) -> None:
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("speeds", "stiffness"),
-    [((28.0, 31.0), (425.0, 525.0)), pytest.param((20.0, 36.0), (300.0, 700.0), marks=pytest.mark.slow)],
-)
-def test_regions_that_close_beside_a_wider_one_keep_their_tips(speeds, stiffness) -> None:
+@pytest.mark.slow
+def test_regions_that_close_beside_a_wider_one_keep_their_tips() -> None:
     """A geared line whose stiffness moves regions past each other: each interval of a row belongs to a region there."""
     parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=1000, damping=0.3), tn.Disk(inertia=0.5), tn.HookeJoint(angle=0.5)]
     parts += [tn.Ratio(ratio=2.0), tn.Shaft(stiffness=800, damping=0.25, fork_offset=0.3), tn.Disk(inertia=0.7)]
     parts += [tn.HookeJoint(angle=0.4, plane=0.2), tn.Shaft(stiffness=900, damping=0.2, fork_offset=1.0)]
     line = tn.Driveline([*parts, tn.Disk(inertia=1.0, load_torque=60.0)])
-    found = tn.tongues(line, ("speed", *speeds), ("Shaft 2.stiffness", *stiffness), rows=3)
+    found = tn.tongues(line, ("speed", 20.0, 36.0), ("Shaft 2.stiffness", 300.0, 700.0), rows=3)
     for tongue in found:
         below = tongue.tip or tongue.parts or {"low Shaft 2.stiffness", "low speed"} & {*tongue.cut}
         assert below and (tongue.tip or tongue.joins or "high Shaft 2.stiffness" in tongue.cut), tongue.name
-    for y in [
-        y for y in (350.0, 430.0, 452.0, 500.0, 540.0, 551.5, 560.0, 620.0, 650.0) if stiffness[0] < y < stiffness[1]
-    ]:
+    for y in (350.0, 430.0, 452.0, 500.0, 540.0, 551.5, 560.0, 620.0, 650.0):
         for low, high in found.intervals_at(y):
             alive = [(np.interp(y, t.y, t.low), np.interp(y, t.y, t.high)) for t in found if t.y[0] <= y <= t.y[-1]]
             assert any(left < high + 0.02 and low - 0.02 < right for left, right in alive), (y, low)
+
+
+def test_a_region_that_another_parts_from_goes_on() -> None:
+    """Where a wide one falls into two, an edge of either leaps; both go on from row to row."""
+
+    def search(v: np.ndarray) -> list[Row]:
+        return [made(float(x), [(0.1, 0.9)] if x < 0.5 else [(0.1, 0.15), (0.2, 0.9)]) for x in v]
+
+    def made(v: float, intervals: list[tuple[float, float]]) -> Row:
+        low, high = np.array(intervals).T
+        some = len(low)
+        return Row(
+            v, low, high, (low + high) / 2, np.zeros(some, np.int8), np.zeros((some, 2), bool), np.zeros((0, 2)),
+            np.ones(some, np.int8), (frozenset(),) * some,
+        )  # fmt: skip
+
+    strands, _ = joined(search, np.linspace(0.0, 1.0, 5), lambda share: None)
+    assert len(strands) == 2 and all(s.v[-1] == 1.0 for s in strands)
+    assert strands[1].parts is strands[0] and strands[0].above is None
