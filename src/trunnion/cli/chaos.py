@@ -20,7 +20,7 @@ from trunnion.cli.options import (
     read_speed,
     read_unit,
 )
-from trunnion.cli.places import PICTURES_AND_DATA, check_places, print_result, write_results
+from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -74,10 +74,6 @@ def lyapunov_spectrum(
             tolerance=tolerance, progress=advance,
         )  # fmt: skip
     written = write_results(to, _stem(file), "exponents", result.data, lambda: result.plot())
-    if not as_json:
-        print_result(str(result), written)
-        output.finish(result.outcome, written)
-        return
     content = {
         "system": system.name,
         "exponents": result.exponents,
@@ -90,9 +86,8 @@ def lyapunov_spectrum(
         "by_start": result.by_start,
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
-        "written": [str(path) for path in written],
     }
-    output.write_json("lyapunov-spectrum", content)
+    answer("lyapunov-spectrum", lambda: content, result.__str__, written, as_json)
     output.finish(result.outcome, written)
 
 
@@ -127,8 +122,6 @@ def poincare_map(
     written = write_results(to, _stem(file), "map", result.data, lambda: result.plot())
     if not as_json:
         output.finish(result.outcome, written)
-        print_result(str(result), written)
-        return
     content = {
         "system": system.name,
         "section": result.section,
@@ -137,9 +130,8 @@ def poincare_map(
         "states": dict(zip(system.states, result.points.T, strict=True)),
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
-        "written": [str(path) for path in written],
     }
-    output.write_json("poincare-map", content)
+    answer("poincare-map", lambda: content, result.__str__, written, as_json)
     output.finish(result.outcome, written)
 
 
@@ -176,9 +168,6 @@ def certify_chaos(
             transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,
         )  # fmt: skip
     written = write_results(to, _stem(file), "certificate", result.data, lambda: result.plot())
-    if not as_json:
-        print_result(str(result), written)
-        return
     content = {
         "system": system.name,
         "verdict": str(result.verdict),
@@ -190,9 +179,8 @@ def certify_chaos(
         "exponents": result.spectrum.exponents,
         "half_width": result.spectrum.half_width,
         "zero_one_test": None if result.zero_one is None else result.zero_one.k,
-        "written": [str(path) for path in written],
     }
-    output.write_json("certify-chaos", content)
+    answer("certify-chaos", lambda: content, result.__str__, written, as_json)
 
 
 def _subject(

@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import written_paths
 from trunnion.cli.options import Json, LoadCase, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
-from trunnion.cli.places import check_places, print_result, write_result
+from trunnion.cli.places import answer, check_places, write_result
 
 Before = Annotated[str, typer.Argument(metavar="BEFORE", help="Driveline file (TOML) or a name of the catalogue.")]
 After = Annotated[str, typer.Argument(metavar="AFTER", help="The other one.")]
@@ -45,7 +44,4 @@ def compare(
     found = replace(found, names=names if names[0] != names[1] else (before, after))
     data = found.data
     written = [write_result(path, data, lambda: found.plot(), table=data.drop_dims("change")) for path in to or []]
-    if as_json:
-        output.write_json("compare", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("compare", found.to_dict, found.__str__, written, as_json)

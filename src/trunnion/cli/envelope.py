@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import written_paths
 from trunnion.cli.options import File, Json, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 
 
 def envelope(
@@ -36,7 +35,4 @@ def envelope(
     with output.progress("envelope") as advance:
         found = judge(line, span, points=points, parameter=parameter, unit=unit, progress=advance)
     written = write_results(to, file_stem(file), "envelope", found.data, lambda: found.plot())
-    if as_json:
-        output.write_json("envelope", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("envelope", found.to_dict, found.__str__, written, as_json)

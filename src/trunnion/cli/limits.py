@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,7 +23,7 @@ from trunnion.cli.options import (
     read_speed_ends,
     read_unit,
 )
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -66,10 +65,7 @@ def tongues(
     written = write_results(
         to, file_stem(file), "tongues", found.data, lambda: found.plot(unit=unit), table=_points(found)
     )
-    if as_json:
-        output.write_json("tongues", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(found.said_in(unit), written)
+    answer("tongues", found.to_dict, lambda: found.said_in(unit), written, as_json)
 
 
 def read_box_range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[tuple[object, ...], int]:
@@ -88,11 +84,6 @@ def read_box_range(text: str, assembly: Assembly, unit: str, key: str) -> tuple[
 def _points(found: Tongues) -> Any:
     """Boundary points as a table: number of the tongue, x, y."""
     return found.data[["of_tongue", "boundary_x", "boundary_y"]]
-
-
-def written_paths(written: Sequence[Path]) -> list[str]:
-    """As JSON shows them."""
-    return [str(path) for path in written]
 
 
 def minimum_damping(
@@ -170,7 +161,4 @@ def _say_windows(
 ) -> None:
     shown = replace(found, speed_unit=unit)
     written = write_results(to, file_stem(file), command, shown.data, lambda: shown.plot(unit=unit))
-    if as_json:
-        output.write_json(command, {**shown.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(shown), written)
+    answer(command, shown.to_dict, shown.__str__, written, as_json)

@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import written_paths
 from trunnion.cli.options import File, Json, LoadCase, Output, Speed, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 
 
 def linearity_check(
@@ -44,7 +43,4 @@ def linearity_check(
     written = write_results(
         to, file_stem(file), "linearity-check", found.data, lambda: found.plot(spring=spring, unit=unit)
     )
-    if as_json:
-        output.write_json("linearity-check", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(found.describe(unit), written)
+    answer("linearity-check", found.to_dict, lambda: found.describe(unit), written, as_json)

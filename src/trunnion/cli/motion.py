@@ -24,7 +24,7 @@ from trunnion.cli.options import (
     read_unit,
     reference_systems,
 )
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, print_result, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -81,10 +81,7 @@ def simulate(
             length = None if duration is not None else 20.0 if turns is None else turns
             result = compute(line, duration, speed=profile, turns=length, start=_state(start), tolerance=tolerance)
             written = write_results(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
-    if as_json:
-        output.write_json("simulate", _simulation_json(result, written))
-    else:
-        print_result(str(result), written)
+    answer("simulate", lambda: _simulation_json(result), result.__str__, written, as_json)
     output.finish(result.outcome, written)
 
 
@@ -179,13 +176,11 @@ def run_up(
             tried = (rate / 4, rate * 4)
             safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
     written = write_results(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
-    if as_json:
-        content = _run_up_json(result, written)
-        if safe is not None:
-            content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
-        output.write_json("run-up", content)
-        return
-    print_result(result.describe(unit) + (f"\n  {safe}" if safe is not None else ""), written)
+    content = _run_up_json(result)
+    if safe is not None:
+        content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
+    said = result.describe(unit) + (f"\n  {safe}" if safe is not None else "")
+    answer("run-up", lambda: content, lambda: said, written, as_json)
 
 
 def _system(name: str, parameters: list[str] | None) -> System | None:
@@ -268,7 +263,7 @@ def _print_response(result: PeriodicResponse, unit: str, written: list[Path]) ->
     print_written(out, written)
 
 
-def _simulation_json(result: Any, written: list[Path]) -> dict[str, Any]:
+def _simulation_json(result: Any) -> dict[str, Any]:
     from trunnion.analyses.motion.simulate import LineSimulation
 
     content = {
@@ -276,7 +271,6 @@ def _simulation_json(result: Any, written: list[Path]) -> dict[str, Any]:
         "says": str(result.outcome),
         "end": result.end,
         "final_state": result.final,
-        "written": [str(path) for path in written],
     }
     if isinstance(result, LineSimulation):
         content["shafts"] = [
@@ -316,7 +310,7 @@ def _response_json(result: PeriodicResponse | PeriodicOrbit, written: list[Path]
     return content
 
 
-def _run_up_json(result: RunUp, written: list[Path]) -> dict[str, Any]:
+def _run_up_json(result: RunUp) -> dict[str, Any]:
     return {
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
@@ -335,5 +329,4 @@ def _run_up_json(result: RunUp, written: list[Path]) -> dict[str, Any]:
             }
             for i, name in enumerate(result.shafts)
         ],
-        "written": [str(path) for path in written],
     }

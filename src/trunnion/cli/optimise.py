@@ -8,9 +8,8 @@ from typing import Annotated
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import written_paths
 from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 from trunnion.errors import InputError
 
 EXAMPLE = '--free "Shaft 2.fork_offset:-90deg:90deg"'
@@ -65,10 +64,7 @@ def optimise(
     if best is not None:
         dump(found.line, best)
         written.append(best)
-    if as_json:
-        output.write_json("optimise", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("optimise", found.to_dict, found.__str__, written, as_json)
 
 
 def _bounds(text: str) -> tuple[str, tuple[object, object]]:

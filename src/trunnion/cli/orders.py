@@ -22,7 +22,7 @@ from trunnion.cli.options import (
     read_speed,
     read_unit,
 )
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -119,10 +119,7 @@ def speed_sweep(
         to, file_stem(file), "speed-sweep", result.data, lambda: result.plot(unit=unit, operating=line.operation),
         _in_unit(result.data, unit),
     )  # fmt: skip
-    if as_json:
-        output.write_json("speed-sweep", _sweep_json(result, unit, written))
-        return
-    print_result(result.describe(unit), written)
+    answer("speed-sweep", lambda: _sweep_json(result, unit), lambda: result.describe(unit), written, as_json)
 
 
 def stable_limit(
@@ -170,10 +167,7 @@ def stable_limit(
         to, file_stem(file), "stable-limit", result.data, lambda: result.plot(unit=unit, operating=line.operation),
         _in_unit(result.data, unit),
     )  # fmt: skip
-    if as_json:
-        output.write_json("stable-limit", _limit_json(result, unit, written))
-        return
-    print_result(result.describe(unit), written)
+    answer("stable-limit", lambda: _limit_json(result, unit), lambda: result.describe(unit), written, as_json)
 
 
 def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
@@ -292,7 +286,7 @@ def _span(speed: Array, unit: str) -> dict[str, Any]:
     }
 
 
-def _sweep_json(result: SpeedSweep, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+def _sweep_json(result: SpeedSweep, unit: str) -> dict[str, Any]:
     from trunnion.results.speeds import speed_factor
 
     peaks = {shaft: result.peak(shaft) for shaft in result.shafts}
@@ -304,11 +298,10 @@ def _sweep_json(result: SpeedSweep, unit: str, written: Sequence[Path]) -> dict[
         ],
         "linear": bool(result.linear.all()),
         "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings_in(unit)],
-        "written": [str(path) for path in written],
     }
 
 
-def _limit_json(result: StableLimit, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+def _limit_json(result: StableLimit, unit: str) -> dict[str, Any]:
     from trunnion.analyses.limits.result import LimitKind
     from trunnion.results.speeds import speed_factor
 
@@ -331,5 +324,4 @@ def _limit_json(result: StableLimit, unit: str, written: Sequence[Path]) -> dict
         "whole": None if result.whole is None else result.whole.to_dict(),
         "search": {"low": result.low, "high": result.high, "complete": result.complete, "words": result.search},
         "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
-        "written": [str(path) for path in written],
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -68,3 +68,17 @@ def print_result(text: str, written: list[Path]) -> None:
     out = output.console()
     out.print(text, soft_wrap=True)
     print_written(out, written)
+
+
+def answer(
+    command: str,
+    content: Callable[[], Mapping[str, Any]],
+    text: Callable[[], str],
+    written: Sequence[Path],
+    as_json: bool,
+) -> None:
+    """A result as one JSON object, or in words, and where it was written."""
+    if as_json:
+        output.write_json(command, {**content(), "written": [str(path) for path in written]})
+    else:
+        print_result(text(), list(written))

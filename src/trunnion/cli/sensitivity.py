@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import read_box_range, written_paths
+from trunnion.cli.limits import read_box_range
 from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import check_places, print_result, write_results
+from trunnion.cli.places import answer, check_places, write_results
 
 if TYPE_CHECKING:
     from trunnion.analyses.tongues.result import Tongues
@@ -68,10 +68,7 @@ def sensitivity(
     written = write_results(
         to, file_stem(file), "sensitivity", found.data, lambda: found.plot(draw), table=_table(found.data)
     )
-    if as_json:
-        output.write_json("sensitivity", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("sensitivity", found.to_dict, found.__str__, written, as_json)
 
 
 def _tips(line: Driveline, text: str, unit: str, load_case: str | None) -> Tongues:

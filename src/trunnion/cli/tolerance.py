@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.limits import read_speed_range, written_paths
+from trunnion.cli.limits import read_speed_range
 from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import PICTURES_AND_DATA, check_places, print_result, write_results
+from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, write_results
 from trunnion.errors import InputError
 
 EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
@@ -58,10 +58,7 @@ def tolerance_study(
         found = study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
     found = replace(found, unit=unit)
     written = write_results(to, file_stem(file), "tolerance-study", found.data, lambda: found.plot())
-    if as_json:
-        output.write_json("tolerance-study", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("tolerance-study", found.to_dict, found.__str__, written, as_json)
 
 
 def _tolerance(text: str) -> tuple[str, object]:
@@ -111,7 +108,4 @@ def certify_stability(
         found = certify(assembly, given, span, most_boxes=boxes, progress=advance)
     found = replace(found, unit=unit)
     written = write_results(to, file_stem(file), "certificate", found.data, lambda: found.plot())
-    if as_json:
-        output.write_json("certify-stability", {**found.to_dict(), "written": written_paths(written)})
-        return
-    print_result(str(found), written)
+    answer("certify-stability", found.to_dict, found.__str__, written, as_json)
