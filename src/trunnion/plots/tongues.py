@@ -122,13 +122,14 @@ def _names(axes: Axes, tongues: Tongues, across: float, up: float, most: int) ->
             x < tongues.x_range[0] * across + 0.08 * wide,
             x > tongues.x_range[1] * across - 0.08 * wide,
         )
+        near_bottom = y < min(tongues.y_range) * up + 0.05 * tall  # below it stand the numbers of the axis
         axes.annotate(
             resonance.label,
             (x, y),
-            xytext=(0, -3),
+            xytext=(4, 3) if near_bottom else (0, -3),
             textcoords="offset points",
-            ha="left" if near_left else "right" if near_right else "center",
-            va="top",
+            ha="left" if near_left or near_bottom and not near_right else "right" if near_right else "center",
+            va="bottom" if near_bottom else "top",
             fontsize=SMALL,
             color=INK,
             zorder=8,
