@@ -92,7 +92,7 @@ def test_what_helps_is_found_and_tried(look: Look) -> None:
     look.page.get_by_text(sentence, exact=True).wait_for()
     look.page.get_by_role("button", name="What would help?").click()
     (expected,) = tn.remedies(line, most=2).of("uniformity")
-    look.page.get_by_text(expected.sentence.partition(": ")[2]).first.wait_for()
+    look.page.get_by_text(f"uniformity: {expected.sentence}").first.wait_for()
     look.page.get_by_role("button", name="Try it").first.click()
     mended = tn.assess(line.replace("HookeJoint 1", angle=expected.after)).sentence
     look.page.get_by_text(mended, exact=True).wait_for()

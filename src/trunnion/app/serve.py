@@ -8,6 +8,7 @@ import signal
 import socket
 import sys
 import threading
+import warnings
 import webbrowser
 from collections.abc import Callable
 from contextlib import closing, suppress
@@ -109,6 +110,8 @@ def _serve_on(listening: socket.socket, toml: str, pool: Pool, loop: Any, interr
     import panel
 
     panel.config.autoreload = False
+    # The browser sends back a button that is new on the page, by which nothing is changed; the terminal need not say so.
+    warnings.filterwarnings("ignore", message="reference already known")
     from tornado.ioloop import IOLoop
 
     from trunnion.app.warming import WARMING

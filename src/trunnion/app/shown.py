@@ -183,7 +183,7 @@ def modes(result: Any) -> Plain:
 
 def remedies(result: Any) -> list[Plain]:
     """Changes that help, as sentences and numbers."""
-    return [{"sentence": r.sentence, "variable": r.variable, "after": r.after} for r in result.remedies]
+    return [{"sentence": f"{r.check}: {r.sentence}", "variable": r.variable, "after": r.after} for r in result.remedies]
 
 
 def chart(result: Any, zoom: Any = None) -> Plain:
