@@ -110,7 +110,7 @@ def _serve_on(listening: socket.socket, toml: str, pool: Pool, loop: Any, interr
     import panel
 
     panel.config.autoreload = False
-    # The browser sends back a button that is new on the page, by which nothing is changed; the terminal need not say so.
+    # The browser sends back a button that is new on the page; nothing is changed, and the terminal need not say so.
     warnings.filterwarnings("ignore", message="reference already known")
     from tornado.ioloop import IOLoop
 
