@@ -74,7 +74,7 @@ def test_the_stable_limit_of_every_place() -> None:
     assert found.limit.shape == (len(found.places),) and found.parameter_unit == "rad"
     direct = tn.stable_limit(line([]), "joint.angle", np.linspace(55.0, 60.0, 60), high=1.2).limit
     assert found.limit[0] == pytest.approx(np.nanmin(direct), rel=1e-9)
-    assert f"stable up to {np.degrees(found.limit.min()):.4g}" in str(found) and "°, least" in str(found)
+    assert f"angle of joint: stable up to {np.degrees(found.limit.min()):.6g}°, least" in str(found)
 
 
 def test_a_limit_that_is_unknown_at_one_speed_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ from oracles.sampling import quick_only
 import trunnion as tn
 from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
 from trunnion.analyses.chaos.chaos_subject import clocks
+from trunnion.studies.double_tripod.published import DoubleTripod
 from trunnion.systems.reference import (
     dead_zone_oscillator,
     driven_pendulum,
@@ -209,3 +210,11 @@ def test_dataset_carries_the_verdict(pendulum: ChaosCertificate, tmp_path) -> No
 def test_bad_sweep(sweep: object) -> None:
     with pytest.raises(tn.InputError):
         tn.certify_chaos(ueda(), 200, sweep=sweep)  # type: ignore[arg-type]
+
+
+def test_intervals_as_wide_as_the_damping_decide_nothing():
+    """The double tripod over 200 periods: shear alone could show ±16 1/s where all damping is 31 1/s."""
+    system = DoubleTripod().system("input")
+    short, longer = (tn.certify_chaos(system, periods=n, sweep=False) for n in (200, 800))
+    assert (short.verdict, longer.verdict) == ("undecided", "regular")
+    assert "average over" in str(short) and "periods or more" in str(short)

@@ -130,7 +130,9 @@ def test_chain_kernel_integrates_the_same_matrices(seed: int, made: Callable[...
         line = _without_odd_teeth(line)
     matrix, _, trace = chain_kernel(line, SPEED)
     dense = tn.stability(line, SPEED)
-    assert np.linalg.slogdet(matrix[0])[1] == pytest.approx(-trace[0], abs=1e-9)
+    # An error of the matrix grows in its determinant by its condition.
+    allowed = 1e-12 * max(np.linalg.cond(matrix[0]), 1e3)
+    assert np.linalg.slogdet(matrix[0])[1] == pytest.approx(-trace[0], abs=allowed)
     found = np.linalg.eigvals(matrix[0])
     assert np.abs(found).max() == pytest.approx(dense.spectral_radius, abs=1e-9)
     assert set_distance(found, dense.multipliers) < 1e-9

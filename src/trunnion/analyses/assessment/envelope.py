@@ -111,7 +111,7 @@ class Envelope(Result):
         if self.parameter and np.isfinite(self.limit).any():
             k = int(np.nanargmin(self.limit))
             shown = quantity_axis(self.parameter, self.parameter_unit, self.unit)
-            rows.append(f"  stable up to {shown.value(self.limit[k])}, least {self.places[k].label}")
+            rows.append(f"  {shown.quantity}: stable up to {shown.number(self.limit[k])}, least {self.places[k].label}")
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 
 

@@ -50,6 +50,8 @@ POINTS = 3000
 BLOCKS, GROWN = 8, 2.0
 """A motion whose largest state rises in each of so many blocks, by this factor in all, is unbounded."""
 UNSTABLE = "at rest on an unstable equilibrium"
+VAGUE, UNDAMPED = 0.1, 1e-9
+"""Share of the mean damping from which an interval says nothing, and the damping of a period that is none."""
 AT_REST = 1e-7
 """Size of a motion over its scale that counts as rest."""
 SWEPT, SWEEP_POINTS, SWEEP_PERIODS = 0.1, 25, 400
@@ -286,6 +288,15 @@ def _judge(
             return Witness(
                 mapped, test, Verdict.UNDECIDED, "",
                 (f"{told}: it settles on a periodic motion and has not yet; raise transient by {longer} periods",),
+            )  # fmt: skip
+        damping = -spectrum.divergence
+        if damping * spectrum.interval > UNDAMPED and width > VAGUE * damping:
+            return Witness(
+                mapped, test, Verdict.UNDECIDED, "",
+                (
+                    f"{told}: no exponent is known by that beside a damping of {damping:.4g} 1/s; "
+                    f"average over {4 * len(spectrum.runs[i].growth)} periods or more",
+                ),
             )  # fmt: skip
         return Witness(
             mapped, test, Verdict.REGULAR, "quasi-periodic",
