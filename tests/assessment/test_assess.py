@@ -148,6 +148,32 @@ def test_a_range_that_is_passed_quickly_is_barred():
     assert tn.assess(hard, (60.0, 180.0)).verdict is Status.EXCEEDED
 
 
+def test_ranges_barred_by_any_load_case_are_barred():
+    """Order 2 shakes the unloaded line at 125 rad/s, order 4 the loaded one at 62.5 rad/s and far more."""
+    tables = [
+        {"order": 2, "torques": [0.0, 1000.0], "amplitudes": [100.0, 0.0]},
+        {"order": 4, "torques": [0.0, 1000.0], "amplitudes": [0.0, 300.0]},
+    ]
+    limit = tn.Limit(of="shaft", vibratory_torque=500.0, transient_vibratory_torque=1e5)
+    line = two_mass(limit).replace("engine", excitation=tables)
+
+    def at(speed):
+        cases = (tn.LoadCase(name="full", loads={"load": 1000.0}),)
+        return tn.assess(tn.Driveline(
+            line.elements, limits=line.limits,
+            operation=tn.Operation(speed=speed, speed_range=(40.0, 180.0), load_cases=cases),
+        ))  # fmt: skip
+
+    found = at(90.0)
+    assert found.verdict is Status.SATISFIED and found.check("vibratory torque of shaft").load_case == "full"
+    assert [low < 62.5 < high or low < 125.0 < high for low, high in found.barred] == [True, True]
+    (_, slow), (start, end) = found.barred
+    assert torque(4 * slow) * 3 == pytest.approx(500.0, rel=0.02)
+    assert [torque(2 * speed) for speed in (start, end)] == pytest.approx([500.0, 500.0], rel=0.02)
+    there = at(125.0)  # where only the unloaded line is beyond its limit
+    assert there.verdict is Status.EXCEEDED and "; it runs at 1193.66 rpm, within" in there.sentence
+
+
 def test_coupling_ratings_by_hand():
     """At 120 rad/s order 2 shakes at 240/2π = 38.2 Hz: S_f = √3.82."""
     coupling = tn.Coupling(

@@ -183,6 +183,8 @@ def test_a_ship_shaft_over_its_range():
     assert to_speed == pytest.approx(max(high, over[-1]), rel=3e-3)
     passing = found.check("IACS UR M68 of shaft, passing")
     assert passing.margin == pytest.approx(1 - share[worst] / 1.7, rel=5e-3)  # C_K = 1
+    kept = ship(24e3).model_copy(update={"limits": (tn.Limit(of="shaft", ship_shaft="flange", margin=0.9),)})
+    assert tn.assess(kept).check("IACS UR M68 of shaft, passing").status is Status.EXCEEDED  # what must stay free
 
 
 @pytest.mark.parametrize("feature", SHIP_SHAFTS)

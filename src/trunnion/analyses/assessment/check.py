@@ -6,7 +6,7 @@ The margin is the distance of the value to its limit over the limit: 0.2 keeps 2
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from math import inf, isfinite, nan
 
@@ -109,13 +109,25 @@ def _place(check: Check) -> tuple[int, bool, float]:
 
 
 def worst(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """Of checks of one name over several load cases, the one that binds."""
-    by_name: dict[str, Check] = {}
+    """Of checks of one name over several load cases, the one that binds, with the speeds that any of them bars."""
+    by_name: dict[str, list[Check]] = {}
     for check in checks:
-        known = by_name.get(check.name)
-        if known is None or _severity(check) < _severity(known):
-            by_name[check.name] = check
-    return tuple(by_name.values())
+        by_name.setdefault(check.name, []).append(check)
+    return tuple(
+        replace(min(same, key=_severity), barred=merged(pair for check in same for pair in check.barred))
+        for same in by_name.values()
+    )
+
+
+def merged(ranges: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Ranges with those that overlap joined."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted(ranges):
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], max(high, found[-1][1]))
+        else:
+            found.append((low, high))
+    return tuple(found)
 
 
 def _severity(check: Check) -> tuple[int, float]:

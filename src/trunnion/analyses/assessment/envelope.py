@@ -208,7 +208,8 @@ def _together(
     verdict = verdict_of(checks, judged[0].speed)[0]
     if any(one.verdict is Status.EXCEEDED for one in judged):
         verdict = Status.EXCEEDED
-    where = tuple(next(k for k, one in enumerate(judged) if check in one.checks) for check in checks)
+    said_at = [{(check.name, check.because) for check in one.checks} for one in judged]
+    where = tuple(next(k for k, said in enumerate(said_at) if (c.name, c.because) in said) for c in checks)
     known = [{check.name: check.margin for check in one.checks} for one in judged]
     margin = np.array([[one.get(check.name, nan) for check in checks] for one in known])
     findings = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from trunnion.analyses.assessment.check import Check, Status, percent
+from trunnion.analyses.assessment.check import Check, Status, merged, percent
 from trunnion.results.counts import few
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.finding import Finding
@@ -46,7 +46,7 @@ class Assessment(Result):
             assert bind is not None
             more = f"; {len(over_limit) - 1} more exceeded" if len(over_limit) > 1 else ""
             rule = " (a guideline)" if bind.guideline else ""
-            return f"exceeded: {bind.name}{rule}, {bind.because}{more}"
+            return f"exceeded: {bind.name}{rule}, {bind.because}{more}{self._runs_where_barred()}"
         if self.verdict is Status.NOT_JUDGED:
             names = few([c.name for c in open_ones])
             open_end = f"{names} could not be judged" if names else "no limit is stated"
@@ -56,6 +56,16 @@ class Assessment(Result):
             return f"satisfied where {ranges} is barred and passed quickly: there only transient limits hold"
         assert bind is not None
         return f"satisfied: {bind.name} binds, {bind.because}"
+
+    def _runs_where_barred(self) -> str:
+        """Where only the operating speed keeps a range from being barred, as no sentence of a check says so."""
+        for check in self.checks:
+            if check.status is Status.EXCEEDED and passable(check, self.checks, None):
+                for low, high in check.barred:
+                    if self.speed is not None and low <= self.speed <= high:
+                        ends = f"{show_speed(low, self.unit)} to {show_speed(high, self.unit)}"
+                        return f"; it runs at {show_speed(self.speed, self.unit)}, within {ends} that it may only pass"
+        return ""
 
     def check(self, name: str) -> Check:
         """The check called ``name``; KeyError where there is none."""
@@ -122,21 +132,10 @@ def verdict_of(checks: tuple[Check, ...], speed: float | None) -> tuple[Status, 
     """The verdict over all checks, and the speed ranges that it bars."""
     exceeded = [c for c in checks if c.status is Status.EXCEEDED]
     barring = [c for c in exceeded if passable(c, checks, speed)]
-    barred = merged([pair for c in barring for pair in c.barred])
+    barred = merged(pair for c in barring for pair in c.barred)
     if len(barring) < len(exceeded):
         return Status.EXCEEDED, barred
     judged = any(c.status is Status.SATISFIED for c in checks)
     if any(c.status is Status.NOT_JUDGED for c in checks) or not judged:
         return Status.NOT_JUDGED, barred
     return Status.SATISFIED, barred
-
-
-def merged(ranges: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Ranges with those that overlap joined."""
-    found: list[tuple[float, float]] = []
-    for low, high in sorted(ranges):
-        if found and low <= found[-1][1]:
-            found[-1] = (found[-1][0], max(high, found[-1][1]))
-        else:
-            found.append((low, high))
-    return tuple(found)

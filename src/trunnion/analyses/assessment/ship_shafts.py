@@ -101,7 +101,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
         course=seen,
     )  # fmt: skip
     if barred:
-        yield _passing(subject, case, title, (speeds, ratio, stress), allowed, factor, inputs)
+        yield _passing(subject, case, title, (speeds, ratio, stress), allowed, factor, required, inputs)
 
 
 def _range(speeds: Array, share: Array, ends: tuple[float, float], rated: float) -> tuple[float, float]:
@@ -119,7 +119,7 @@ def _transient(allowed: Array, ratio: Array, factor: float) -> Array:
 
 def _passing(
     subject: Subject, case: Case, title: str, seen: tuple[Array, Array, Array], allowed: Array, factor: float,
-    inputs: str,
+    required: float, inputs: str,
 ) -> Check:  # fmt: skip
     speeds, ratio, stress = seen
     transient = _transient(allowed, ratio, factor)
@@ -131,6 +131,6 @@ def _passing(
         f"{percent(margin)}{case.suffix}"
     )
     return Check(
-        f"{title}, passing", judged(margin), PASSING, because, margin, 0.0, float(stress[at]) * 1e6,
+        f"{title}, passing", judged(margin, required), PASSING, because, margin, required, float(stress[at]) * 1e6,
         float(transient[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name,
     )  # fmt: skip
