@@ -283,6 +283,16 @@ def test_a_counterexample_is_one() -> None:
     assert "is unstable" in str(found)
 
 
+@pytest.mark.parametrize(("damping", "verdict"), [(-0.01, "proved stable"), (-0.1, "counterexample")])
+def test_a_shaft_that_feeds_energy_is_not_taken_for_an_undamped_one(damping: float, verdict: str) -> None:
+    with pytest.warns(tn.InputRemark, match="feeds energy"):
+        line = LINE.replace_all({"Shaft 1": {"damping": 0.12}, "Shaft 2": {"damping": damping}})
+        found = tn.certify_stability(line, {"Shaft 2.damping": 0.01}, (1.2, 1.22))
+        judged = [tn.stability(line, float(speed)).verdict for speed in np.linspace(1.2, 1.22, 5)]
+    assert found.verdict == verdict
+    assert judged == [Verdict.STABLE if verdict == "proved stable" else Verdict.UNSTABLE] * 5
+
+
 def test_what_is_left_open_is_said() -> None:
     found = tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.2}, (0.5, 2.0), most_boxes=1)
     assert found.verdict == "undecided" and 0 < found.undecided_share <= 1
@@ -357,6 +367,10 @@ BAD = [
         "Shaft 1.fork_offset: c",
     ),
     (lambda: tn.certify_stability(LINE, {"HookeJoint 1.angle": ("range", 0, 1.2)}, (1.0, 2.0)), "HookeJoint 1.angle"),
+    (
+        lambda: tn.certify_stability(LINE, {"Shaft 1.damping": ("range", 0, 0.1)}, (1.0, 2.0)),
+        "Shaft 1.damping: would go from 0 to 0.1, and damping that reaches zero cannot be certified",
+    ),
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.1}, (1.0, 2.0), most_boxes=0), "most_boxes = 0: must"),
 ]
 

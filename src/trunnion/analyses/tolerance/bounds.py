@@ -67,12 +67,13 @@ def over_boxes(assembly: Assembly, low: Array, high: Array) -> Coefficients:
 
 
 def _middle(low: Array, high: Array) -> tuple[Array, Array]:
-    """Geometric middle and half-width of the logarithm of intervals of positive numbers, rounded outward; zeros stay
+    """Geometric middle and half-width of the logarithm of intervals of numbers of one sign, rounded outward; zeros stay
     zeros."""
-    there = low > 0
+    there = low * high > 0
     safe = np.where(there, low, 1.0), np.where(there, high, 1.0)
     half = np.abs(np.log(safe[1] / safe[0])) / 2
-    return np.where(there, np.sqrt(safe[0] * safe[1]), 0.0), np.where(there, half * (1 + ROUNDED) + ROUNDED, 0.0)
+    middle = np.sign(low) * np.sqrt(safe[0] * safe[1])
+    return np.where(there, middle, 0.0), np.where(there, half * (1 + ROUNDED) + ROUNDED, 0.0)
 
 
 def _inertia(assembly: Assembly, co: LineCoefficients) -> Array:

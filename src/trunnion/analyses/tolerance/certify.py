@@ -321,3 +321,9 @@ def _require_rising(assembly: Assembly, spreads: tuple[Spread, ...]) -> None:
                 )  # fmt: skip
             if key == "angle" and not -np.pi / 3 < one.low <= one.high < np.pi / 3:
                 raise InputError("may reach 60° at most in a certificate", key=one.label, value=one.high)
+            ends = one.columns.offset + one.columns.slope * np.array([[one.low], [one.high]])
+            if key == "damping" and np.any(ends.min(axis=0) * ends.max(axis=0) <= 0):
+                raise InputError(
+                    f"would go from {one.low:.6g} to {one.high:.6g}, and damping that reaches zero cannot be certified",
+                    key=one.label, remedy="keep it on one side of zero",
+                )  # fmt: skip
