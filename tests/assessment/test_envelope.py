@@ -77,6 +77,20 @@ def test_the_stable_limit_of_every_place() -> None:
     assert f"angle of joint: stable up to {np.degrees(found.limit.min()):.6g}°, least" in str(found)
 
 
+def test_torques_over_speed_are_judged_at_the_ends_of_the_range() -> None:
+    """The schedule states points far outside the range; between them the torque rises with the speed."""
+    wide = tn.Schedule(name="pull", speed=[5.0, 55.0], loads={"load": [0.0, 110.0]})
+    found = tn.envelope(line([wide]), (40.0, 60.0), points=2)
+    assert [place.value for place in found.places[1:]] == [40.0, 55.0]
+    there = tn.assess(line([]).replace("load", load_torque=110.0), (55.0, 55.0)).check("max torque of rear")
+    k = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
+    assert found.margin[2, k] == pytest.approx(there.margin, rel=1e-9)
+    assert found.margin[2, k] == min(found.margin[:, k])
+    assert "Schedule pull goes from 5 rad/s to 55 rad/s: at speeds beyond, the line is judged as stated" in str(found)
+    assert "at speeds beyond" not in str(tn.envelope(line([wide]), (20.0, 30.0), points=2))
+    assert len(tn.envelope(line([wide]), (60.0, 70.0)).places) == 1
+
+
 def test_a_limit_that_is_unknown_at_one_speed_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is no smaller value than the others, which alone would be printed as the limit."""
     from dataclasses import replace

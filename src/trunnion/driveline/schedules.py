@@ -18,6 +18,7 @@ motion by itself; ``envelope`` goes by it, and ``Driveline.at_schedule`` gives t
 
 from __future__ import annotations
 
+from math import inf
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
@@ -178,10 +179,13 @@ class Schedule(BaseModel):
                 found.setdefault(name, {})[KEYS[key]] = float(np.interp(value, self.points, numbers))
         return found
 
-    def between(self, points: int) -> tuple[float, ...]:
-        """Its own points and as many more evenly between as make ``points`` or more over the whole."""
-        first, whole = self.points[0], self.points[-1] - self.points[0]
-        even = [first + whole * i / (points - 1) for i in range(points)] if points > 1 else []
-        apart = 1e-9 * whole
-        new = [x for x in even if min(abs(x - p) for p in self.points) > apart]
-        return tuple(sorted([*self.points, *new]))
+    def between(self, points: int, low: float = -inf, high: float = inf) -> tuple[float, ...]:
+        """Of the part from ``low`` to ``high`` (travel [m] or speed [rad/s]): both ends, the points stated, and as many
+        more evenly between as make ``points`` or more; none where the schedule does not reach there."""
+        first, last = max(self.points[0], low), min(self.points[-1], high)
+        if first >= last:
+            return (first,) if first == last else ()
+        stated = [first, *(x for x in self.points if first < x < last), last]
+        even = [first + (last - first) * i / (points - 1) for i in range(1, points - 1)]
+        new = [x for x in even if min(abs(x - p) for p in stated) > 1e-9 * (last - first)]
+        return tuple(sorted([*stated, *new]))

@@ -131,8 +131,8 @@ def envelope(
     Parameters
     ----------
     line : with ``operation.schedules`` and load cases; with neither it is ``assess``.
-    speeds : lowest and highest input speed [rad/s]; default the description's. A schedule over speed is judged at its
-        own speeds within.
+    speeds : lowest and highest input speed [rad/s]; default the description's. A schedule over speed is judged at
+        single speeds within, the ends included.
     points : of each schedule at least, evenly from end to end, beside the points that it states.
     parameter, low, high : also asks for the largest stable value of a parameter (as of ``stable_limit``) at every place
         and under every load case, over the range of speeds.
@@ -157,7 +157,7 @@ def envelope(
             judged.append(assess(place.line, _span(place, first), unit=unit))
         limits.append(_limit(place, parameter, (low, high), _span(place, first)))
         tell((k + 1) / len(places))
-    return _together(places, judged, limits, parameter, shown)
+    return _together(line, places, judged, limits, parameter, shown)
 
 
 def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, dict[str, float]]) -> Driveline:
@@ -170,10 +170,8 @@ def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, d
 
 
 def _places(line: Driveline, schedule: Schedule, points: int, span: tuple[float, float], unit: str) -> Iterator[Place]:
-    for value in schedule.between(points):
-        at_speed = schedule.over == "speed"
-        if at_speed and not span[0] <= value <= span[1]:
-            continue
+    at_speed = schedule.over == "speed"
+    for value in schedule.between(points, *(span if at_speed else ())):
         shown = show_speed(value, unit) if at_speed else f"{1e3 * value:.4g} mm"
         changed = _stripped(line, line.operation, schedule.changes_at(value))
         yield Place(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
@@ -196,7 +194,17 @@ def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[
     return float(np.min(np.concatenate(found)))  # unknown at one of them is unknown
 
 
+def _not_reached(line: Driveline, first: Assessment) -> Iterator[str]:
+    """What schedules over speed say nothing of, though the line is to run there."""
+    for schedule in line.operation.schedules if line.operation else ():
+        ends = schedule.points[0], schedule.points[-1]
+        if schedule.over == "speed" and not ends[0] <= first.low <= first.high <= ends[1]:
+            own = " to ".join(show_speed(x, first.unit) for x in ends)
+            yield f"Schedule {schedule.name} goes from {own}: at speeds beyond, the line is judged as stated alone"
+
+
 def _together(
+    line: Driveline,
     places: list[Place],
     judged: list[Assessment],
     limits: list[float],
@@ -222,6 +230,7 @@ def _together(
         count = f"{len(places) - 1} points" if len(places) > 2 else "one point"
         said = f"schedules are judged at {count}; between them nothing is looked at"
         findings.append(Finding(Gravity.NOTE, said))
+    findings += [Finding(Gravity.NOTE, said) for said in _not_reached(line, judged[0])]
     unknown = [place.label for place, value in zip(places, limits, strict=True) if parameter and np.isnan(value)]
     if unknown:
         said = f"Up to which {parameter} the line is stable is not known {', '.join(unknown)}"
