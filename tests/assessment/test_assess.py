@@ -467,6 +467,24 @@ def test_findings_of_an_overview_rank_by_margin_and_look_beyond_the_range():
     assert any("torque without limit" in str(f).lower() for f in free)
 
 
+def test_beyond_the_range_every_load_case_is_looked_at_and_what_no_table_covers_is_said():
+    """Resonance at 125 rad/s, the range ends at 115 rad/s, the table at 130 rad/s or already at 120 rad/s."""
+    limits = [tn.Limit(of="shaft", max_torque=1000.0)]
+    cases = (tn.LoadCase(name="full", loads={"load": 800.0}),)
+    operation = tn.Operation(speed=90.0, speed_range=[80.0, 115.0], load_cases=cases)
+    shaken = {"order": 2, "torques": [0.0, 800.0], "amplitudes": [1.0, 40.0]}
+    parts = two_mass(*limits).replace("engine", excitation=[shaken]).elements
+    said = [str(f) for f in overview(tn.Driveline(parts, limits=limits, operation=operation)).findings]
+    (just,) = [one for one in said if "Just above" in one]
+    assert "max torque of shaft would be exceeded" in just and just.endswith("load case full.")
+    short = {"order": 2, "speeds": [60.0, 120.0], "amplitudes": [40.0, 40.0]}
+    parts = two_mass(*limits).replace("engine", excitation=[short]).elements
+    said = [str(f) for f in overview(tn.Driveline(parts, limits=limits, operation=operation)).findings]
+    (just,) = [one for one in said if "Just above" in one]
+    assert "no torque is judged: engine.excitation 1: is a table from 572.958 rpm to 1145.92 rpm" in just
+    assert not any("Just below" in one for one in said if "no torque" not in one)
+
+
 def test_sentences_of_the_report_have_the_signs_of_units():
     said = with_signs("12.5 deg, 3 N*m*s/rad, 2 kg*m^2 and 300 rad/s^2 of Shaft *.damping, 5 degrees")
     assert said == "12.5°, 3 N·m·s/rad, 2 kg·m² and 300 rad/s² of Shaft *.damping, 5 degrees"

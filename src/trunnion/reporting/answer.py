@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.analyses.assessment.assess import by_case, checks_of, judgement, subject_of
-from trunnion.analyses.assessment.check import Check, Status
+from trunnion.analyses.assessment.check import Check, Status, worst
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.assessment.separation import NEEDS as MODES_NEED
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, lossy
@@ -167,7 +167,8 @@ def _and(words: list[str]) -> str:
 
 
 def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:
-    """Checks that would be exceeded up to ``BEYOND`` outside the range, and are not inside it."""
+    """Checks that would be exceeded up to ``BEYOND`` outside the range under any load case, and are not inside it; and
+    where torques cannot be told there though they are inside: a table of excitations that ends, say."""
     low, high = subject.low, subject.high
     if not low < high:
         return []
@@ -176,16 +177,24 @@ def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:
     for ends, side in (((1 - BEYOND) * low, low), "below"), ((high, (1 + BEYOND) * high), "above"):
         if not 0 < ends[0] < ends[1] or ends[1] <= lowest_speed(subject.cases[0].assembly):
             continue
-        case = replace(subject.cases[0], low=ends[0], high=ends[1], points=POINTS_BEYOND)
-        there = replace(subject, low=ends[0], high=ends[1], cases=(case,))
-        exceeded = [c for c in by_case(there, case) if c.status is Status.EXCEEDED and c.name not in inside]
-        found += [_beyond(check, side) for check in exceeded]
+        cases = [replace(case, low=ends[0], high=ends[1], points=POINTS_BEYOND) for case in subject.cases]
+        there = replace(subject, low=ends[0], high=ends[1], cases=tuple(cases))
+        checks = worst(
+            check for k, case in enumerate(cases) for check in by_case(there, case, growth=not (k and case.costly))
+        )
+        found += [_beyond(c, side) for c in checks if c.status is Status.EXCEEDED and c.name not in inside]
+        untold = [case.answer for known, case in zip(subject.cases, cases, strict=True) if known.response]
+        for why in dict.fromkeys(answer for answer in untold if isinstance(answer, str)):
+            found.append(Finding(Gravity.NOTE, f"{_just(side)} no torque is judged: {why}."))
     return found
 
 
+def _just(side: str) -> str:
+    return f"Just {side} the range (up to {100 * BEYOND:.0f} %)"
+
+
 def _beyond(check: Check, side: str) -> Finding:
-    where = f"Just {side} the range (up to {100 * BEYOND:.0f} %)"
-    return Finding(Gravity.CAUTION, f"{where} {check.name} would be exceeded: {check.because}.")
+    return Finding(Gravity.CAUTION, f"{_just(side)} {check.name} would be exceeded: {check.because}.")
 
 
 def _capital(text: str) -> str:
