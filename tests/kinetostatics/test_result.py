@@ -11,6 +11,8 @@ from matplotlib.text import Text
 import trunnion as tn
 from trunnion.analyses.kinetostatics.measures import extremes, parts
 from trunnion.plots import kinetostatics as plots
+from trunnion.plots.irregularity import draw as draw_irregularity
+from trunnion.plots.style import STYLES, curve_style
 
 LINE = lines.row([12, 15], planes=[0, 20], load=150.0)
 
@@ -233,8 +235,18 @@ def test_curves_of_many_forks_differ():
     drawn = result.plot().axes[3].get_lines()
     assert len(drawn) == 12
     assert len({(c.get_color(), str(c._unscaled_dash_pattern), c.get_marker()) for c in drawn}) == 12
-    in_grey = [(str(plots._style(k)["linestyle"]), plots._style(k)["marker"]) for k in range(plots.STYLES)]
-    assert len(set(in_grey)) == plots.STYLES >= 16
+    in_grey = [(str(curve_style(k)["linestyle"]), curve_style(k)["marker"]) for k in range(STYLES)]
+    assert len(set(in_grey)) == STYLES >= 16
+
+
+def test_irregularity_of_more_shafts_than_colours():
+    line: list = [tn.ConstantSpeed()]
+    for number in range(1, 9):
+        line += [tn.HookeJoint(angle=0.02 * number), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1)]
+    result = tn.kinetostatics(tn.Driveline(line))
+    drawn = [c for c in draw_irregularity(result).get_lines() if not c.get_label().startswith("_")]
+    assert len(drawn) == 8
+    assert len({(str(c._unscaled_dash_pattern), c.get_marker()) for c in drawn}) == 8
 
 
 @pytest.mark.slow

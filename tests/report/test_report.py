@@ -12,6 +12,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline.starter import starter
+from trunnion.plots.driveline_sketch import draw as draw_sketch
 from trunnion.reporting.report import Report
 from trunnion.reporting.tables import TIED, checks, with_signs
 
@@ -240,3 +241,16 @@ def test_reasons_without_a_margin_keep_their_commas() -> None:
     assert rows["torque without limit"][4] == "Shaft 1, Shaft 2: no limit of torque or stress is stated"
     assert rows["uniformity"][2] == "exceeded by 1540 %".replace(" ", TIED)
     assert rows["uniformity"][4].endswith("as one joint of 12°")
+
+
+def test_names_of_a_row_end_above_its_branch():
+    trunk = [tn.ConstantSpeed()]
+    for number in range(1, 6):
+        trunk += [tn.Shaft(stiffness=1e4, name=f"a long name of shaft {number}"), tn.Disk(inertia=1.0)]
+    branch = [tn.HookeJoint(angle=0.1, name="front", after="Disk 2"), tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0)]
+    figure = draw_sketch(tn.Driveline([*trunk, *branch]))
+    figure.canvas.draw()
+    texts = {t.get_text(): t.get_window_extent() for t in figure.axes[0].texts}
+    bend = next(box for text, box in texts.items() if text.startswith("β"))
+    names = [box for text, box in texts.items() if "shaft" in text and box.x1 > bend.x0]
+    assert len(names) >= 3 and all(box.y0 > bend.y1 for box in names)

@@ -43,7 +43,7 @@ def draw(
     for m in range(len(result.mode)):
         w = result.frequency[:, m]
         label: dict[str, Any] = {"label": "mode"} if m == 0 else {}
-        around: dict[str, Any] = {"label": f"±{100 * result.margin:.3g} % of it"} if m == 0 else {}
+        around: dict[str, Any] = {"label": f"±{100 * result.margin:.3g} % of a mode"} if m == 0 else {}
         low, high = (1 - result.margin) * w * y, (1 + result.margin) * w * y
         axes.fill_between(speed * x, low, high, color=BAND, lw=0, zorder=1, **around)
         axes.plot(speed * x, w * y, color=INK, lw=1.3, zorder=3, **label)

@@ -13,8 +13,7 @@ from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap
 from trunnion.analyses.motion.long_motion import wrapped
 from trunnion.numerics.integration.integration import integrate
-from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, logarithmic, new_axes, plain
+from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, TITLE, curve_style, logarithmic, new_axes, plain
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis, state_axis
 from trunnion.systems.system import System
 
@@ -37,7 +36,7 @@ def draw_convergence(result: LyapunovSpectrum, axes: Axes | None = None) -> Axes
     axes = axes or new_axes(7.2, 4.2)
     time, means = result.histories
     for j in range(len(result.exponents)):
-        look, colour = _look(j), COLOURS[j % len(COLOURS)]
+        look, colour = _look(j), curve_style(j)["color"]
         for i, history in enumerate(means):
             axes.plot(time, history[:, j], **look, lw=1.1, label=f"L{j + 1}" if i == 0 else None, alpha=0.8)
         value, width = result.exponents[j], result.half_width[j]
@@ -93,7 +92,7 @@ def draw_sweep(result: LyapunovSweep, axes: Axes | None = None, *, mark: float |
     across = _parameter(result.system, result.parameter)
     along = result.values * across.factor
     for j in range(result.exponents.shape[1]):
-        value, width, colour = result.exponents[:, j], result.half_width[:, j], COLOURS[j % len(COLOURS)]
+        value, width, colour = result.exponents[:, j], result.half_width[:, j], curve_style(j)["color"]
         axes.fill_between(along, value - width, value + width, color=colour, alpha=0.25, lw=0)
         axes.plot(along, value, **_look(j), lw=1.3, marker=".", ms=4, label=f"L{j + 1}")
     axes.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)))
@@ -215,8 +214,8 @@ def _no_map(result: ChaosCertificate) -> str:
 
 
 def _look(j: int) -> dict[str, Any]:
-    """Colours first, then the same colours dashed."""
-    return {"color": COLOURS[j % len(COLOURS)], "ls": DASHES[j // len(COLOURS) % len(DASHES)]}
+    """Without markers, which are those of the points."""
+    return {key: curve_style(j)[key] for key in ("color", "linestyle")}
 
 
 def _panel_legend(axes: Axes) -> None:

@@ -11,9 +11,8 @@ from trunnion.analyses.assessment.course import Course
 from trunnion.analyses.orders.result import order_name
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import eye_unit
-from trunnion.plots.kinetostatics import DASHES
 from trunnion.plots.order_response import LIMIT, logarithmic, mark_operating, order_curves
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import INK, PATTERNS, SMALL, TEXT, new_axes, plain, printed
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ def draw(course: Course, axes: Axes | None = None, *, unit: str, operating: Oper
     names = [order_name(float(o), float(f)) for o, f in zip(course.order, course.frequency, strict=True)]
     low, high = order_curves(axes, x, value / size, course.by_order / size, names, f"all together ({course.says})")
     for i, (name, limit) in enumerate(course.limits.items()):
-        axes.plot(x, limit / size, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=_printed(name))
+        axes.plot(x, limit / size, color=LIMIT, lw=1.8, ls=PATTERNS[i % len(PATTERNS)], label=_printed(name))
         low, high = min(low, float(limit.min()) / size), max(high, float(limit.max()) / size)
     if high > 0:
         logarithmic(axes, low / 2, 2 * high)
@@ -41,7 +40,7 @@ def draw(course: Course, axes: Axes | None = None, *, unit: str, operating: Oper
     mark_operating(axes, x, operating, unit)
     axes.set_title(course.quantity.replace("$", r"\$"), fontsize=TEXT, color=INK)
     axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"{course.quantity.rpartition(' of ')[0]} [{_printed(symbol)}]", fontsize=TEXT, color=INK)
+    axes.set_ylabel(f"{course.quantity.rpartition(' of ')[0]} [{printed(symbol)}]", fontsize=TEXT, color=INK)
     axes.grid(which="major", color="#dddddd", lw=0.6)
     plain(axes)
     axes.figure.figure.legend(loc="outside lower left", ncols=2, fontsize=SMALL, frameon=False, handlelength=2.6)

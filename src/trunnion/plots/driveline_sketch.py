@@ -29,6 +29,8 @@ SLANT = 38 * DEGREE
 """Slope of the names."""
 STEEPEST = 30 * DEGREE
 """Larger bends are drawn as this."""
+HEADROOM = 1.75
+"""What stands above a branch: wheels, numbers, a load in two lines."""
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25,
@@ -58,13 +60,14 @@ def draw(line: Driveline) -> Figure:
     from trunnion.plots.literal_figure import LiteralFigure
 
     places = _places(line)
-    floor = _floors(places)
     x = np.array([p for q in places for p in (q.start[0], q.end[0])])
-    ceiling = max(max(q.start[1], q.end[1]) for q in places)
     scale = WIDTH / max(x.max() - x.min() + 1.6, 9.0)
     size = float(np.clip(SMALL * scale / 0.62, 7.5, SMALL))
     letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
     names = max(len(q.name) for q in places) + 3
+    places = _places(line, letter)
+    floor = _floors(places)
+    ceiling = max(max(q.start[1], q.end[1]) for q in places)
     right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
     high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
@@ -87,8 +90,8 @@ def draw(line: Driveline) -> Figure:
     return figure
 
 
-def _places(line: Driveline) -> list[_Place]:
-    """Walk the line; a branch starts below its parent."""
+def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
+    """Walk the line; a branch starts below its parent and the names, of that width of a letter, that reach over it."""
     places: list[_Place] = []
     down: dict[int, float] = {}
     rows = 0
@@ -101,7 +104,14 @@ def _places(line: Driveline) -> list[_Place]:
         else:
             rows += 1
             deepest = min(min(p.start[1], p.end[1]) for p in places)
-            start, direction, row = np.array([places[parent].end[0] + 0.5, deepest - 3.2]), 0.0, rows
+            left, floors = places[parent].end[0] + 0.5, _floors(places)
+            lengths = [letter * (len(p.name) + 3) for p in places]
+            names = [
+                floors[p.row] - length * np.sin(SLANT)
+                for p, length in zip(places, lengths, strict=True)
+                if p.start[0] + length * np.cos(SLANT) > left - 1.0
+            ]
+            start, direction, row = np.array([left, min([deepest - 3.2, *(n - HEADROOM for n in names)])]), 0.0, rows
         angle = abs(float(getattr(element, "angle", 0.0)))
         behind = direction
         if angle:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import INK, SMALL, TEXT, curve_style, new_axes, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +30,7 @@ def draw(result: Kinetostatics, axes: Axes | None = None) -> Axes:
             groups.append(([name], row))
     for i, (names, row) in enumerate(groups):
         label = ", ".join(names) if len(names) < 4 else f"{names[0]} … {names[-1]} ({len(names)} shafts)"
-        axes.plot(turn, percent[row], color=COLOURS[i], ls=DASHES[i % len(DASHES)], lw=1.6, label=label)
+        axes.plot(turn, percent[row], **curve_style(i), lw=1.6, label=label)
     axes.set_xlim(0, 360 * result.turns)
     if result.turns == 1:
         axes.set_xticks(range(0, 361, 45))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
+from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, STYLES, TEXT, TITLE, curve_style, plain
 from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
@@ -21,29 +21,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
-"""Okabe and Ito's palette, told apart by every kind of colour vision; line styles tell them apart in grey."""
-DASHES: tuple[Any, ...] = (
-    "-",
-    (0, (5, 1.5)),
-    (0, (1, 1)),
-    (0, (6, 1.5, 1, 1.5)),
-    (0, (3, 1)),
-    "-",
-    (0, (8, 2)),
-)
-PATTERNS: tuple[Any, ...] = (
-    "-",
-    (0, (5, 1.5)),
-    (0, (1, 1)),
-    (0, (6, 1.5, 1, 1.5)),
-    (0, (2.2, 2)),
-    (0, (7, 1.3, 1, 1.3, 1, 1.3)),
-    (0, (11, 3)),
-)
-MARKERS = ("", "o", "s", "^")
-"""Seven patterns, each with one colour, then again with markers and the next colours: 28 styles, told apart in grey."""
-STYLES = len(PATTERNS) * len(MARKERS)
 MARKS_PER_TURN = 8
 SAME = 1e-9
 """Curves closer than this share of their size count as one."""
@@ -222,18 +199,7 @@ def _closed(result: Kinetostatics, y: Array) -> tuple[Array, Array]:
 def _line(axes: Axes, x: Array, y: Array, curve: _Curve) -> None:
     every = max((len(x) - 1) // MARKS_PER_TURN, 1)
     marks = (5 * curve.style * every // 7 % every, every)  # those of different curves side by side
-    axes.plot(x, y, **_style(curve.style), linewidth=1.6, markevery=marks, label=curve.name)
-
-
-def _style(k: int) -> dict[str, Any]:
-    """Colour, pattern and marker of curve ``k``."""
-    cycle = k // len(PATTERNS)
-    return {
-        "color": COLOURS[(k + 3 * cycle) % len(COLOURS)],
-        "linestyle": PATTERNS[k % len(PATTERNS)],
-        "marker": MARKERS[cycle % len(MARKERS)],
-        "markersize": 4.5,
-    }
+    axes.plot(x, y, **{**curve_style(curve.style), "markevery": marks}, linewidth=1.6, label=curve.name)
 
 
 def _panel(axes: Axes, result: Kinetostatics, curves: Sequence[_Curve], label: str) -> None:

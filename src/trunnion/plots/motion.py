@@ -11,8 +11,8 @@ from trunnion.analyses.motion.simulation import Simulation
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, logarithmic, new_axes, plain
+from trunnion.driveline.quantities import TORQUE, shown
+from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, curve_style, logarithmic, new_axes, plain, printed
 from trunnion.results.quantity_axes import QuantityAxis, state_axis
 from trunnion.results.speeds import show_speed
 from trunnion.systems.system import System
@@ -122,16 +122,18 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
     about = bool(np.abs(mean).max() > 2 * result.torque_peak_to_peak.max())
     below = mean if about else np.zeros_like(mean)
     for i, name in enumerate(result.shafts):
-        label = f"{name}, about {mean[i]:.4g} N·m".replace("-", "−") if about else name
+        label = f"{name}, about {printed(shown(mean[i], TORQUE, digits=4))}" if about else name
         axes.plot(degrees, np.append(torque[:, i], torque[0, i]) - below[i], label=label, **_look(i))
     linear = result.comparison.static_twist.response if result.comparison else None
     if linear is not None:
         repeats = max(int(np.ceil(degrees[-1] / np.rad2deg(linear.tau[-1]) - 1e-9)), 1)
         tau = np.concatenate([np.rad2deg(linear.tau + k * linear.tau[-1]) for k in range(repeats)])
+        every = max(len(linear.tau) // 20, 1)
         for i in range(len(result.shafts)):
             axes.plot(
-                tau, np.tile(linear.torque[:, i], repeats) - below[i], color=COLOURS[i % len(COLOURS)], lw=0.8,
-                ls=(0, (1, 2)), label="linear theory" if i == 0 else None,
+                tau, np.tile(linear.torque[:, i], repeats) - below[i], color=_look(i)["color"], ls="", marker="o",
+                mfc="white", ms=3.5, markevery=(i * every // len(result.shafts), every),
+                label="linear theory" if i == 0 else None,
             )  # fmt: skip
     _labels(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
     part = result.turns > MOST_TURNS
@@ -144,6 +146,8 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
     return axes
 
 
+ROWS, ROW = 4, 0.19
+"""Rows of names for which a figure has room, and the height of one more [inches]."""
 DECADES, MOST_BARS = 1e4, 40
 """Largest amplitude over the smallest that is drawn; groups of bars that can be told apart side by side."""
 HATCHES = ("", "////", "xxxx", "....", "||||", "----", "\\\\\\\\")
@@ -163,7 +167,7 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
     for i, name in enumerate(result.shafts):
         place = orders + (i - (count - 1) / 2) * width
         # Hatched, for those who print in grey.
-        colour, hatch = COLOURS[i % len(COLOURS)], HATCHES[i % len(HATCHES)]
+        colour, hatch = curve_style(i)["color"], HATCHES[i % len(HATCHES)]
         axes.bar(place, amplitude[:, i], width, label=name, color=colour, hatch=hatch, edgecolor="white", lw=0.3)
     top = float(amplitude.max()) if amplitude.size else 1.0
     if top > 0:
@@ -180,7 +184,7 @@ def _state(system: System, i: int) -> QuantityAxis:
 
 
 def _look(k: int) -> dict[str, Any]:
-    return {"color": COLOURS[k % len(COLOURS)], "ls": DASHES[k % len(DASHES)], "lw": 1.3}
+    return {**curve_style(k), "lw": 1.3}
 
 
 def _labels(axes: Axes, x: str, y: str) -> None:
@@ -193,8 +197,11 @@ def _labels(axes: Axes, x: str, y: str) -> None:
 def _legend(axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     # Four short names stand side by side, or two long ones.
-    columns = min(4, max(1, 100 // (12 + max(map(len, labels), default=0))))
-    axes.figure.figure.legend(
+    columns = min(4, max(1, 112 // (12 + max(map(len, labels), default=0))))
+    figure, rows = axes.figure.figure, -(-len(labels) // columns)
+    if rows > ROWS and len(figure.axes) == 1:  # the curves keep their height
+        figure.set_figheight(figure.get_figheight() + ROW * (rows - ROWS))
+    figure.legend(
         handles, labels, loc="outside lower left", ncols=columns, fontsize=SMALL, frameon=False,
         columnspacing=1.5, handlelength=2.6,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trunnion.analyses.optimisation.result import Optimum, in_words
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain, printed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ def _front(found: Optimum, axes: Axes | None) -> Axes:
     axes.plot(*found.aim[:, None], "o", color=INK, ms=9, label="taken")
     axes.plot(*found.aim_before[:, None], "s", mfc="white", mec=INK, ms=8, label="before")
     labels = [
-        f"{name}{f' [{unit}]' if unit != '1' else ''}{', larger is better' if largest else ''}"
+        f"{name}{f' [{printed(unit)}]' if unit != '1' else ''}{', larger is better' if largest else ''}"
         for name, unit, largest in zip(found.aims, found.aim_units, found.largest, strict=True)
     ]
     axes.set_xlabel(labels[0], fontsize=TEXT, color=INK)

@@ -13,8 +13,7 @@ from trunnion.analyses.orders.result import OrderResponse, order_name
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.errors import InputError
-from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, PATTERNS, SMALL, TEXT, curve_style, new_axes, plain
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -66,7 +65,7 @@ def draw(
     known = ({} if limit is None else {"limit": limit}) | dict(stated or {})
     for i, (name, value) in enumerate(known.items()):
         said = shown(value, TORQUE, digits=4).replace("*", "·")
-        axes.axhline(value, color=LIMIT, lw=1.8, ls=DASHES[i % len(DASHES)], label=f"{name} {said}")
+        axes.axhline(value, color=LIMIT, lw=1.8, ls=PATTERNS[i % len(PATTERNS)], label=f"{name} {said}")
     if "max torque" in known:
         peak = result.peak_torque[:, column]
         axes.plot(x, peak, color=INK, lw=1.2, ls=(0, (1, 1)), label="largest torque, mean and all")
@@ -100,8 +99,8 @@ def order_curves(
     axes.plot(x, whole, color=INK, lw=2.2, label=words, marker=marker)
     drawn = [int(k) for k in sorted(strongest) if peaks[k] > largest / 10**DECADES]
     for i, k in enumerate(drawn, start=1):
-        look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.5}
-        axes.plot(x, size[:, k], label=names[k], marker=marker, **look)
+        look = curve_style(i) if marker is None else {**curve_style(i), "marker": marker}
+        axes.plot(x, size[:, k], label=names[k], lw=1.5, **look)
     least = min([float(np.nanmin(whole, initial=largest)), *(float(peaks[k]) for k in drawn)])
     return max(least, 2 * largest / 10 ** (DECADES + 0.5)), largest
 

@@ -9,8 +9,7 @@ import numpy as np
 from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.plots.kinetostatics import COLOURS
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import COLOURS, INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.verdict import Verdict
 

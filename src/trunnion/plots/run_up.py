@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trunnion.analyses.motion.run_up import RunUp
-from trunnion.plots.kinetostatics import COLOURS
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain, printed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +41,7 @@ def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = 
     axes.set_yticks(range(len(names)), names, fontsize=SMALL)
     axes.invert_yaxis()
     axes.set_xlabel(f"change{label}", fontsize=TEXT, color=INK)
-    axes.set_title(f"{chosen.name}: {found.shown(chosen)}", fontsize=TEXT, color=INK, loc="left")
+    axes.set_title(f"{chosen.name}: {printed(found.shown(chosen))}", fontsize=TEXT, color=INK, loc="left")
     axes.grid(axis="x", color="#dddddd", lw=0.6)
     axes.set_axisbelow(True)
     plain(axes)

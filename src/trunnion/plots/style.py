@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from trunnion.errors import InputError
 from trunnion.writing import written_whole
@@ -23,6 +23,20 @@ INK = "#1a1a1a"
 FAINT = "#6b6b6b"
 ACCENT = "#0072b2"
 """Blue of the palette of Okabe and Ito: told from the rest by every kind of colour vision."""
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
+"""Okabe and Ito's palette, told apart by every kind of colour vision; line styles tell them apart in grey."""
+PATTERNS: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (2.2, 2)),
+    (0, (7, 1.3, 1, 1.3, 1, 1.3)),
+    (0, (11, 3)),
+)
+MARKERS = ("", "o", "s", "^")
+"""Seven patterns, each with one colour, then again with markers and the next colours: 28 styles, told apart in grey."""
+STYLES = len(PATTERNS) * len(MARKERS)
 FORMATS = ("png", "pdf", "svg")
 DPI = 200
 
@@ -36,6 +50,23 @@ def new_axes(width: float = WIDTH, height: float = HEIGHT) -> Axes:
     figure = LiteralFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure.add_subplot()
+
+
+def curve_style(k: int) -> dict[str, Any]:
+    """Colour, pattern and markers of curve ``k``; no two of ``STYLES`` curves look alike, in grey either."""
+    cycle = k // len(PATTERNS)
+    return {
+        "color": COLOURS[(k + 3 * cycle) % len(COLOURS)],
+        "linestyle": PATTERNS[k % len(PATTERNS)],
+        "marker": MARKERS[cycle % len(MARKERS)],
+        "markersize": 4.5,
+        "markevery": (0.02 * (k % len(PATTERNS)), 0.14),
+    }
+
+
+def printed(quantity: str) -> str:
+    """A number with its unit, or a unit alone, as a page prints it: "−3 N·m", "rad/s²"."""
+    return quantity.replace("*", "·").replace("^2", "²").replace("^3", "³").replace("-", "−")
 
 
 def plain(axes: Axes) -> None:

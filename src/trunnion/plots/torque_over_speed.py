@@ -9,8 +9,7 @@ import numpy as np
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.linear.speed_sweep import SpeedSweep
 from trunnion.driveline.operation import Operation
-from trunnion.plots.kinetostatics import COLOURS, DASHES
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, logarithmic, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, curve_style, logarithmic, new_axes, plain
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -36,8 +35,7 @@ def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "", operati
     x = sweep.speed * speed_factor(unit)
     handles: list[Line2D | Patch] = []
     for i, shaft in enumerate(sweep.shafts):
-        look = {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i % len(DASHES)], "lw": 1.5}
-        handles += axes.plot(x, sweep.torque_amplitude[:, i], label=shaft, **look)
+        handles += axes.plot(x, sweep.torque_amplitude[:, i], label=shaft, lw=1.5, **curve_style(i))
     largest = float(np.nanmax(sweep.torque_amplitude))
     if largest > 0:
         logarithmic(axes, "y")

@@ -237,8 +237,8 @@ def under_load(contents: Contents) -> Table | None:
             )
         )
     heads = (
-        "case", "true motion", "growth rate [1/s]", "about zero twist", "about static twist", "most loaded shaft",
-        "mean torque [N·m]", "peak to peak [N·m]", "linear theory",
+        "case", "true motion", "growth rate [1/s]", "about zero twist [1/s]", "about static twist [1/s]",
+        "most loaded shaft", "mean torque [N·m]", "peak to peak [N·m]", "by linear theory [N·m]",
     )  # fmt: skip
     return Table(heads, tuple(rows))
 

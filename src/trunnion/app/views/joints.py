@@ -185,8 +185,9 @@ class _Side(Side):
         lines = "".join(f"<li>{figures.text(s)}</li>" for s in data["findings"])
         self.text.object = (
             f"<table class='plain'><tr><th>irregularity of the output</th><td data-value='irregularity'>"
-            f"{data['irregularity']:.6g}</td><th>as one joint of</th><td>{data['equivalent'] * DEGREES:.4g}°</td>"
-            f"<th>largest acceleration</th><td>{data['acceleration']:.5g} rad/s²</td></tr></table><ul>{lines}</ul>"
+            f"{data['irregularity']:.6g}</td></tr>"
+            f"<tr><th>as one joint of</th><td>{data['equivalent'] * DEGREES:.4g}°</td></tr>"
+            f"<tr><th>largest acceleration</th><td>{data['acceleration']:.5g} rad/s²</td></tr></table><ul>{lines}</ul>"
         )
         self._forks(data, cursor)
 
@@ -207,4 +208,4 @@ class _Side(Side):
         figures.put(self.arms, {"xs": xs, "ys": ys, "colour": colours, "dash": dashes})
         figures.put(self.rings, {"x": [SPACING * k for k in range(len(labels))], "y": [0.0] * len(labels)})
         figures.put(self.labels, {k: [row[i] for row in labels] for i, k in enumerate(("x", "y", "text"))})
-        self.forks.title.text = f"forks at input angle {cursor:g}°, joint plane upright\ninput solid, output dashed"
+        self.forks.title.text = f"forks at input angle {cursor:g}°\njoint plane upright, output dashed"

@@ -270,6 +270,8 @@ class _Side(Side):
         self.ends: list[tuple[float, float]] = []
         self.count = 0
         self.picture = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
+        # Before its axes are known a chart would show false ones, and take a click on them for a point.
+        self.picture.visible = self.figure.visible = False
         self.panel = pn.Column(
             self.picture,
             self.regions,
@@ -280,6 +282,11 @@ class _Side(Side):
             sizing_mode="stretch_width",
             margin=0,
         )
+
+    def narrow(self, narrow: bool) -> None:
+        """Beside its colours half of the page holds three numbers."""
+        super().narrow(narrow)
+        self.figure.xaxis[0].ticker.desired_num_ticks = 3 if narrow else 6
 
     def show(self, name: str, data: Any) -> None:
         """What a step gave."""
