@@ -106,3 +106,21 @@ def test_it_introduces_itself(tmp_path):
     assert found.plot().get_xlabel().startswith("margin [%]")
     plain = tn.Driveline(line().elements)
     assert "change from" in tn.compare(plain, plain.replace("hub", inertia=0.06)).plot().get_xlabel()
+
+
+def test_torques_at_narrow_peaks_are_those_of_the_peaks():
+    """Between the speeds of a grid little damping's peak may seem lower than that of more damping."""
+    before, after = (line(front={"damping": c}, rear={"damping": c}) for c in (0.004, 0.008))
+    found = tn.compare(before, after, (60.0, 120.0)).difference("vibratory torque of front")
+    assert found.after < 0.7 * found.before
+    for one, most, speed in ((before, found.before, found.speed_before), (after, found.after, found.speed_after)):
+        speeds = speed * np.linspace(1 - 2e-3, 1 + 2e-3, 401)
+        near = [tn.order_response(one, speeds, load_case=case).vibratory_torque[:, 0] for case in (None, "hill")]
+        assert most == pytest.approx(np.max(near), rel=1e-4)
+
+
+def test_what_has_no_bound_is_not_called_missing():
+    undamped = line(front={"damping": 0.0}, rear={"damping": 0.0}, joint={"angle": 0.4})
+    speed = float(tn.natural_frequencies(undamped).frequency[0])
+    found = tn.compare(undamped, line(joint={"angle": 0.4}), (0.98 * speed, 1.02 * speed))
+    assert "margin of parametric stability: without bound → " in str(found)

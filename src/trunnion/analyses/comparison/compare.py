@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.range_extremes import largest_growth, largest_torque
+from trunnion.analyses.assessment.range_extremes import exact_torque, largest_growth, largest_torque
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.comparison.result import Comparison, Difference
@@ -132,7 +132,8 @@ def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, 
         return
     for c, spring in enumerate(shaft_names(cases[0].assembly)):
         for word in ("peak", "vibratory"):
-            most = max((largest_torque(case, word, c) for case in cases), key=lambda found: found[0])
+            largest = [(largest_torque if case.costly else exact_torque)(case, word, c) for case in cases]
+            most = max(largest, key=lambda found: found[0])
             yield f"{word} torque of {spring}", ("torque", most[0], "N*m", most[1])
 
 

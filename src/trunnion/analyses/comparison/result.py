@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -169,7 +169,7 @@ class Comparison(Result):
     def _value(self, one: Difference, side: int) -> str:
         value, speed = ((one.before, one.speed_before), (one.after, one.speed_after))[side]
         if not isfinite(value):
-            return "none"
+            return "none" if isnan(value) else "without bound"
         at = f" at {show_speed(float(f'{speed:.6g}'), self.unit)}" if isfinite(speed) else ""
         return f"{value_words(value, one)}{at}"
 

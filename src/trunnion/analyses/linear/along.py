@@ -90,7 +90,7 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even.
 
     What is no disturbance is left out: a turn of the whole line that starts free, its speed where no torque depends on
-    it.
+    it. What rounding cannot tell from no decay is 0.
     """
     topo, table = assembly.topology, assembly.table(1, speed)
     co = replace(assembly.coefficients(table, any_frequency=True).straight, waves=())
@@ -101,7 +101,9 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     slopes = first_order(m, co.speed, root, unit)[0, 0]
     aside = rigid_motions(topo, co) * np.concatenate([root[0], root[0] / unit[0]])[:, None]
     left = without(slopes, aside)[0] if aside.shape[1] else slopes
-    return float(-np.linalg.eigvals(left).real.max(initial=-np.inf) * speed)
+    decay = float(-np.linalg.eigvals(left).real.max(initial=-np.inf))
+    rounding = len(left) * np.finfo(float).eps * float(np.linalg.norm(left))
+    return decay * speed if abs(decay) > rounding else 0.0
 
 
 def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> StabilityAlong:
