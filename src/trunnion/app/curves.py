@@ -65,10 +65,10 @@ class Curves:
             self.figure.on_event(Tap, lambda event: tap(float(event.x)))
         self.panel = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
 
-    def mark(self, name: str, shape: str, colour: str) -> None:
+    def mark(self, name: str, shape: str, colour: str, size: int = 9) -> None:
         """Marks beside the curves, none at first; see ``put_marks``."""
         source = ColumnDataSource(data={"x": [], "y": []})
-        drawn = self.figure.scatter("x", "y", source=source, marker=shape, size=9, color=colour, fill_alpha=0.2)
+        drawn = self.figure.scatter("x", "y", source=source, marker=shape, size=size, color=colour, fill_alpha=0.2)
         item = LegendItem(label=name, renderers=[drawn], visible=False)
         self.legend.items = [*self.legend.items, item]
         self.marks[name] = source, item

@@ -6,14 +6,14 @@ import html
 from typing import Any
 
 import numpy as np
-from bokeh.models import ColumnDataSource, HoverTool, Legend
+from bokeh.models import BasicTickFormatter, ColumnDataSource, HoverTool, Legend
 from bokeh.plotting import figure
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
 SKY, YELLOW, INK, FAINT = "#56b4e9", "#b58900", "#1a1a1a", "#6b6b6b"
 COLOURS = (BLUE, ORANGE, GREEN, PINK, SKY, YELLOW, INK)
-DASHES = ("solid", "dashed", "dotdash", "dotted")
-"""Of neighbouring lines they differ as their colours do."""
+DASHES = ("solid", "dashed", "dotdash", "dotted", "12 4", "10 3 2 3 2 3", "3 3")
+"""One for every colour: lines are told apart without it."""
 
 
 def look(k: int) -> dict[str, Any]:
@@ -39,6 +39,8 @@ def plot(x: str, y: str, *, height: int = 340, title: str = "", about: str = "",
         axis.axis_label_text_font_style = "normal"
         axis.axis_label_text_font_size = "14px"
         axis.major_label_text_font_size = "13px"
+        if isinstance(axis.formatter, BasicTickFormatter):
+            axis.formatter.power_limit_high = 7  # 200000 N·m, not 2.000e+5
     made.grid.grid_line_color = "#e3e6ea"
     return made
 

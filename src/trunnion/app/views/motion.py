@@ -62,6 +62,9 @@ METHODS = {"exact": figures.INK, "shooting": figures.GREEN, "harmonic balance": 
 """Of a response followed over speed, with the colour of each."""
 SWEEPS = {"up": ("sweep up", "triangle", figures.BLUE), "down": ("sweep down", "inverted_triangle", figures.ORANGE)}
 
+LINEAR, DOTS, SMALL = "linear theory", 16, 5
+"""Drawn as so many small points upon every curve."""
+
 
 class MotionView(View):
     """One motion at a time; some take long, and can be cancelled."""
@@ -190,6 +193,7 @@ class _Side(Side):
         self.curves = Curves("time [ms]", "torque [N·m]", height=380)
         for title, shape, colour in SWEEPS.values():
             self.curves.mark(title, shape, colour)
+        self.curves.mark(LINEAR, "circle", figures.INK, SMALL)
         self.picture = pn.pane.HTML("", sizing_mode="stretch_width")
         self.text = pn.pane.HTML("", sizing_mode="stretch_width")
         self.panel = pn.Column(self.curves.panel, self.picture, self.text, sizing_mode="stretch_width", margin=0)
@@ -206,7 +210,7 @@ class _Side(Side):
         self.curves.set([])
         self.curves.panel.visible = False
         self.picture.object = self.text.object = ""
-        for title, _, _ in SWEEPS.values():
+        for title in self.curves.marks:
             self.curves.put_marks(title, [], [])
 
     def show(self, name: str, data: Any) -> None:
@@ -239,18 +243,11 @@ class _Side(Side):
         if name == "periodic":
             self.found = {}
             self.text.object = _text(data["text"])
-        suffix = "" if name == "periodic" else ", linear theory"
-        self.found[name] = [(n + suffix, 1e3 * np.asarray(data["time"]), v) for n, v in _torques(data)]
+        self.found[name] = [(n, 1e3 * np.asarray(data["time"]), v) for n, v in _torques(data)]
         motion, linear = (self.found.get(key, []) for key in ("periodic", "linear"))
-        looks = [figures.look(k)["line_color"] for k in range(len(motion))]
-        self.curves.set(
-            [*motion, *linear],
-            colours=[*looks, *looks],
-            dashes=["solid"] * len(motion) + ["dashed"] * len(linear),
-            x="time [ms]",
-            y="torque [N·m]",
-            title="torque over one period",
-        )
+        self.curves.set(motion, x="time [ms]", y="torque [N·m]", title="torque over one period")
+        every = slice(None, None, max(len(data["time"]) // DOTS, 1))
+        self.curves.put_marks(LINEAR, *_together([(x[every], y[every]) for _, x, y in linear]))
 
     def _run_up(self, data: Any) -> None:
         unit, factor = unit_of(self.view.line_of(self))
@@ -314,6 +311,12 @@ def _part(followed: Any, stable: bool) -> Any:
     if not stable:
         there = there | np.roll(there, 1) | np.roll(there, -1)
     return np.where(there, followed["half"], np.nan)
+
+
+def _together(curves: list[tuple[Any, Any]]) -> tuple[Any, Any]:
+    """The points of all curves, abscissae and ordinates."""
+    x, y = (np.concatenate([[], *(curve[axis] for curve in curves)]) for axis in (0, 1))
+    return x, y
 
 
 def _torques(data: Any) -> list[Any]:
