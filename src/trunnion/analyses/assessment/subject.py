@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 POINTS = 201
 """Speeds of the even part of the grid; the peaks of the modes get more."""
+NEARLY_LARGEST = 0.9
+"""Share of the largest torque at the speeds of the grid from which a peak between them may be larger."""
+PARTS = 64
+"""Steps of which a peak is located, from one speed of the grid to the next but one."""
 NO_RESPONSE = "no linear response: "
 """How checks that need the response begin to say why there is none."""
 
@@ -83,7 +87,27 @@ class Case:
         low = max(self.low, lowest_speed(self.assembly), 1e-3 * self.high)
         if low >= self.high:
             return np.array([self.high])
-        return sweep_speeds(self.assembly, low, self.high, self.points)
+        grid = sweep_speeds(self.assembly, low, self.high, self.points)
+        return grid if self.points < POINTS else np.union1d(grid, self._peaks(grid))
+
+    def _peaks(self, grid: Array) -> Array:
+        """Speeds between those of ``grid`` at which a torque may be largest, by parabolas through three of them."""
+        try:
+            seen = rough_response(self.assembly, grid)
+        except (InputError, ComputationError):  # said where it is asked for
+            return np.zeros(0)
+        found = np.concatenate([seen.vibratory_torque, seen.peak_torque, seen.heat], axis=1)
+        left, middle, right = found[:-2], found[1:-1], found[2:]
+        with np.errstate(invalid="ignore"):
+            high = (
+                (middle > left) & (middle >= right) & (middle > NEARLY_LARGEST * np.nanmax(found, axis=0, initial=0.0))
+            )
+        at, which = np.nonzero(high)
+        back, on = grid[at] - grid[at + 1], grid[at + 2] - grid[at + 1]
+        fall, rise = (left - middle)[at, which], (right - middle)[at, which]
+        step = (on - back) / PARTS  # so that what peaks at one speed adds one speed
+        vertex = (fall * on**2 - rise * back**2) / (2 * (fall * on - rise * back))
+        return grid[at + 1] + step * np.round(vertex / step)
 
     @cached_property
     def answer(self) -> OrderResponse | str:
