@@ -198,7 +198,7 @@ def test_what_nearly_helps_is_said_with_what_it_breaks():
     assert helped.remedies == ()
     (sentence,) = helped.sentences
     found = re.search(
-        r"other check; angle of joint 1 at ([\d.]+) instead of 6 deg would, but (.+) is then (.+ %)", sentence
+        r"other check; angle of joint 1 at ([\d.]+) deg instead of 6 deg would, but (.+) is then (.+ %)", sentence
     )
     assert found, sentence
     changed = tn.assess(line.replace("joint 1", angle=f"{found[1]} deg"), (top, top))

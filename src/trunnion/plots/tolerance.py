@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.analyses.tolerance.study import ToleranceStudy
-from trunnion.plots.style import ACCENT, INK, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
@@ -20,8 +20,16 @@ SHOWN = 8
 
 
 def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
-    """Histogram of the growth rate at the speed where it is fastest; beside it the ranking as bars."""
-    axes = axes if axes is not None else new_axes(7.2, 3.6)
+    """Histogram of the growth rate at the speed where it is fastest; below it (within ``axes``) the ranking."""
+    names, shares = zip(*study.ranking[:SHOWN], strict=True)
+    if axes is None:
+        rows = 0.3 * len(names)
+        axes = new_axes(7.2, 4.1 + rows)
+        grid = axes.figure.figure.add_gridspec(2, 1, height_ratios=(2.8, rows))
+        axes.set_subplotspec(grid[0, 0])
+        side, room = axes.figure.figure.add_subplot(grid[1, 0]), 3.0
+    else:
+        side, room = axes.inset_axes((0.64, 0.45, 0.34, 0.5)), 1e3  # the ranking stands above the bars
     fastest = int(np.nanmax(study.growth_rate, axis=1).argmax())
     rates = study.growth_rate[fastest]
     rates = rates[np.isfinite(rates)]
@@ -29,7 +37,7 @@ def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
     few = np.max(counts) > CROWDED * len(rates)
     if few:
         axes.set_yscale("log")
-        axes.set_ylim(0.5, 1e3 * np.max(counts))  # the ranking stands above the bars
+        axes.set_ylim(0.5, room * np.max(counts))
     axes.axvline(0.0, color="#4a1526", lw=1.4)
     axes.set_xlabel(
         f"growth rate at {show_speed(float(study.speeds[fastest]), study.unit)} [1/s]", fontsize=TEXT, color=INK
@@ -39,11 +47,9 @@ def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
     title = f"stable with probability {study.probability:.4g} ({low:.4g} to {high:.4g})"
     axes.set_title(title, fontsize=TEXT, color=INK, loc="left")
     plain(axes)
-    names, shares = zip(*study.ranking[:SHOWN], strict=True)
-    side = axes.inset_axes((0.64, 0.45, 0.34, 0.5))
     side.barh(range(len(names)), [100 * s for s in shares], color=ACCENT)
-    side.set_yticks(range(len(names)), names, fontsize=7)
+    side.set_yticks(range(len(names)), names, fontsize=SMALL)
     side.invert_yaxis()
-    side.set_xlabel("explains of the scatter [%]", fontsize=7)
-    side.tick_params(labelsize=7)
+    side.set_xlabel("explains of the scatter [%]", fontsize=SMALL)
+    side.tick_params(labelsize=SMALL)
     return axes

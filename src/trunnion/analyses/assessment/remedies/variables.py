@@ -90,7 +90,7 @@ class DesignVariable:
         if self.scale is not Scale.FACTOR:
             before, after = f"{self.value / DEGREE:.4g}", f"{value / DEGREE:.4g}"
             what = "angle" if self.scale is Scale.BEND else self.key.replace("_", " ")
-            return f"{what}{owner} at {after} instead of {before} deg"
+            return f"{what}{owner} at {after} deg instead of {before} deg"
         percent = f"by {100 * abs(value / self.value - 1):.3g} %"
         new = self.shown(value)
         for word, (less, more) in _WORDS.items():
