@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # Of all that is installed a run imports a small part: what it imports is compiled then, and kept.
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt
 
-# Files of tests side by side, one per processor, in the order of tests/conftest.py; kernels are compiled into one cache
+# Files of tests side by side, in the order of tests/conftest.py; kernels are compiled into one cache
 # that they share. One thread each for linear algebra: more of them spin against the other workers.
 PYTEST := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(or $(WORKERS),auto) --dist loadfile --no-loadscope-reorder
 

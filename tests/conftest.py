@@ -82,6 +82,11 @@ Run = Callable[..., Result]
 typer.testing._get_command = cache(typer.testing._get_command)
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than processors: tests of the browser wait for most of their time, others for a kernel to be compiled."""
+    return (os.cpu_count() or 1) + 1
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
