@@ -83,7 +83,7 @@ typer.testing._get_command = cache(typer.testing._get_command)
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One more than processors: tests of the browser wait for most of their time, others for a kernel to be compiled."""
+    """One more than processors: tests of the browser mostly wait, others for a kernel that is being compiled."""
     return (os.cpu_count() or 1) + 1
 
 
