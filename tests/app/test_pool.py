@@ -69,9 +69,9 @@ def test_a_cancelled_job_that_does_not_listen_ends_with_its_process() -> None:
     async def work(pool: Pool) -> None:
         owner = object()
         await pool.run(MODES, owner)
-        task = asyncio.ensure_future(pool.run(LONG, owner))
-        while not pool.busy:
-            await asyncio.sleep(0.01)
+        begun = asyncio.Event()
+        task = asyncio.ensure_future(pool.run(LONG, owner, lambda share: begun.set()))
+        await begun.wait()  # one that has not begun hears at once that nobody wants it
         (worker,) = pool.busy
         task.cancel()
         with pytest.raises(asyncio.CancelledError):
