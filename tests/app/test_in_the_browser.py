@@ -138,3 +138,4 @@ def test_what_stayed_unsent_follows_when_the_page_rests(look: Look) -> None:
     before = look.page.locator("[data-mark]").get_attribute("data-mark")
     look.type("Angle in side view [deg]", "6")
     look.page.wait_for_selector(f"[data-mark]:not([data-mark='{before}'])", state="attached")
+    assert look.page.locator("[data-mark]").get_attribute("data-mark") != before
