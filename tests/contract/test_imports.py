@@ -15,7 +15,7 @@ from trunnion.plots import DRAWINGS
 ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
 LAYERS = (
-    {"errors", "_version"},
+    {"errors", "arrays", "_version"},
     {"writing"},
     {"numerics"},
     {"laws"},

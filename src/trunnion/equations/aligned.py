@@ -8,13 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

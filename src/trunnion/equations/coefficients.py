@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Ratio
 from trunnion.driveline.gears import GearPair
@@ -32,7 +32,6 @@ from trunnion.laws.joint import JointLaw
 if TYPE_CHECKING:
     from trunnion.equations.aligned import AlignedMatrices
 
-Array = NDArray[np.float64]
 
 MOST_KNOWN = 8
 """Rows whose coefficients are kept."""

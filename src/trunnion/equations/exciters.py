@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
@@ -25,9 +25,6 @@ from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion, ratio_values
 from trunnion.equations.topology import Topology
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

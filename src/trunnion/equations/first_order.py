@@ -10,14 +10,12 @@ from dataclasses import dataclass, field
 from threading import get_ident
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Places
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
 from trunnion.equations.topology import require_period
 
-Array = NDArray[np.float64]
-Cases = NDArray[np.intp]
 LARGEST_DENSE = 12
 """Unknowns up to which products of dense matrices cost less than the chain kernel."""
 STEPS_PER_CYCLE = 4
@@ -61,7 +59,7 @@ class LineRates:
     unit: Array
     trace: Array
     steps: int
-    kept: dict[int, tuple[Cases, LineCoefficients]] = field(default_factory=dict, repr=False, compare=False)
+    kept: dict[int, tuple[Places, LineCoefficients]] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def of(cls, assembly: Assembly, table: Array, statically_twisted: bool) -> LineRates:
@@ -79,13 +77,13 @@ class LineRates:
         trace = (damping / mass).sum(axis=2).mean(axis=1) * period / co.speed
         return cls(assembly, table, statically_twisted, period, root, unit, trace, steps_that_see(cycles))
 
-    def __call__(self, which: Cases, tau: Array) -> Array:
+    def __call__(self, which: Places, tau: Array) -> Array:
         """A (case, time, 2n, 2n) of the cases ``which`` at input angles ``tau``."""
         co = self._coefficients(which)
         matrices = line_matrices(self.assembly.topology, co, tau)
         return first_order(matrices, co.speed, self.root[which], self.unit[which])
 
-    def _coefficients(self, which: Cases) -> LineCoefficients:
+    def _coefficients(self, which: Places) -> LineCoefficients:
         """Of the cases ``which``; those of the last ones asked for are kept, as a run asks at many times."""
         kept = self.kept.get(get_ident())
         if kept is None or not np.array_equal(kept[0], which):

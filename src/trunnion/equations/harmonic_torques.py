@@ -6,8 +6,8 @@ Cylinders that fire at α_c repeat what is listed once: of order k, A e^{ikφ} b
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.parameters import PackedLine
@@ -15,8 +15,6 @@ from trunnion.equations.loads import mean_load, station_loads
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 BEYOND = 1e-9
 """Share by which a speed may lie beyond the end of a table, as rounding."""
 

@@ -14,12 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.equations.aligned import relative_ratio
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.kinematics import ratio_values
@@ -14,8 +14,6 @@ from trunnion.equations.topology import TIED, Link, Mesh, Topology
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
-
-Array = NDArray[np.float64]
 
 
 class _Walk:
@@ -87,7 +85,7 @@ def chain_program(
     )
 
 
-def _ripples(topo: Topology, coefficients: LineCoefficients) -> tuple[NDArray[np.int64], list[tuple[float, float]]]:
+def _ripples(topo: Topology, coefficients: LineCoefficients) -> tuple[Integers, list[tuple[float, float]]]:
     """Where the harmonics of every joint begin and the last end; of each its order and cycles per turn of the input."""
     first, ripples = [0], list[tuple[float, float]]()
     for station, law in zip(topo.joints, coefficients.joints, strict=True):
@@ -187,5 +185,5 @@ def _behind_joint(topo: Topology, station: int) -> bool:
     return False
 
 
-def _split(pairs: list[tuple[int, float]]) -> tuple[NDArray[np.int64], Array]:
+def _split(pairs: list[tuple[int, float]]) -> tuple[Integers, Array]:
     return np.array([p[0] for p in pairs], dtype=np.int64), np.array([p[1] for p in pairs], dtype=float)

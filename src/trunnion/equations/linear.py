@@ -22,8 +22,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
@@ -31,8 +31,6 @@ from trunnion.equations.steady_base import refuse_own_motion, require_steady_bas
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

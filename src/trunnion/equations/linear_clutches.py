@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
@@ -22,8 +22,6 @@ from trunnion.laws import friction
 
 if TYPE_CHECKING:
     from trunnion.equations.coefficients import Assembly
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.topology import Topology
 
-Array = NDArray[np.float64]
 Column = Callable[[int, str], int]
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
@@ -21,7 +21,6 @@ from trunnion.errors import InputError
 if TYPE_CHECKING:
     from trunnion.equations.coefficients import Assembly
 
-Array = NDArray[np.float64]
 SLIDER_STAGES = 3
 """Slips with falling twist, sticks, slips with rising twist."""
 SLIDER_THEN = np.array([[1, 1, -1], [0, 2, -1], [1, 1, -1]], dtype=np.int64)

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.equations.line_system import Course
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

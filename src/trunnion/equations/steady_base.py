@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.loads import drive_places, given_shares, mean_load, station_loads
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 BALANCED = 1e-9
 """Torque left over, relative to the largest load, that counts as none."""
 

@@ -16,8 +16,8 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
 from trunnion.driveline.gears import GearPair
@@ -25,9 +25,6 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]
 
 
 class Link(IntEnum):

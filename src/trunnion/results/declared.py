@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trunnion.results.finding import Finding
 from trunnion.results.outcome import Outcome
 from trunnion.results.plain import plain
 
@@ -56,6 +57,12 @@ def over(axes: str, name: str, values: Any, unit: str = "", about: str = "", **m
     return Held(name, values, tuple(axes.split()), _attributes(unit, about) | more)
 
 
+def fields_over(axes: str, result: object, **units: str) -> Iterator[Held]:
+    """Attributes of a result over ``axes``, under their own names, each with its unit ("" for none)."""
+    for name, unit in units.items():
+        yield over(axes, name, getattr(result, name), unit)
+
+
 def remark(name: str, value: object) -> Held:
     """Something about the whole: an attribute of the dataset."""
     return Held(name, value, None, {})
@@ -74,7 +81,7 @@ def parameters_of(system: System) -> Iterator[Held]:
 
 
 class Result(ABC):
-    """Base of what analyses return; a subclass writes ``declared`` and ``__str__``."""
+    """Base of what analyses return; a subclass writes ``declared`` and its words, ``__str__`` or ``Described``."""
 
     @abstractmethod
     def declared(self) -> Iterator[Held]:
@@ -106,6 +113,32 @@ class Result(ABC):
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>{self.data._repr_html_()}"
+
+
+class Described(Result):
+    """A result whose words name speeds: in the unit of the line's description, or in another that is asked for."""
+
+    @abstractmethod
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+
+    def __str__(self) -> str:
+        return self.describe()
+
+
+class Judged(Described):
+    """One whose findings name speeds too."""
+
+    unit: str
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first; speeds in the unit of the line's description."""
+        return self.findings_in(self.unit)
+
+    @abstractmethod
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
 
 
 def _attributes(unit: str, about: str) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.couplings import RATINGS, rated_values
 from trunnion.analyses.assessment.own_limits import JUDGED, limited_values, name_of
@@ -20,14 +19,13 @@ from trunnion.analyses.limits.result import OtherLimit
 from trunnion.analyses.orders.response import response_of_table
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.arrays import Array, Places
 from trunnion.driveline.limits import LIMIT_KINDS
 from trunnion.driveline.parameters import Columns
 from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]
 Progress = Callable[[float], None]
 SCAN = 24
 """Steps of the grid of values."""

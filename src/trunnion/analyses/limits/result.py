@@ -9,10 +9,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.windows import StableWindows
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.arrays import Array, Codes, Integers
+from trunnion.results.declared import Described, Held, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from trunnion.driveline.operation import Operation
 
-Array = NDArray[np.float64]
 STABILITY = "stability"
 UNSEARCHED = "; what lies between these speeds was not searched"
 """Regions of instability may be narrower than the steps of the speed."""
@@ -53,7 +52,7 @@ class OtherLimit:
 
 
 @dataclass(frozen=True, repr=False)
-class StableLimit(Result):
+class StableLimit(Described):
     """Largest stable value of ``parameter`` at each speed, the stable ranges above it, and the other limits.
 
     speed (speed,) [rad/s]; limit (speed,) in SI units: the value below which nothing is unstable; kind (speed,): codes
@@ -68,7 +67,7 @@ class StableLimit(Result):
     unit: str
     speed: Array
     limit: Array
-    kind: NDArray[np.int8]
+    kind: Codes
     unstable: tuple[Array, ...]
     low: float
     high: float
@@ -81,7 +80,7 @@ class StableLimit(Result):
     speed_unit: str = "rad/s"
 
     @property
-    def intervals(self) -> NDArray[np.int64]:
+    def intervals(self) -> Integers:
         """How many separate unstable ranges each speed has."""
         return np.array([len(ranges) for ranges in self.unstable], dtype=np.int64)
 
@@ -261,9 +260,6 @@ class StableLimit(Result):
                 yield f"{o.name}: not reached in the range"
         if self.others_search:
             yield self.others_search
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def _between(ranges: Array, low: float, high: float) -> Array:

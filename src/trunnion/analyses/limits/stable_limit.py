@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.charts.building import family_for, way_named
 from trunnion.analyses.charts.stability_chart import Task, family_of_chart
@@ -24,6 +24,7 @@ from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, tur
 from trunnion.analyses.tongues.rows import Row, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.analyses.tongues.windows import StableWindows, stable_windows
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -33,7 +34,6 @@ from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart, require_pixels
 from trunnion.results.finding import Finding, Gravity
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 HIGHEST = float(np.deg2rad(60.0))
 ASIDE = 1e-3
@@ -149,8 +149,8 @@ class _Stability:
 
     speed: Array
     unstable: tuple[Array, ...]
-    at_once: NDArray[np.bool_]
-    failed: NDArray[np.bool_]
+    at_once: Flags
+    failed: Flags
 
     @classmethod
     def of(cls, region: Region, speed: Array) -> _Stability:

@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Codes, Complex
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.first_order import (
     LARGEST_DENSE,
@@ -32,8 +33,6 @@ from trunnion.results.verdict import Verdict, verdicts
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 TOLERANCE = 1e-7
 UNDAMPED = 1e-12
 
@@ -51,7 +50,7 @@ class StabilityAlong:
     radius: Array
     error: Array
     critical: Complex
-    verdict: NDArray[np.int8]
+    verdict: Codes
     period: float
 
     @property

@@ -14,11 +14,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
@@ -30,7 +31,7 @@ from trunnion.equations.harmonic_torques import cylinders
 from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Judged, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 
     from trunnion.driveline.operation import Operation
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 MULTIPLES = (1, 2)
 """Of a joint's own orders; the second is weaker by the square of the angle."""
 MARGIN = 0.10
@@ -87,7 +86,7 @@ class Crossing:
 
 
 @dataclass(frozen=True, repr=False)
-class CampbellDiagram(Result):
+class CampbellDiagram(Judged):
     """Modes over speed and what crosses them.
 
     speed (speed,) [rad/s]; mode (mode,) numbers, 2 first where the line can turn as a whole; frequency (speed, mode)
@@ -99,7 +98,7 @@ class CampbellDiagram(Result):
     """
 
     speed: Array
-    mode: NDArray[np.int64]
+    mode: Integers
     frequency: Array
     damping_ratio: Array
     kinetic: Array
@@ -113,11 +112,6 @@ class CampbellDiagram(Result):
     bent: bool
     remarks: tuple[Finding, ...]
     unit: str
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first; speeds in the unit of the line's description."""
-        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
@@ -211,9 +205,6 @@ class CampbellDiagram(Result):
     ) -> Axes:
         """Modes with their margin over speed, excitation lines, crossings; see ``plots.campbell_diagram.draw``."""
         return drawing(self, "plot")(self, axes, unit=unit, frequency_unit=frequency_unit, operating=operating)
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def campbell_diagram(

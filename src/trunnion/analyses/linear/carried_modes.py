@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
+from trunnion.arrays import Array, Complex
 from trunnion.numerics.spectrum import multipliers, without
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
 if TYPE_CHECKING:
     from trunnion.numerics.chain.dense_monodromy import Propagation
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 STEPS_PER_CYCLE = 4
 FEWEST = 32
 """Steps of a period to begin with."""

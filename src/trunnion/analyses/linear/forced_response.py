@@ -11,15 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.totals import common_turns, extremes, wave
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
 from trunnion.results.declared import Held, Result, axis, over, remark
-
-Array = NDArray[np.float64]
 
 LINEAR_RANGE = 0.1
 """Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.balancing import on_one_thread
+from trunnion.arrays import Array, Flags
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.kinematics import base_motion, ratio_values
@@ -24,8 +24,6 @@ from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""
 CLOSED = 1e-7

@@ -9,14 +9,12 @@ MAC(u, v) = |u*Mv|²/((u*Mu)(v*Mv)), weighed with the inertias.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex, Places
 from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.loads import load_slope
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 RIGID = 1e-6
 """Share of the highest frequency below which a mode counts as rigid rotation."""
 
@@ -70,7 +68,7 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     return found, shapes
 
 
-def matched(before: Complex, after: Complex) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def matched(before: Complex, after: Complex) -> tuple[Places, Places]:
     """Which columns belong together, by the largest sum of MAC; vectors in coordinates scaled with √M."""
     share = np.abs(before.conj().T @ after) ** 2
     share /= np.maximum((np.abs(before) ** 2).sum(axis=0)[:, None] * (np.abs(after) ** 2).sum(axis=0), 1e-300)

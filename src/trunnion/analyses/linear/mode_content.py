@@ -19,13 +19,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eig, eigh
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source
+from trunnion.arrays import Array, Complex
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 LEAST = 0.02
 """Part that the lesser of two modes must take for a name. Damping can make a line unstable far beside a sum where one
 of the two modes takes nearly all part."""

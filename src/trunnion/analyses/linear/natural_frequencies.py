@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
+from trunnion.arrays import Array, Complex, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import AlignedMatrices, frequencies
@@ -23,8 +23,6 @@ from trunnion.results.speeds import show_speed, speed_factor
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 NO_OSCILLATION = 1e-3
 """Share of the lowest elastic frequency below which an eigenvalue does not oscillate."""
 
@@ -169,7 +167,7 @@ def _companion(damping: Array, stiffness: Array | Complex) -> Array | Complex:
     return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
 
 
-def _oscillating(values: Complex, lowest: float) -> NDArray[np.intp]:
+def _oscillating(values: Complex, lowest: float) -> Places:
     """Places of eigenvalues with positive imaginary part, by modulus."""
     above = np.flatnonzero(values.imag > NO_OSCILLATION * lowest)
     return np.asarray(above[np.argsort(np.abs(values[above]))])

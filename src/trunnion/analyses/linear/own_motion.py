@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
@@ -27,7 +26,6 @@ from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
 from trunnion.numerics.integration.integration import integrate
 
-Array = NDArray[np.float64]
 SAMPLES = 256
 PER_CYCLE = 8
 """Samples at least per cycle of the highest mode."""

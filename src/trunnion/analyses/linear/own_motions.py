@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.free_balance import MOST, MOST_NUMBERS, FreeBalance, FreeMotions
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
+from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble
@@ -22,9 +22,6 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
 from trunnion.numerics import harmonics as fourier
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -36,14 +33,14 @@ class OwnMotions:
     change the speed where no torque depends on it (else None).
     """
 
-    found: NDArray[np.bool_]
+    found: Flags
     period: float
     slopes: Complex
     shift: Array
     drift: Array | None
-    undamped: NDArray[np.bool_]
+    undamped: Flags
 
-    def rates(self, which: NDArray[np.intp], tau: Array) -> Array:
+    def rates(self, which: Places, tau: Array) -> Array:
         """A (case, time, 2n, 2n) at input angles ``tau``."""
         slopes = self.slopes[which]
         # Of a real A the coefficients at −h are conjugates: the sum is that of cosines and sines.
@@ -55,7 +52,7 @@ class OwnMotions:
         flat = np.concatenate([flat.real, flat.imag], axis=1)
         return np.asarray((wave @ flat).reshape(len(which), len(tau), *slopes.shape[2:]))
 
-    def beside_neutral(self, which: NDArray[np.intp], matrix: Array) -> Array:
+    def beside_neutral(self, which: Places, matrix: Array) -> Array:
         """Matrices (case, 2n − 1, 2n − 1) without the shift of the phase; 0 for the multiplier of the speed."""
         finite = np.isfinite(matrix).all(axis=(1, 2))
         left = np.full((len(matrix), matrix.shape[1] - 1, matrix.shape[2] - 1), np.nan)

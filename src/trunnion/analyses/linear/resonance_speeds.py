@@ -31,7 +31,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Described, Held, axis, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
@@ -92,7 +92,7 @@ class Resonance:
 
 
 @dataclass(frozen=True, repr=False)
-class ResonanceSpeeds(Result):
+class ResonanceSpeeds(Described):
     """Resonances by ascending speed; ``findings`` say what of the line is left out; unit: that of printed speeds."""
 
     resonances: tuple[Resonance, ...]
@@ -144,9 +144,6 @@ class ResonanceSpeeds(Result):
             return "\n".join([none, *said])
         rows = [f"  {show_speed(r.speed, unit)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
         return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows, *said])
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:

@@ -8,18 +8,19 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.where_unstable import where_unstable
+from trunnion.arrays import Array, Codes, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import exciters
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Described, Held, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
@@ -30,13 +31,12 @@ if TYPE_CHECKING:
 
     from trunnion.driveline.operation import Operation
 
-Array = NDArray[np.float64]
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
 """Extra speeds about each resonance of the forced response, in half-widths of its peak."""
 
 
 @dataclass(frozen=True, repr=False)
-class SpeedSweep(Result):
+class SpeedSweep(Described):
     """Linear forced response over speed.
 
     speed (speed,) of the input [rad/s]; twist_amplitude (speed, shaft) [rad] and torque_amplitude (speed,
@@ -56,16 +56,16 @@ class SpeedSweep(Result):
     shafts: tuple[str, ...]
     findings: tuple[Finding, ...] = ()
     unit: str = "rad/s"
-    judged: Callable[[], NDArray[np.int8]] | None = None
+    judged: Callable[[], Codes] | None = None
     lossy: bool = False
 
     @cached_property
-    def verdict(self) -> NDArray[np.int8]:
+    def verdict(self) -> Codes:
         """Stability of the motion (speed,), codes of ``Verdict``; FAILED where it is not judged."""
         return np.full(len(self.speed), Verdict.FAILED, dtype=np.int8) if self.judged is None else self.judged()
 
     @property
-    def linear(self) -> NDArray[np.bool_]:
+    def linear(self) -> Flags:
         """Where the amplitudes can be trusted (speed,)."""
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
 
@@ -109,9 +109,6 @@ class SpeedSweep(Result):
                 "only"
             )
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings_in(unit))])
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def speed_sweep(

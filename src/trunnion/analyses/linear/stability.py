@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.carried_modes import carried_mode, judged_multipliers, propagated
@@ -28,6 +27,7 @@ from trunnion.analyses.linear.mode_content import (
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.orbit_result import speed_in_words
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -37,7 +37,7 @@ from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.declared import Held, Result, over, remark
+from trunnion.results.declared import Held, Judged, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
@@ -46,7 +46,6 @@ from trunnion.systems.periodic_linear import PeriodicLinearSystem
 if TYPE_CHECKING:
     from trunnion.numerics.chain.dense_monodromy import Propagation
 
-Array = NDArray[np.float64]
 NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1
@@ -84,7 +83,7 @@ class Found:
 
 
 @dataclass(frozen=True, repr=False)
-class Stability(Result):
+class Stability(Judged):
     """Floquet stability at one speed.
 
     multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
@@ -99,9 +98,9 @@ class Stability(Result):
     not count.
     """
 
-    multipliers: NDArray[np.complex128]
+    multipliers: Complex
     multiplier_error: Array
-    floquet_modes: NDArray[np.complex128]
+    floquet_modes: Complex
     spectral_radius: float
     error_estimate: float
     verdict: Verdict
@@ -136,7 +135,7 @@ class Stability(Result):
             return None, str(error)
 
     @property
-    def exponents(self) -> NDArray[np.complex128]:
+    def exponents(self) -> Complex:
         """Characteristic exponents ln σ / period, in 1/s (imaginary part modulo the excitation)."""
         with np.errstate(divide="ignore"):
             return np.asarray(np.log(self.multipliers) * (self.speed / self.period), dtype=complex)
@@ -169,11 +168,6 @@ class Stability(Result):
         largest = mode[np.abs(mode[:n]).argmax()]
         state = np.real(mode * (size / largest))
         return np.concatenate([state[:n], state[n:] * self.speed])
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first; speeds in the unit of the line's description."""
-        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
@@ -220,9 +214,6 @@ class Stability(Result):
         if self.no_response:
             lines.append(f"  without the forced response: {self.no_response}")
         return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def stability(

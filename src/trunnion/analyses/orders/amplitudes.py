@@ -6,12 +6,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orders.channels import Channels
+from trunnion.arrays import Array, Complex
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Key = tuple[Fraction, float]
 
 

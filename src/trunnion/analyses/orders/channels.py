@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.topology import Topology
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
 
 
 def channels_of_harmonics(
-    topo: Topology, x: Complex, h: NDArray[np.int64], times: int, ratio: Array, relative: Array
+    topo: Topology, x: Complex, h: Integers, times: int, ratio: Array, relative: Array
 ) -> Complex:
     """Channels (case, h, channel) without torque, of the harmonics x (case, h, n) of the unknowns at ``h`` (h,).
 

@@ -18,16 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.orders.straight import SINGULAR
+from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics import harmonics as fourier
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 NARROW = 1e-2
 """Share of the speed below which a range is too narrow to be interpolated from its ends."""

@@ -6,17 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.speeds import show_speed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import BaseOfExcitation
 from trunnion.equations.kinematics import base_motion, ratio_values
@@ -27,10 +27,6 @@ from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Link, Topology
 from trunnion.errors import ComputationError
 from trunnion.numerics import harmonics as fourier
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
@@ -25,6 +25,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.stable_speeds import verdicts_at
+from trunnion.arrays import Array, Codes, Complex, Places
 from trunnion.driveline.arguments import numbers
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
@@ -40,7 +41,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
-Array = NDArray[np.float64]
 TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
 NEAR_ENOUGH = 1e-9
 """Orders asked for are found within this."""
@@ -168,7 +168,7 @@ def _checked_orders(orders: Iterable[float]) -> Array:
 
 
 def _result(
-    assembly: Assembly, spectrum: OrderSpectrum, judged: Callable[[], NDArray[np.int8]], wanted: Array | None
+    assembly: Assembly, spectrum: OrderSpectrum, judged: Callable[[], Codes], wanted: Array | None
 ) -> OrderResponse:
     places, topo = spectrum.channels, assembly.topology
     size = np.abs(spectrum.amplitude[..., places.torque])
@@ -219,7 +219,7 @@ def _limits(assembly: Assembly) -> dict[str, dict[str, float]]:
     return found
 
 
-def _picked(values: NDArray[np.complex128], places: NDArray[np.intp]) -> NDArray[np.complex128]:
+def _picked(values: Complex, places: Places) -> Complex:
     """The columns at ``places``, zeros where one is −1."""
     found = np.zeros((len(values), len(places), values.shape[2]), dtype=complex)
     there = places >= 0

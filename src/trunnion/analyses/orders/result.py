@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
 from trunnion.analyses.orders.where_unstable import where_unstable
-from trunnion.results.declared import Held, Result, along, axis, over, remark
+from trunnion.arrays import Array, Codes, Complex, Flags
+from trunnion.results.declared import Held, Judged, along, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from trunnion.driveline.operation import Operation
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 WAVE_POINTS = 64
 """Points of a wave form per cycle of its highest order."""
 WORTH_SHOWING = 1e-6
@@ -51,7 +49,7 @@ class OrderWave:
 
 
 @dataclass(frozen=True, repr=False)
-class OrderResponse(Result):
+class OrderResponse(Judged):
     """Linear steady response by order and speed.
 
     speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input. An excitation fixed in time
@@ -81,7 +79,7 @@ class OrderResponse(Result):
     joints: tuple[str, ...]
     stress_factor: Array
     spectrum: OrderSpectrum
-    judged: Callable[[], NDArray[np.int8]]
+    judged: Callable[[], Codes]
     remarks: tuple[Finding, ...]
     unit: str
     limits: Mapping[str, Mapping[str, float]]
@@ -174,17 +172,17 @@ class OrderResponse(Result):
         return np.asarray(np.maximum(np.abs(low), np.abs(high)))
 
     @property
-    def linear(self) -> NDArray[np.bool_]:
+    def linear(self) -> Flags:
         """Where the amplitudes can be trusted (speed,): joints' inputs stay within ``linear_range``."""
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
 
     @cached_property
-    def verdict(self) -> NDArray[np.int8]:
+    def verdict(self) -> Codes:
         """Stability of the motion (speed,), codes of ``Verdict``; FAILED where it cannot be judged."""
         return self.judged()
 
     @property
-    def unstable(self) -> NDArray[np.bool_]:
+    def unstable(self) -> Flags:
         """Where a small disturbance grows (speed,), so that the steady motion is not reached."""
         return np.asarray(self.verdict == Verdict.UNSTABLE)
 
@@ -229,11 +227,6 @@ class OrderResponse(Result):
             float(self.speed[at]), time, seen[:, places.torque], seen[:, places.twist], rotation,
             self.springs, self.inertias,
         )  # fmt: skip
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first; speeds in the unit of the line's description."""
-        return self.findings_in(self.unit)
 
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, gravest first, speeds in ``unit``."""
@@ -337,9 +330,6 @@ class OrderResponse(Result):
         k = int(np.flatnonzero(self.order == order)[0])
         name = order_name(order, self.frequency[k])
         return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def order_name(order: float, frequency: float) -> str:

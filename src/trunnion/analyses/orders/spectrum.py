@@ -12,13 +12,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
 from trunnion.analyses.orders.straight import loss_matrix, straight_about_first, straight_response
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.exciters import (
     BaseOfExcitation,
@@ -40,9 +40,6 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
     from trunnion.analyses.orders.own_orders import OwnBase, OwnOrders
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 
 FEWEST, MOST, ROUGH_REACH = 3, 48, 1
 """Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""

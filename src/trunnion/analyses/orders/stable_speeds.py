@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.along import stability_along
+from trunnion.arrays import Array, Codes
 from trunnion.equations.coefficients import Assembly, LineCoefficients
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import bent
@@ -16,8 +16,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
-Array = NDArray[np.float64]
-Codes = NDArray[np.int8]
 GROWS = 1e-9
 """Real part of an eigenvalue, relative to the largest, from which a straight line counts as unstable."""
 

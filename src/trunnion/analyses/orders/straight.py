@@ -11,15 +11,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.equations.coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 RESIDUAL = 1e-13
 ROUNDING = 1e-15
@@ -53,7 +50,7 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
     tied = np.where(parent >= 0, parent, 0)
     every = np.arange(n)
 
-    def dynamic(rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Complex:
+    def dynamic(rows: Places, columns: Places) -> Complex:
         m, c, k, h = (part[:, rows, columns].T[:, None] for part in (mass, damping, stiffness, loss))
         w = frequency[None]
         return np.asarray(k - w**2 * m + 1j * (w * c + np.sign(w) * h)).reshape(n, orders * cases)
@@ -96,7 +93,7 @@ def straight_about_first(
     return np.asarray(first + straight_response(topo, held, *steady, rest))
 
 
-def _dense(diagonal: Complex, coupling: Complex, parent: NDArray[np.int64], right: Complex) -> Complex:
+def _dense(diagonal: Complex, coupling: Complex, parent: Integers, right: Complex) -> Complex:
     matrix = np.diag(diagonal)
     for i, p in enumerate(parent):
         if p >= 0:

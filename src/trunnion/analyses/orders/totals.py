@@ -5,14 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
+from trunnion.arrays import Array, Complex
 from trunnion.equations.topology import LONGEST_PERIOD
 from trunnion.numerics.cycle_extremes import cycle_extremes
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def common_base(orders: tuple[Fraction, ...]) -> Fraction | None:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Codes
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
-Array = NDArray[np.float64]
 MOST_STRETCHES = 4
 
 
-def where_unstable(speeds: Array, verdict: NDArray[np.int8], unit: str, *, lossy: bool = False) -> Iterator[Finding]:
+def where_unstable(speeds: Array, verdict: Codes, unit: str, *, lossy: bool = False) -> Iterator[Finding]:
     """Findings on codes of ``Verdict`` (speed,) at ``speeds`` [rad/s]; lossy: with a loss factor at all frequencies."""
     if np.any(failed := verdict == Verdict.FAILED):
         where = "" if failed.all() else f" at {failed.sum()} of {len(failed)} speeds"

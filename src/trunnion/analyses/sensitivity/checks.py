@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import OF_RESPONSE, by_case, of_line, of_response
 from trunnion.analyses.assessment.check import Check
@@ -26,11 +25,11 @@ from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.growth import radius_slope
 from trunnion.analyses.sensitivity.responses import SpectrumSlope, solved_exactly, spectrum_slope
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 
-Array = NDArray[np.float64]
 ROUNDS, AROUND = 4, 17
 """Rounds of so many speeds each that close in on a peak."""
 

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array, Flags
+
 Values = Callable[[float], Array | None]
 """What a line beside one shows, by the share of a parameter's size that it lies away; None where it is refused."""
 CENTRAL = np.array([-2.0, -1.0, 1.0, 2.0])
@@ -68,7 +69,7 @@ def slope(values: Values, step: float = STEP) -> tuple[Array, Array] | None:
     return None
 
 
-def _kinked(here: Array, rows: Array) -> NDArray[np.bool_]:
+def _kinked(here: Array, rows: Array) -> Flags:
     """Whether the function bends at once: its bend over two steps is twice that over one, where a smooth one's is four
     times it and rounding's is anything."""
     far, near = rows[0] + rows[3] - 2 * here, rows[1] + rows[2] - 2 * here

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import several
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, Columns, PackedLine, Parameter
@@ -15,7 +15,6 @@ from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 ANGLES = ("rad",)
 
 

@@ -17,15 +17,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.carried_modes import carried_mode, judged_multipliers, propagated
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
+from trunnion.arrays import Array
 from trunnion.equations.linear import line_matrices, periodic_linear_system, rigid_motions
 from trunnion.numerics.spectrum import spectral_radius
 
-Array = NDArray[np.float64]
 TOLERANCE = 1e-12
 COALESCE = 1e-5
 """Relative error of a derivative by that of the monodromy matrix, from which two multipliers count as one."""

@@ -13,15 +13,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.natural_frequencies import damped_modes, natural_frequencies
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
+from trunnion.arrays import Array, Complex
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 COINCIDE = 1e-7
 """Relative distance below which two modes count as one frequency, which has no derivative of its own."""
 

@@ -21,11 +21,11 @@ from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, STEP, Values, central, slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 PARTS = ("amplitude", "base", "mean", "damping", "loss")
 LINEAR = 1e-4
 """Share of a response by which the largest of the steps changes it."""

@@ -8,11 +8,11 @@ from math import ceil, log10, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.remedies.result import STEPS
 from trunnion.analyses.assessment.remedies.variables import Scale, scale_of
 from trunnion.analyses.sensitivity.directions import Direction
+from trunnion.arrays import Array
 from trunnion.driveline.quantities import KINDS, SPEED, shown
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
@@ -25,7 +25,6 @@ from trunnion.results.units import with_unit
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 STRONGEST = 3
 """Parameters printed of each quantity."""
 PRINTED = 6

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
@@ -30,6 +30,7 @@ from trunnion.analyses.sensitivity.result import (
 from trunnion.analyses.sensitivity.tips import tip_slopes
 from trunnion.analyses.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
 from trunnion.analyses.tongues.result import Tongues
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import numbers, several
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -40,7 +41,6 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 
-Array = NDArray[np.float64]
 KINDS = ("frequencies", "growth", "torques", "checks")
 MOST_CHECKS = 6
 """Checks that are differentiated unless they are named."""

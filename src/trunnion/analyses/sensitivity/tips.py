@@ -13,16 +13,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.sensitivity.differences import CENTRAL, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, direction
 from trunnion.analyses.sensitivity.growth import RadiusSlope, radius_slope
 from trunnion.analyses.tongues.result import Tongue, Tongues
+from trunnion.arrays import Array
 from trunnion.driveline.parameters import SPEED, Columns
 from trunnion.errors import ComputationError, InputError
 
-Array = NDArray[np.float64]
 STEP = 1e-5
 """Share of x between the places where the gradient is compared."""
 ROUNDS = 6

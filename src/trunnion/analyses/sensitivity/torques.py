@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.along import stability_along
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
@@ -19,11 +18,11 @@ from trunnion.analyses.orders.totals import extremes
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.responses import spectrum_slope
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
 
-Array = NDArray[np.float64]
 Values = Callable[[Driveline], Array]
 
 
