@@ -17,7 +17,7 @@ from test_exported_code import view_of
 
 import trunnion as tn
 from trunnion.app.jobs import Job
-from trunnion.app.worker import _Worker
+from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter
 
 BOX = ((tn.rpm(650), tn.rpm(800), 5), (tn.deg(10), tn.deg(19), 4))
@@ -28,7 +28,7 @@ def test_a_zoom_after_many_clicks_asks_for_no_chart(monkeypatch: pytest.MonkeyPa
     calls: list[str] = []
     charted = tn.stability_chart
     monkeypatch.setattr(tn, "stability_chart", lambda *a, **k: (calls.append("chart"), charted(*a, **k))[1])
-    worker, toml = _Worker(BytesIO(), BytesIO(), 1), starter("two-shaft")
+    worker, toml = Worker(BytesIO(), BytesIO(), 1), starter("two-shaft")
 
     def look(at_x: float) -> Any:
         settings = {"across": "12", "up": "10", "at_x": f"{at_x}", "at_y": "15", "look": "True"}
@@ -36,7 +36,7 @@ def test_a_zoom_after_many_clicks_asks_for_no_chart(monkeypatch: pytest.MonkeyPa
         return {step.name: step for step in view.steps(view.session.document.line)}
 
     def compute(job: Job) -> Any:
-        return worker._compute(job, lambda share: None)
+        return worker.compute(job, lambda share: None)
 
     steps = look(700.0)
     whole = compute(steps["chart"].job(toml))

@@ -111,9 +111,9 @@ def test_what_numpy_has_cost_is_counted_until_compiling_pays(monkeypatch):
     chart = family(catalogue("two-shaft-cardan"), 0.5, 2.0, 0.5, (8, 6))
     x, y = np.array([1.0]), np.array([0.3])
     monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
-    monkeypatch.setattr(prices, "_in_numpy", 0.0)
+    monkeypatch.setattr(prices, "spent_in_numpy", 0.0)
     monkeypatch.setattr(prices, "COMPILING", 10.0)
-    assert chart.in_numpy(x, y) is not None and prices._in_numpy > 0
+    assert chart.in_numpy(x, y) is not None and prices.spent_in_numpy > 0
     monkeypatch.setattr(prices, "COMPILING", 0.0)
     assert chart.in_numpy(x, y) is None
 
@@ -127,10 +127,10 @@ def test_the_first_charts_of_an_installation_take_numpy_and_later_ones_the_kerne
     by_kernels = stability_chart(catalogue("two-shaft-cardan"), *axes)
     assert not built  # see conftest: compiling pays in tests
     monkeypatch.setattr(chart_families, "at_hand", lambda *functions: False)
-    monkeypatch.setattr(prices, "_in_numpy", 0.0)
+    monkeypatch.setattr(prices, "spent_in_numpy", 0.0)
     monkeypatch.setattr(prices, "COMPILING", 10.0)
     first = stability_chart(catalogue("two-shaft-cardan"), *axes)
-    assert built[0] is not None and prices._in_numpy > 0
+    assert built[0] is not None and prices.spent_in_numpy > 0
     assert np.all(
         np.abs(first.spectral_radius - by_kernels.spectral_radius) <= first.error_estimate + by_kernels.error_estimate
     )

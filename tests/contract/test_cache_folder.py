@@ -15,16 +15,17 @@ import trunnion
 HOMES = ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "TRUNNION_CACHE")
 STEP = """
 import warnings
+from pathlib import Path
 from trunnion.errors import InputRemark
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always", InputRemark)
     from trunnion.numerics.jit import njit
-    from trunnion.numerics.compiled import _module
+    from trunnion.numerics.compiled import kernel_file
     @njit(cache=True)
     def double(x):
         return 2 * x
-    text = "from numba import njit\\n@njit(cache=True)\\ndef triple(x):\\n    return 3 * x\\n"
-    assert double(2) + _module("triple", text, "digest").triple(2) == 10
+    Path("triple.py").write_text("from numba import njit\\n@njit(cache=True)\\ndef triple(x):\\n    return 3 * x\\n")
+    assert double(2) + kernel_file("triple.py").triple(2) == 10
 print(*(s.message for s in said if issubclass(s.category, InputRemark)), sep="\\n")
 """
 
@@ -44,8 +45,8 @@ def said_where(folder: Path, *before: str, cache: Path | str | None) -> list[str
 
 def test_the_cache_goes_where_it_is_told(tmp_path):
     assert said_where(tmp_path, cache=tmp_path / "deep" / "cache") == [""]
-    kept = sorted(path.name.split("-")[0] for path in (tmp_path / "deep" / "cache").iterdir())
-    assert kept == ["digest", "package"]
+    kept = {path.name.split("-")[0] for path in (tmp_path / "deep" / "cache").iterdir()}
+    assert len(kept) == 2 and "package" in kept  # what belongs to the package, and the file beside it
 
 
 @pytest.mark.slow

@@ -84,7 +84,7 @@ def test_bounds_hold_within_boxes() -> None:
     parts, turned = terms.parts(at.b, at.slope), terms.moved_parts(at).sum(axis=2)
     middle = terms.matrix(at.b, at.slope)
     fine = floquet_form(np.repeat(middle, 2, axis=1), terms.energy())
-    crude = lyapunov._first_order(terms, co, at, fine).crude
+    crude = lyapunov.first_order(terms, co, at, fine).crude
     rng = np.random.default_rng(1)
     left = []
     for _ in range(100):
@@ -121,7 +121,7 @@ def test_the_bound_is_above_what_it_bounds(line: tn.Driveline, speeds: tuple[flo
     at = ratios(assembly, (low + high) / 2, co, tau)
     terms = BoxTerms.of(assembly, co)
     form = floquet_form(terms.matrix(at.b, at.slope), terms.energy())
-    first = lyapunov._first_order(terms, co, at.every_other(), form)
+    first = lyapunov.first_order(terms, co, at.every_other(), form)
     here = tau[::2] + shift
     wave = np.exp(2j * np.outer(here, np.fft.fftfreq(lyapunov.STEPS) * lyapunov.STEPS)) / lyapunov.STEPS
     rng = np.random.default_rng(4)
@@ -166,8 +166,8 @@ def test_rounding_is_a_thousandth_of_what_is_allowed_for() -> None:
     a = terms.matrix(at.b, at.slope)
     modes = floquet_form_module.harmonics(a, terms.energy())[0]
     form = floquet_form(a, terms.energy())
-    allowed = lyapunov.SLACK * lyapunov._carried(a, form.lam, form.most, form.most_slope)
-    first = lyapunov._first_order(terms, co, at.every_other(), form)
+    allowed = lyapunov.SLACK * lyapunov.carried_size(a, form.lam, form.most, form.most_slope)
+    first = lyapunov.first_order(terms, co, at.every_other(), form)
     turning, d = lyapunov.solved(first.b, form)
     places = np.arange(0, lyapunov.STEPS, 37)
     angle = exact(2) * np.arctan2(exact(1), exact(0)) * places / lyapunov.STEPS

@@ -158,7 +158,7 @@ def test_both_ways_to_judge_many_lines_agree(damping: float) -> None:
     table = assembly.table(8, 150.0)
     table[:, 0] *= np.linspace(0.5, 1.5, 8)
     lines = ManyLines.of(assembly, table, True, 1)
-    ordinary, stepped = lines._integrated(table, 1e-10), lines._stepped(table)
+    ordinary, stepped = lines.integrated(table, 1e-10), lines.stepped(table)
     assert np.all(np.abs(ordinary.radius - stepped.radius) <= ordinary.error + stepped.error)
     assert np.all(stepped.error < 1e-3) and np.array_equal(ordinary.verdict, stepped.verdict)
 

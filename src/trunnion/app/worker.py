@@ -27,7 +27,7 @@ class _Stopped(Exception):
     """The job is not wanted any more."""
 
 
-class _Worker:
+class Worker:
     def __init__(self, inward: IO[bytes], outward: IO[bytes], threads: int) -> None:
         self.inward, self.outward, self.threads = inward, outward, threads
         self.jobs: queue.Queue[Start] = queue.Queue()
@@ -59,7 +59,7 @@ class _Worker:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", InputRemark)
             try:
-                value = self._compute(start.job, self._progress(start.number))
+                value = self.compute(start.job, self._progress(start.number))
             except _Stopped:
                 return Answer(start.number, "stopped", "stopped")
             except InputError as error:
@@ -82,7 +82,7 @@ class _Worker:
 
         return report
 
-    def _compute(self, job: Job, progress: Callable[[float], None]) -> Any:
+    def compute(self, job: Job, progress: Callable[[float], None]) -> Any:
         from trunnion.app import shown
 
         progress(0.0)
@@ -108,7 +108,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's, which closes the pipe
     outward = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever prints must not mix with the answers
-    _Worker(sys.stdin.buffer, outward, int(sys.argv[1])).run()
+    Worker(sys.stdin.buffer, outward, int(sys.argv[1])).run()
 
 
 if __name__ == "__main__":

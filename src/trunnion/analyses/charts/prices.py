@@ -43,26 +43,26 @@ def without_groups(size: int, pixels: int, mean_phase: float, longest_phase: flo
 
 COMPILING = 12.0
 """Seconds that compiling a line's kernels takes."""
-_in_numpy = 0.0
+spent_in_numpy = 0.0
 
 
 @contextmanager
 def instead_of_compiling() -> Iterator[None]:
     """Count the time spent within it, in NumPy, towards what compiling would have taken."""
-    global _in_numpy
+    global spent_in_numpy
     begin = time.thread_time()
     try:
         yield
     finally:
-        _in_numpy += time.thread_time() - begin
+        spent_in_numpy += time.thread_time() - begin
 
 
 def compiling_pays() -> bool:
     """Whether this process has spent as much in NumPy as compiling takes: never more than twice the cheaper way."""
-    return _in_numpy > COMPILING
+    return spent_in_numpy > COMPILING
 
 
 def compile_at_once() -> None:
     """From now on kernels are compiled, as if enough had been spent."""
-    global _in_numpy
-    _in_numpy = float("inf")
+    global spent_in_numpy
+    spent_in_numpy = float("inf")

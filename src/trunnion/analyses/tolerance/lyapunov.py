@@ -30,7 +30,7 @@ parameters, are products of norms.
 absolute values (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 24.1), so W by 5e-15 and W′ by
 5e-15 of the sums over their harmonics that bound them everywhere; the joints' laws, and so A, by some 10 u of each
 entry; products of matrices of 2n ≤ 6 by 2n u of the product of norms. All of these are less than 1e-13 of
-‖W′‖ + ‖W‖(‖A‖ + |Λ|), bounded everywhere (``_carried``), and likewise with S_v; ``SLACK`` adds a thousand times as
+‖W′‖ + ‖W‖(‖A‖ + |Λ|), bounded everywhere (``carried_size``), and likewise with S_v; ``SLACK`` adds a thousand times as
 much, before samples are turned into bounds. Q is what was computed, and its defect WQ − I counts. Tests compare with
 80-bit arithmetic.
 """
@@ -59,7 +59,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SLACK = 1e-10
-"""Share of ``_carried`` added for rounding: a thousand times what it can be."""
+"""Share of ``carried_size`` added for rounding: a thousand times what it can be."""
 EVERY = 2
 """Every how many of the samples the second order is taken."""
 
@@ -86,13 +86,13 @@ def judge_boxes(assembly: Assembly, low: Array, high: Array) -> Judged:
     form = floquet_form(a, terms.energy())
     here = at.every_other()
     with np.errstate(all="ignore"):
-        first = _first_order(terms, co, here, form)
+        first = first_order(terms, co, here, form)
         largest, blame = _largest(terms, co, a[:, ::2], form, first)
     return Judged((largest < 0) & (form.radius < 1), form.radius, largest, blame)
 
 
 @dataclass(frozen=True)
-class _First:
+class FirstOrder:
     """What the box does to first order, variable by variable, and what bounds the rest.
 
     width (boxes, variables): half-widths; b, s (boxes, STEPS, variables, 2n, 2n): B_v and S_v at the samples; s_most,
@@ -118,7 +118,7 @@ class _First:
     crude: Array
 
 
-def _first_order(terms: BoxTerms, co: Coefficients, at: Ratios, form: FloquetForm) -> _First:
+def first_order(terms: BoxTerms, co: Coefficients, at: Ratios, form: FloquetForm) -> FirstOrder:
     width = np.concatenate([co.dk, co.dc, co.dg, co.ds[:, None]], axis=1)
     parts = terms.parts(at.b, at.slope)
     power = terms.power
@@ -147,7 +147,7 @@ def _first_order(terms: BoxTerms, co: Coefficients, at: Ratios, form: FloquetFor
     carried = (s_slope + 2 * s_most * _size(form.lam)[:, None] + most + _size(d)) * most_w
     joints = co.angle.shape[1]
     rest_most = _bounded(rest, SLACK * carried, HARMONICS + 4 * joints, co, 4 * joints)
-    return _First(
+    return FirstOrder(
         width, b, s, s_most, s_slope, d, rest_most, most, steepest, most_t, steepest_t, w @ parts @ q, power, crude
     )
 
@@ -188,7 +188,7 @@ def _size(matrices: Complex) -> Array:
     return np.asarray(np.linalg.norm(matrices, axis=(-2, -1)))
 
 
-def _largest(terms: BoxTerms, co: Coefficients, a: Array, form: FloquetForm, first: _First) -> tuple[Array, Array]:
+def _largest(terms: BoxTerms, co: Coefficients, a: Array, form: FloquetForm, first: FirstOrder) -> tuple[Array, Array]:
     """A bound all over the turn and the box on the largest eigenvalue of the Hermitian part of H, for each box: below
     zero it proves; and what stands against that by variable."""
     size, joints = a.shape[-1], co.angle.shape[1]
@@ -199,7 +199,7 @@ def _largest(terms: BoxTerms, co: Coefficients, a: Array, form: FloquetForm, fir
     near = eps < 0.5
     eps = np.where(near, eps, 0.5)
     inverse = q_most / (1 - eps)
-    carried = _carried(a, form.lam, form.most, form.most_slope)
+    carried = carried_size(a, form.lam, form.most, form.most_slope)
     rest = form.slope + form.w @ a - form.lam[:, None] @ form.w
     left = _bounded(rest, SLACK * carried, HARMONICS // 2 + 3 * joints, co, 3 * joints) * inverse
     r = first.width
@@ -246,7 +246,7 @@ def _herm(matrices: Complex) -> Array:
     return np.asarray(np.abs(matrices + matrices.conj().swapaxes(-1, -2)) / 2)
 
 
-def _pairs(first: _First) -> Array:
+def _pairs(first: FirstOrder) -> Array:
     """Second order at the samples, entries of Hermitian parts at their largest over the turn, gathered by variable
     (boxes, variables, 2n, 2n)."""
     r, count = first.width, first.width.shape[1]
@@ -266,12 +266,12 @@ def _pairs(first: _First) -> Array:
     return gathered
 
 
-def _mirrored(first: _First, s: Complex, b: Complex, bt: Complex, v: int, w: int) -> Complex:
+def _mirrored(first: FirstOrder, s: Complex, b: Complex, bt: Complex, v: int, w: int) -> Complex:
     bent = np.einsum("t,bntij->bnij", first.power[:, v] * first.power[:, w] / 2, bt)
     return np.asarray(s[:, :, w] @ b[:, :, v] - first.d[:, None, w] @ s[:, :, v] + bent)
 
 
-def _carried(a: Array, lam: Complex, most_w: Array, most_slope: Array) -> Array:
+def carried_size(a: Array, lam: Complex, most_w: Array, most_slope: Array) -> Array:
     """‖W′‖ + ‖W‖(‖A‖ + |Λ|) of each box, bounded everywhere: rounding errors are shares of it."""
     largest = np.linalg.norm(a, axis=(2, 3)).max(axis=1) + _size(lam)
     return np.asarray(most_slope + most_w * largest)

@@ -77,8 +77,8 @@ class ManyLines:
 
     def judged(self, table: Array, tolerance: float) -> Pixels:
         """Radius, error, critical multiplier and verdict of rows of ``table``, each (rows,)."""
-        stiff = np.mean(_too_coarse(self._integrated(table[:FIRST], tolerance))) > 0.5
-        ways = (lambda rows: self._integrated(rows, tolerance)), self._stepped
+        stiff = np.mean(_too_coarse(self.integrated(table[:FIRST], tolerance))) > 0.5
+        ways = (lambda rows: self.integrated(rows, tolerance)), self.stepped
         way, other = ways[::-1] if stiff else ways
         found = _joined([way(table[start : start + AT_ONCE]) for start in range(0, len(table), AT_ONCE)])
         coarse = np.flatnonzero(_too_coarse(found))
@@ -86,12 +86,12 @@ class ManyLines:
             put_better(other(table[coarse]), found, coarse)
         return found
 
-    def _integrated(self, table: Array, tolerance: float) -> Pixels:
+    def integrated(self, table: Array, tolerance: float) -> Pixels:
         values, bounds = quantities(*self.matrices(table, tolerance))
         size, aside = self.assembly.topology.size, self.set_aside(table)
         return judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), size, aside)
 
-    def _stepped(self, table: Array) -> Pixels:
+    def stepped(self, table: Array) -> Pixels:
         """The same by steps of exponentials; an infinite error where the shortest ones do not tell."""
         topo = self.assembly.topology
         steps = steps_that_see(fastest_cycles(self.assembly, self.period))
