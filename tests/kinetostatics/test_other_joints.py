@@ -125,7 +125,7 @@ def test_plane_of_an_ideal_joint_turns_the_planes_behind_it():
 def test_kinetostatics_turn_as_the_dynamic_equations_do():
     """Speeds and accelerations of a line with every kind of joint they share, against ``base_motion``."""
     from trunnion.equations.coefficients import assemble
-    from trunnion.equations.kinematics import base_motion, ratio_values
+    from trunnion.equations.kinematics import base_motion
 
     line = tn.Driveline(
         [
@@ -149,7 +149,7 @@ def test_kinetostatics_turn_as_the_dynamic_equations_do():
     result = tn.kinetostatics(line, speed=2.0, turns=5)
     assembly = assemble(line)
     coefficients = assembly.coefficients(assembly.table(1))
-    base = base_motion(assembly.topology, coefficients, result.input_angle, ratio_values(assembly.topology))
+    base = base_motion(assembly.topology, coefficients, result.input_angle)
     assert np.allclose(result.output_speed, 2 * base.speed[0, :, -1], atol=1e-13)
     assert np.allclose(result.output_acceleration, 4 * base.acceleration[0, :, -1], atol=1e-13)
 

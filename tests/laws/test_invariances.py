@@ -14,7 +14,7 @@ from oracles.sampling import quick_every
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
 from trunnion.equations.linear import line_matrices
 
 
@@ -103,7 +103,7 @@ def last_disk(line: tn.Driveline) -> tuple[np.ndarray, np.ndarray]:
     """Base speed of the last disk over a turn and the forcing on it."""
     assembly, tau = assemble(line), np.linspace(0, 2 * np.pi, 50)
     coefficients = assembly.coefficients(assembly.table(1, 1.0))
-    motion = base_motion(assembly.topology, coefficients, tau, ratio_values(assembly.topology))
+    motion = base_motion(assembly.topology, coefficients, tau)
     return motion.speed[0, :, -1], line_matrices(assembly.topology, coefficients, tau).forcing[0, :, -1]
 
 

@@ -15,7 +15,7 @@ from oracles.written_out import nonlinear_line
 
 import trunnion as tn
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
 from trunnion.equations.linear import line_matrices
 
 SPEED = 37.0
@@ -26,7 +26,7 @@ def base(assembly: Assembly, time: float, *, twisted: bool) -> tuple[np.ndarray,
     """Angles, rates and accelerations of the unknowns in the base motion."""
     topo = assembly.topology
     coefficients = assembly.coefficients(assembly.table(1, SPEED), statically_twisted=twisted)
-    motion = base_motion(topo, coefficients, np.array([SPEED * time]), ratio_values(topo))
+    motion = base_motion(topo, coefficients, np.array([SPEED * time]))
     stations = [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]
     return (
         motion.angle[0, 0, stations],

@@ -13,7 +13,7 @@ from oracles.written_out import nonlinear_line
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_system import LineSystem, line_system
 
 SPEED = 37.0
@@ -23,7 +23,7 @@ def straight_angles(line: LineSystem) -> np.ndarray:
     """Angles of the unknowns at t = 0 with straight joints: what deviations are counted from."""
     topo = line.assembly.topology
     co = line.assembly.coefficients(line.assembly.table(1, line.speed), statically_twisted=False)
-    motion = base_motion(topo, co.straight, np.zeros(1), ratio_values(topo))
+    motion = base_motion(topo, co.straight, np.zeros(1))
     return motion.angle[0, 0, [topo.reference[g] for g, c in enumerate(topo.coordinate) if c >= 0]]
 
 

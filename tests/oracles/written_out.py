@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import ratio_values
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
 
 Array = NDArray[np.float64]
@@ -89,4 +89,4 @@ def nonlinear_line(assembly: Assembly, table: Array) -> NonlinearLine:
     coefficients = assembly.coefficients(table, statically_twisted=False)
     entered = {station.element: s for s, station in enumerate(topo.stations) if station.link is Link.SHAFT}
     offset = np.array([sum(coefficients.shift[0, entered[i]] for i in c.shafts) for c in topo.compliances])
-    return NonlinearLine(topo, coefficients, ratio_values(topo), offset)
+    return NonlinearLine(topo, coefficients, topo.ratio_values, offset)

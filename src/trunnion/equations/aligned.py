@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
-from trunnion.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -31,26 +30,12 @@ class AlignedMatrices:
 def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedMatrices:
     """Mass, damping and stiffness of the aligned line, one per case."""
     cases, n = len(coefficients.inertia), topo.size
-    mass = np.zeros((n, cases))
-    moves = topo.unknown_of >= 0
-    turned = coefficients.inertia * topo.relative_ratios**2
-    np.add.at(mass, topo.unknown_of[moves], turned.T[moves])
     elongations = topo.elongations
     damping, stiffness, loss = (
         (elongations.T * part[:, None, :]) @ elongations if part.any() else np.zeros((cases, n, n))
         for part in (coefficients.damping, coefficients.stiffness, coefficients.loss)
     )
-    return AlignedMatrices(np.ascontiguousarray(mass.T), damping, stiffness, loss)
-
-
-def elongation(topo: Topology, compliance: int) -> Array:
-    """Twist of one compliance per rotation of every unknown (n,)."""
-    return np.asarray(topo.elongations[compliance])
-
-
-def relative_ratio(topo: Topology, station: int) -> float:
-    """Mean speed of a station over that of its group's first station."""
-    return float(topo.relative_ratios[station])
+    return AlignedMatrices(topo.on_unknowns(coefficients.inertia), damping, stiffness, loss)
 
 
 def rigid_rotation(topo: Topology) -> Array:
@@ -66,24 +51,3 @@ def frequencies(matrices: AlignedMatrices, *, free: bool) -> Array:
     if free:
         squares[:, 0] = 0.0
     return np.sqrt(np.maximum(squares, 0.0))
-
-
-def lowest_elastic_frequency(assembly: Assembly) -> float:
-    """Lowest non-zero natural frequency [rad/s] of the line as described, damping left out.
-
-    Raises
-    ------
-    InputError : springs so unlike that it is lost in rounding.
-    """
-    topo = assembly.topology
-    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    found = frequencies(matrices, free=topo.free)[0]
-    lowest = float(found[1 if topo.free else 0])
-    # Eigenvalues, the squares, are right to their rounding beside the largest.
-    if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
-        raise InputError(
-            f"holds at the lowest elastic mode, which is lost in rounding beside {found[-1]:.3g} rad/s",
-            element="driveline", key="damping_ratio",
-            remedy='write damping_ratio_frequency = "50 Hz", say, or check the stiffnesses',
-        )  # fmt: skip
-    return lowest

@@ -7,9 +7,8 @@ evaluates a whole row of points at once.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,74 +20,18 @@ from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffne
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
-from trunnion.equations.linear_clutches import mean_clutch, states_a_motion
+from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
+from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import by_station, mean_load, static_torque, station_loads
+from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
-from trunnion.equations.topology import Link, Mesh, Topology, topology
+from trunnion.equations.topology import Mesh, Topology, topology
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 
-if TYPE_CHECKING:
-    from trunnion.equations.aligned import AlignedMatrices
-
-
 MOST_KNOWN = 8
 """Rows whose coefficients are kept."""
-
-
-@dataclass(frozen=True)
-class MeshWave:
-    """A mesh's stiffness over its mean: 1 + Σ share cos(cycles τ + phase), as a factor of one compliance's.
-
-    cycles (harmonic,) per turn of the input; share and phase (case, harmonic).
-    """
-
-    compliance: int
-    cycles: Array
-    share: Array
-    phase: Array
-
-    def at(self, tau: Array) -> Array:
-        """The factor (case, time) at input angles ``tau`` (time,) or (case, time) [rad]."""
-        angle = np.asarray(tau)[..., None] * self.cycles + self.phase[:, None, :]
-        return np.asarray(1 + np.sum(self.share[:, None, :] * np.cos(angle), axis=-1))
-
-
-@dataclass(frozen=True)
-class LineCoefficients:
-    """What the equations of a line need, one row per case (axes: case, then as named).
-
-    speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad] per
-    compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
-    station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
-    drive_share carries included in ``load``; not_carried [N m] per station: its mean where the line is taken
-    untwisted, a base state in which no torque acts (0 otherwise); ``joints``: the law of each joint, its numbers
-    (case, 1); ``shift`` [rad] per station: what a shaft adds to the angle at its far end (fork offset and static
-    twist), and what a joint subtracts from its input angle to measure it from its own plane. ``loss`` [N m/rad] per
-    compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
-    ``waves``: meshes whose stiffness varies about the one given here.
-    """
-
-    speed: Array
-    stiffness: Array
-    damping: Array
-    torque: Array
-    twist: Array
-    inertia: Array
-    load: Array
-    viscous: Array
-    quadratic: Array
-    not_carried: Array
-    joints: tuple[JointLaw, ...]
-    shift: Array
-    loss: Array
-    waves: tuple[MeshWave, ...] = ()
-
-    @property
-    def straight(self) -> LineCoefficients:
-        """The same without any bend."""
-        return replace(self, joints=tuple(law.straight() for law in self.joints))
 
 
 @dataclass(frozen=True)
@@ -111,8 +54,8 @@ class Assembly:
     packed: PackedLine
     topology: Topology
 
-    def table(self, rows: int, speed: float | None = None) -> Array:
-        """``rows`` copies of the packed numbers, optionally at ``speed`` [rad/s]."""
+    def table(self, rows: int, speed: float | Array | None = None) -> Array:
+        """``rows`` copies of the packed numbers, optionally at one ``speed`` [rad/s] or each at its own (rows,)."""
         table = self.packed.table(rows)
         if speed is not None:
             table[:, 0] = speed
@@ -177,7 +120,6 @@ class Assembly:
         springs = PlainSprings({}, [], [], [], [])
         if self.line.damping_ratio is not None:
             return springs
-        behind = {here.element: s for s, here in enumerate(self.topology.stations) if here.link is Link.SHAFT}
         for e, compliance in enumerate(self.topology.compliances):
             i = compliance.shafts[0]
             stiffness = column(i, "stiffness")
@@ -186,7 +128,7 @@ class Assembly:
             if column(i, "loss_factor") >= 0 or column(i, "relative_damping") >= 0:
                 continue
             springs.compliances[e] = None
-            springs.stations.append(behind[i])
+            springs.stations.append(self.topology.behind[i])
             springs.stiffness.append(stiffness)
             springs.damping.append(column(i, "damping"))
             springs.forks.append(column(i, "fork_offset"))
@@ -195,8 +137,6 @@ class Assembly:
     @cached_property
     def aligned(self) -> AlignedMatrices:
         """The line with all joint angles zero, at the first row of its numbers, without a speed."""
-        from trunnion.equations.aligned import aligned_matrices
-
         return aligned_matrices(self.topology, self.coefficients(self.table(1), any_frequency=True))
 
     @cached_property
@@ -204,9 +144,7 @@ class Assembly:
         """Frequency [rad/s] at which a common damping ratio holds: as given, else the lowest elastic mode."""
         if self.line.damping_ratio_frequency is not None:
             return float(self.line.damping_ratio_frequency)
-        from trunnion.equations.aligned import lowest_elastic_frequency
-
-        return lowest_elastic_frequency(self)
+        return _lowest_elastic_frequency(self)
 
 
 _RECENT: deque[Assembly] = deque(maxlen=8)
@@ -225,6 +163,27 @@ def assemble(line: Driveline) -> Assembly:
     made = Assembly(line, pack(line), topology(line))
     _RECENT.append(made)
     return made
+
+
+def _lowest_elastic_frequency(assembly: Assembly) -> float:
+    """Lowest non-zero natural frequency [rad/s] of the line as described, damping left out.
+
+    Raises
+    ------
+    InputError : springs so unlike that it is lost in rounding.
+    """
+    topo = assembly.topology
+    matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
+    found = frequencies(matrices, free=topo.free)[0]
+    lowest = float(found[1 if topo.free else 0])
+    # Eigenvalues, the squares, are right to their rounding beside the largest.
+    if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
+        raise InputError(
+            f"holds at the lowest elastic mode, which is lost in rounding beside {found[-1]:.3g} rad/s",
+            element="driveline", key="damping_ratio",
+            remedy='write damping_ratio_frequency = "50 Hz", say, or check the stiffnesses',
+        )  # fmt: skip
+    return lowest
 
 
 def joint_laws(assembly: Assembly, table: Array) -> tuple[JointLaw, ...]:
@@ -251,32 +210,19 @@ def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
     return table[:, column(element, "stiffness")]
 
 
-def _shaft_damping(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
-    column = assembly.packed.column
+def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> tuple[Array, Array]:
+    """Damping [N m s/rad] of one shaft or mesh, and ηk [N m/rad] of a loss factor that holds at all frequencies."""
+    column, none = assembly.packed.column, np.zeros(len(table))
     if assembly.line.damping_ratio is not None:
-        return assembly.common_damping(table, stiffness)
-    loss = _loss_factor(assembly, table, element)
-    if loss is not None:
-        frequency = column(element, "loss_factor_frequency")
-        return loss * stiffness / table[:, frequency] if frequency >= 0 else np.zeros(len(table))
-    return spring_damping(assembly.line.elements[element], element, column, table)
-
-
-def _shaft_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> Array:
-    """ηk [N m/rad] of a loss factor that holds at all frequencies."""
-    loss = _loss_factor(assembly, table, element)
-    everywhere = assembly.packed.column(element, "loss_factor_frequency") < 0
-    return loss * stiffness if loss is not None and everywhere else np.zeros(len(table))
-
-
-def _loss_factor(assembly: Assembly, table: Array, element: int) -> Array | None:
-    """η as stated, or from the relative damping ψ; None where damping is a coefficient."""
-    column = assembly.packed.column
-    if column(element, "loss_factor") >= 0:
-        return table[:, column(element, "loss_factor")]
-    if column(element, "relative_damping") >= 0:
-        return table[:, column(element, "relative_damping")] / (2 * np.pi)
-    return None
+        return assembly.common_damping(table, stiffness), none
+    if (stated := column(element, "loss_factor")) >= 0:
+        lost = table[:, stated] * stiffness
+    elif (stated := column(element, "relative_damping")) >= 0:
+        lost = table[:, stated] / (2 * np.pi) * stiffness
+    else:
+        return spring_damping(assembly.line.elements[element], element, column, table), none
+    frequency = column(element, "loss_factor_frequency")
+    return (lost / table[:, frequency], none) if frequency >= 0 else (none, lost)
 
 
 def _refuse_any_frequency(line: Driveline) -> None:
@@ -291,16 +237,21 @@ def _refuse_any_frequency(line: Driveline) -> None:
             )
 
 
-def _series(stiffness: list[Array], damping: list[Array]) -> tuple[Array, Array]:
-    """Massless shafts in series as one.
+def _series(stiffness: list[Array], damping: list[Array]) -> Array:
+    """Damping of massless shafts in series as one.
 
-    Exact in stiffness. In damping exact where all have the same c/k, otherwise right to first order in
-    cω/k: each shaft twists in proportion to 1/k, so c = k² Σ c_i/k_i².
+    Exact where all have the same c/k, otherwise right to first order in cω/k: each shaft twists in proportion to 1/k,
+    so c = k² Σ c_i/k_i².
     """
     if len(stiffness) == 1:
-        return stiffness[0], damping[0]
-    together = 1 / np.sum([1 / k for k in stiffness], axis=0)
-    return together, together**2 * np.sum([c / k**2 for c, k in zip(damping, stiffness, strict=True)], axis=0)
+        return damping[0]
+    parts = [c / k**2 for c, k in zip(damping, stiffness, strict=True)]
+    return np.asarray(_stiffness(stiffness) ** 2 * np.sum(parts, axis=0))
+
+
+def _stiffness(stiffness: list[Array]) -> Array:
+    """Stiffness of massless shafts in series as one."""
+    return stiffness[0] if len(stiffness) == 1 else np.asarray(1 / np.sum([1 / k for k in stiffness], axis=0))
 
 
 def _station_inertia(assembly: Assembly, table: Array) -> Array:
@@ -343,57 +294,49 @@ def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
 
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
-    cases, stations = len(table), len(topo.stations)
     loads = station_loads(topo, column, table)
     mean = mean_load(topo, loads, table[:, 0])
     static = static_torque(topo, mean)
     torque = static if twisted else np.zeros_like(static)
-    stiffness, damping, twist, loss = (np.empty_like(static) for _ in range(4))
-    each: dict[int, Array] = {}
+    stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))
+    shift = np.zeros((len(table), len(topo.stations)))
     plain = assembly.plain_springs
     of_plain = list(plain.compliances)
     stiffness[:, of_plain] = table[:, plain.stiffness]
-    damping[:, of_plain] = table[:, plain.damping] if damped else 0.0
-    loss[:, of_plain] = 0.0
+    if damped:
+        damping[:, of_plain] = table[:, plain.damping]
     by_spring = torque[:, of_plain] / stiffness[:, of_plain]
+    twist[:, of_plain] = np.where(stiffness[:, of_plain] > 0, by_spring, 0.0)
+    shift[:, plain.stations] = by_spring + table[:, plain.forks]
     for e, compliance in enumerate(topo.compliances):
         if e in plain.compliances:
             continue
-        for i in compliance.shafts:
-            each[i] = shaft_stiffness(assembly, table, i)
-        k = [each[i] for i in compliance.shafts]
-        c = [_shaft_damping(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
-        stiffness[:, e], damping[:, e] = _series(k, c)
-        losses = [_shaft_loss(assembly, table, i, each[i]) if damped else np.zeros(cases) for i in compliance.shafts]
-        loss[:, e] = _series(k, losses)[1]
-        twist[:, e] = np.divide(torque[:, e], stiffness[:, e], out=np.zeros(cases), where=stiffness[:, e] > 0)
-        first = compliance.shafts[0]
-        if has_stages(assembly.line.elements[first]):
-            if states_a_motion(assembly.line.elements[first]) and not free:
-                rubbing = mean_clutch(assembly, table, first, static[:, e], damping[:, e])
+        shafts = compliance.shafts
+        each = [shaft_stiffness(assembly, table, i) for i in shafts]
+        stiffness[:, e] = _stiffness(each)
+        if damped:
+            parts = [_damping_and_loss(assembly, table, i, k) for i, k in zip(shafts, each, strict=True)]
+            damping[:, e], loss[:, e] = (_series(each, list(part)) for part in zip(*parts, strict=True))
+        if has_stages(assembly.line.elements[shafts[0]]):
+            if states_a_motion(assembly.line.elements[shafts[0]]) and not free:
+                rubbing = mean_clutch(assembly.packed, table, shafts[0], static[:, e], damping[:, e])
                 at_rest, stiffness[:, e] = rubbing.middle, rubbing.stiffness
                 damping[:, e] = rubbing.damping if damped else 0.0
             else:
-                law = stage_law(assembly.line, first, column, table)
+                law = stage_law(assembly.line, shafts[0], column, table)
                 at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
                 damping[:, e] *= damped_there
             twist[:, e] = at_rest if twisted else 0.0
-    twist[:, of_plain] = np.where(stiffness[:, of_plain] > 0, by_spring, 0.0)
-    shift = np.zeros((cases, stations))
-    shift[:, plain.stations] = by_spring + table[:, plain.forks]
-    compliance_of = {i: e for e, c in enumerate(topo.compliances) for i in c.shafts}
-    for s, here in enumerate(topo.stations):
-        if here.link is Link.SHAFT:
-            i = here.element
-            if compliance_of[i] in plain.compliances:
-                continue
-            e = compliance_of[i]
-            own = twist[:, e] if has_stages(assembly.line.elements[i]) else torque[:, e] / each[i]
+            own = [twist[:, e]]
+        else:
+            np.divide(torque[:, e], stiffness[:, e], out=twist[:, e], where=stiffness[:, e] > 0)
+            own = [torque[:, e] / k for k in each]
+        for i, turned in zip(shafts, own, strict=True):
             forks = column(i, "fork_offset")
-            shift[:, s] = own + (table[:, forks] if forks >= 0 else 0.0)
-        elif here.link is Link.JOINT:
-            shift[:, s] = -table[:, column(here.element, "plane")]
-            shift[:, s] -= _planes_in_front(assembly, table, here.element)
+            shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
+    for s in topo.joints:
+        i = topo.stations[s].element
+        shift[:, s] = -table[:, column(i, "plane")] - _planes_in_front(assembly, table, i)
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,

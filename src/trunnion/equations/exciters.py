@@ -19,11 +19,11 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
-from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.harmonic_torques import harmonic_torque
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.harmonic_torques import harmonic_torque, size_of
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 
 
@@ -72,7 +72,7 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
                     line.names[place],
                     Fraction(str(own)) * abs(topo.speed_ratio[s]),
                     own,
-                    column(place, f"excitation {h} {_size_of(harmonic)}"),
+                    column(place, f"excitation {h} {size_of(harmonic)}"),
                     column(place, f"excitation {h} phase"),
                     column(place, f"excitation {h} frequency"),
                     station=s,
@@ -103,10 +103,6 @@ def quiet(line: Driveline) -> Driveline:
     return line
 
 
-def _size_of(harmonic: Excitation) -> str:
-    return "amplitude" if harmonic.quadratic_amplitude is None else "quadratic_amplitude"
-
-
 def size(assembly: Assembly, exciter: Exciter, table: Array) -> Complex:
     """A e^{i phase} of an exciter, (case,): torque [N m], or transmission error as a twist [rad]."""
     if exciter.station >= 0:
@@ -129,13 +125,12 @@ class BaseOfExcitation:
     rotation: Array
 
 
-def base_of_excitation(topo: Topology, coefficients: LineCoefficients, untwisted: LineCoefficients, tau: Array) -> (
-    BaseOfExcitation
-):  # fmt: skip
+def base_of_excitation(
+    topo: Topology, coefficients: LineCoefficients, untwisted: LineCoefficients, tau: Array
+) -> BaseOfExcitation:
     """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
-    ratios = ratio_values(topo)
-    motion = base_motion(topo, coefficients, tau, ratios)
-    uniform = base_motion(topo, untwisted.straight, tau, ratios)
+    motion = base_motion(topo, coefficients, tau)
+    uniform = base_motion(topo, untwisted.straight, tau)
     return BaseOfExcitation(motion.relative, motion.angle - uniform.angle)
 
 

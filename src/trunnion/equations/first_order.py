@@ -12,7 +12,8 @@ from threading import get_ident
 import numpy as np
 
 from trunnion.arrays import Array, Places
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
 from trunnion.equations.topology import require_period
 
@@ -69,11 +70,8 @@ class LineRates:
         times = max(FEWEST_SAMPLES, 16 * int(np.ceil(cycles)))
         co = assembly.coefficients(table, statically_twisted=statically_twisted)
         probe = line_matrices(assembly.topology, co, period * np.arange(times) / times)
-        mass = np.einsum("ctii->cti", probe.mass)
-        root = np.sqrt(mass.mean(axis=1))
-        stiffness = np.einsum("ctii->cti", probe.stiffness).mean(axis=1) / root**2
-        unit = np.sqrt(np.maximum(np.abs(stiffness).mean(axis=1), 1e-300)) / co.speed
-        damping = np.einsum("ctii->cti", probe.damping)
+        root, unit = scales(probe, co.speed)
+        mass, damping = (np.einsum("ctii->cti", part) for part in (probe.mass, probe.damping))
         trace = (damping / mass).sum(axis=2).mean(axis=1) * period / co.speed
         return cls(assembly, table, statically_twisted, period, root, unit, trace, steps_that_see(cycles))
 
@@ -102,6 +100,13 @@ class LineRates:
             return None
         scaled = aside * np.concatenate([self.root, self.root / self.unit[:, None]], axis=1)[:, :, None]
         return np.asarray(np.linalg.qr(scaled, mode="complete")[0][:, :, aside.shape[1] :])
+
+
+def scales(m: LineMatrices, speed: Array) -> tuple[Array, Array]:
+    """√m (case, n) and ν (case,) of matrices in time."""
+    root = np.sqrt(np.einsum("ctii->cti", m.mass).mean(axis=1))
+    stiffness = np.einsum("ctii->cti", m.stiffness).mean(axis=1) / root**2
+    return root, np.sqrt(np.maximum(np.abs(stiffness).mean(axis=1), 1e-300)) / speed
 
 
 def first_order(m: LineMatrices, speed: Array, root: Array, unit: Array) -> Array:

@@ -11,7 +11,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.parameters import PackedLine
-from trunnion.equations.loads import mean_load, station_loads
+from trunnion.equations.loads import mean_loads
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 
@@ -32,18 +32,22 @@ def harmonic_torque(packed: PackedLine, topo: Topology, station: int, place: int
     disk = packed.line.elements[place]
     assert isinstance(disk, Disk)
     harmonic = disk.excitation[number - 1]
-    key = "quadratic_amplitude" if harmonic.quadratic_amplitude is not None else "amplitude"
-    sizes = table[:, packed.column(place, f"excitation {number} {key}")].astype(complex)
+    sizes = table[:, packed.column(place, f"excitation {number} {size_of(harmonic)}")].astype(complex)
     speed = table[:, 0] * abs(float(topo.speed_ratio[station]))
     if harmonic.quadratic_amplitude is not None:
         sizes = sizes * speed**2
     elif harmonic.points:
         where = speed
         if harmonic.torques:
-            where = -mean_load(topo, station_loads(topo, packed.column, table), table[:, 0])[:, station]
+            where = -mean_loads(topo, packed.column, table)[:, station]
         sizes = sizes * _shape(harmonic, packed.line.names[place], number, where)
     phase = table[:, packed.column(place, f"excitation {number} phase")]
     return np.asarray(sizes * np.exp(1j * phase) * cylinders(disk, harmonic))
+
+
+def size_of(harmonic: Excitation) -> str:
+    """The key of its amplitude."""
+    return "amplitude" if harmonic.quadratic_amplitude is None else "quadratic_amplitude"
 
 
 def cylinders(disk: Disk, harmonic: Excitation) -> complex:

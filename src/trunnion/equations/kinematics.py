@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.coefficients import LineCoefficients
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
 
 
@@ -32,16 +32,19 @@ class BaseMotion:
     relative_curvature: Array
 
 
-def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, ratios: Array) -> BaseMotion:
+def base_motion(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, *, stood: Array | None = None
+) -> BaseMotion:
     """Walk the stations from the input, at input angles ``tau`` [rad] of shape (time,) or (case, time).
 
-    ``ratios`` are the values of the line's Ratio elements by station (see ``ratio_values``).
+    ``stood`` (case, time, station) : where stations stand that shafts let twist [rad]; ``relative`` is then that of
+    the joints there. By default where the walk leads them.
     """
     cases = len(coefficients.speed)
     tau = np.broadcast_to(tau, (cases, np.shape(tau)[-1]))
     # Each station lies in one piece over time, which is how it is filled.
     a, w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(6))
-    laws = list(coefficients.joints)
+    laws, stood = list(coefficients.joints), a if stood is None else stood
     for s, station in enumerate(topo.stations):
         b = station.before
         shift = coefficients.shift[:, s, None]
@@ -52,7 +55,7 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
             r[..., s] = 1.0
         elif station.link is Link.JOINT:
             law = laws.pop(0)
-            output, eta, slope, curvature = law.at(a[..., b] + shift)
+            output, eta, slope, curvature = law.at(stood[..., b] + shift)
             rb, rb1, rb2, wb, wb1 = r[..., b], r1[..., b], r2[..., b], w[..., b], w1[..., b]
             a[..., s] = output + law.turned
             w[..., s], w1[..., s] = eta * wb, slope * wb**2 + eta * wb1
@@ -60,10 +63,5 @@ def base_motion(topo: Topology, coefficients: LineCoefficients, tau: Array, rati
             r2[..., s] = eta * rb2 + 3 * slope * rb * rb1 + curvature * rb**3
         else:
             for quantity in (a, w, w1, r, r1, r2):
-                quantity[..., s] = quantity[..., b] / ratios[s]
+                quantity[..., s] = quantity[..., b] / topo.ratio_values[s]
     return BaseMotion(a, w, w1, r, r1, r2)
-
-
-def ratio_values(topo: Topology) -> Array:
-    """Input speed over output speed at each station that hangs on a Ratio; 1 elsewhere."""
-    return topo.ratio_values

@@ -7,10 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from trunnion.arrays import Array, Integers
-from trunnion.equations.aligned import relative_ratio
-from trunnion.equations.coefficients import LineCoefficients
-from trunnion.equations.kinematics import ratio_values
-from trunnion.equations.topology import TIED, Link, Mesh, Topology
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.topology import Link, Mesh, Topology, behind_joint
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
@@ -21,7 +19,7 @@ class _Walk:
 
     def __init__(self, topo: Topology, shift: Array, turned: Sequence[float]) -> None:
         """``turned`` [rad]: from the input to the output arm of every joint."""
-        ratios = ratio_values(topo)
+        ratios = topo.ratio_values
         count = len(topo.stations)
         self.speed: list[tuple[int, float]] = [(-1, 1.0)] * count
         self.within: list[tuple[int, float]] = [(-1, 1.0)] * count
@@ -60,12 +58,10 @@ def chain_program(
     parent = np.full(n, -1, dtype=np.int64)
     near: list[tuple[int, float]] = [(-1, 0.0)] * n
     near_speed: list[tuple[int, float]] = [(-1, 0.0)] * n
-    for compliance in topo.compliances:
-        i = topo.coordinate[compliance.far_group]
-        group = topo.group_of(compliance.near)
-        parent[i] = topo.coordinate[group]
+    for compliance, (i, before) in zip(topo.compliances, topo.ends, strict=True):
+        parent[i] = before
         near[i] = walk.within[compliance.near]
-        near_speed[i] = walk.speed[topo.reference[group]]
+        near_speed[i] = walk.speed[topo.reference[topo.group_of(compliance.near)]]
     first, ripples = _ripples(topo, coefficients)
     members = _members(topo, by_speed)
     member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
@@ -75,7 +71,7 @@ def chain_program(
         *_split([within for _, within in walk.joint_input]),
         *_split(near),
         *_split(near_speed),
-        np.array([topo.coordinate[topo.group_of(s)] for s in members], dtype=np.int64),
+        topo.unknown_of[members].astype(np.int64),
         *_split([walk.within[s] for s in members]),
         *_split(member_speed),
         *_split([(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates]),
@@ -97,9 +93,7 @@ def _ripples(topo: Topology, coefficients: LineCoefficients) -> tuple[Integers, 
 
 def _varying(topo: Topology) -> list[tuple[int, Mesh]]:
     """The unknown behind each mesh whose stiffness varies, and the mesh."""
-    return [
-        (topo.coordinate[topo.compliances[mesh.compliance].far_group], mesh) for mesh in topo.meshes if mesh.stiffness
-    ]
+    return [(topo.ends[mesh.compliance][0], mesh) for mesh in topo.meshes if mesh.stiffness]
 
 
 def loaded_by_speed(topo: Topology, coefficients: LineCoefficients) -> frozenset[int]:
@@ -113,25 +107,19 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     co, n = coefficients, topo.size
     cases = len(co.speed)
     over_speed = 1 / co.speed
-    inertia = np.zeros((cases, n))
-    for s in range(len(topo.stations)):
-        i = topo.coordinate[topo.group_of(s)]
-        if i >= 0:
-            inertia[:, i] += co.inertia[:, s] * relative_ratio(topo, s) ** 2
+    inertia = topo.on_unknowns(co.inertia)
     stiffness, damping, torque = (np.zeros((cases, n)) for _ in range(3))
     scale, trace = np.ones((cases, n)), np.zeros(cases)
-    for e, compliance in enumerate(topo.compliances):
-        i, p = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+    for e, (i, p) in enumerate(topo.ends):
         stiffness[:, i] = co.stiffness[:, e] / inertia[:, i] * over_speed**2
         damping[:, i] = co.damping[:, e] / inertia[:, i] * over_speed
         trace += stiffness[:, i]
         if p >= 0:
             scale[:, i] = np.sqrt(inertia[:, i] / inertia[:, p])
             torque[:, i] = co.torque[:, e] / inertia[:, p] * over_speed**2
-            trace += stiffness[:, i] * (scale[:, i] * relative_ratio(topo, compliance.near)) ** 2
+            trace += stiffness[:, i] * (scale[:, i] * topo.relative_ratios[topo.compliances[e].near]) ** 2
     members = _members(topo, by_speed)
-    owner = [topo.coordinate[topo.group_of(s)] for s in members]
-    sign = np.sign([float(topo.speed_ratio[s]) for s in members])
+    owner, sign = topo.unknown_of[members], np.sign(topo.mean_speeds[members])
     load = co.load - co.not_carried
     walk = _Walk(topo, co.shift, [law.turned for law in co.joints])
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
@@ -171,18 +159,9 @@ def _rows(columns: Sequence[Array], cases: int) -> Array:
 def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
     """Stations with inertia in groups whose inertia depends on the angle or that carry loads by speed, by unknown."""
     heavy = sorted({s for s, _ in topo.disks + topo.tube_ends})
-    chosen = {topo.group_of(s) for s in heavy if s in by_speed or _behind_joint(topo, s)}
-    members = [s for s in heavy if topo.group_of(s) in chosen and topo.coordinate[topo.group_of(s)] >= 0]
-    return sorted(members, key=lambda s: topo.coordinate[topo.group_of(s)])
-
-
-def _behind_joint(topo: Topology, station: int) -> bool:
-    """True if a joint lies between the station and the first station of its group."""
-    while topo.stations[station].link in TIED:
-        if topo.stations[station].link is Link.JOINT:
-            return True
-        station = topo.stations[station].before
-    return False
+    chosen = {topo.group_of(s) for s in heavy if s in by_speed or behind_joint(topo.stations, s)}
+    members = [s for s in heavy if topo.group_of(s) in chosen and topo.unknown_of[s] >= 0]
+    return sorted(members, key=lambda s: topo.unknown_of[s])
 
 
 def _split(pairs: list[tuple[int, float]]) -> tuple[Integers, Array]:

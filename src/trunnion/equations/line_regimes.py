@@ -249,7 +249,7 @@ def _parts(assembly: Assembly) -> list[_Part]:
         for s in springs.values()
         if s.stages > 1
     ]
-    rubbing = sliders(assembly, row)
+    rubbing = sliders(assembly.packed, assembly.topology, row)
     first, words = len(found), ("slips back", "sticks", "slips on")
     for slider, stride in zip(rubbing, slider_strides(springs, len(rubbing)), strict=True):
         # All that slip on one twist stick together: it turns for them at the same instant.

@@ -17,9 +17,10 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
-from trunnion.equations.coefficients import Assembly, LineCoefficients, assemble
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
@@ -103,7 +104,7 @@ class LineSystem:
     @cached_property
     def sliders(self) -> tuple[PlacedSlider, ...]:
         """The sliders of its clutches, whose deflections are its last states."""
-        return sliders(self.assembly, self.assembly.table(1)[0])
+        return sliders(self.assembly.packed, self.assembly.topology, self.assembly.table(1)[0])
 
     @cached_property
     def system(self) -> System:
@@ -260,7 +261,7 @@ class LineSystem:
             ripple = _put_joint(core, joint, case, stations[s], begin)
             law_numbers, begin = np.append(law_numbers, ripple), begin + ripple.size
         head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
-        rubbing = sliders(assembly, row)
+        rubbing = sliders(assembly.packed, assembly.topology, row)
         strides = slider_strides(laws, len(rubbing))
         friction = [[s.compliance, s.stiffness, s.reach, step] for s, step in zip(rubbing, strides, strict=True)]
         head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size, len(rubbing)]
@@ -330,8 +331,8 @@ class LineSystem:
         """State of the line with rigid shafts, the input standing at ``theta`` [rad]."""
         topo = self.assembly.topology
         co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
-        base = base_motion(topo, co, np.array([theta]), ratio_values(topo))
-        plain = base_motion(topo, co.straight, np.array([theta]), ratio_values(topo))
+        base = base_motion(topo, co, np.array([theta]))
+        plain = base_motion(topo, co.straight, np.array([theta]))
         d = (base.angle - plain.angle)[0, 0, topo.firsts]
         v = (base.speed - plain.speed)[0, 0, topo.firsts] * self.speed
         return np.concatenate([d, v, np.zeros(len(self.sliders))])
@@ -341,7 +342,7 @@ class LineSystem:
         topo, table = self.assembly.topology, self.assembly.table(1, self.speed)
         plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
         held = self.assembly.coefficients(table, free_play=True)
-        motions = [base_motion(topo, co, np.zeros(1), ratio_values(topo)) for co in (held, plain.straight)]
+        motions = [base_motion(topo, co, np.zeros(1)) for co in (held, plain.straight)]
         d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
         return np.concatenate([d[topo.firsts], v[topo.firsts] * self.speed, np.zeros(len(self.sliders))])
 

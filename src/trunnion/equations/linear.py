@@ -25,8 +25,9 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
@@ -60,7 +61,7 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
-    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
+    motion = base_motion(topo, coefficients, tau)
     cases, times, n = (*motion.angle.shape[:2], topo.size)
     speed = coefficients.speed[:, None]
     # Each entry lies in one piece over time, which is how it is filled.
@@ -95,26 +96,17 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         damping[..., i, i] += j1 * w + r**2 * growth
         stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
-    for e, compliance in enumerate(topo.compliances):
-        near_group = topo.group_of(compliance.near)
-        far, near = topo.coordinate[compliance.far_group], topo.coordinate[near_group]
-        if compliance.near == topo.reference[near_group] and not coefficients.waves:  # r = 1
-            ratio_seen[..., e] = 1.0
-            k, c = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None]
-            torque = coefficients.torque[:, e, None]
-            for one, other, sign in ((far, near, 1), (near, far, -1)):
-                if one >= 0:
-                    damping[..., one, one] += c
-                    stiffness[..., one, one] += k
-                    forcing[..., one] -= sign * torque
-                    if other >= 0:
-                        damping[..., one, other] -= c
-                        stiffness[..., one, other] -= k
-            continue
-        r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
-        r_dot = r1 * motion.speed[..., topo.reference[near_group]] * speed
-        k, c = coefficients.stiffness[:, e, None] * wave[..., e], coefficients.damping[:, e, None]
-        torque = coefficients.torque[:, e, None] * wave[..., e]
+    for e, (compliance, (far, near)) in enumerate(zip(topo.compliances, topo.ends, strict=True)):
+        ref = topo.reference[topo.group_of(compliance.near)]
+        k, c, torque = (
+            part[:, e, None] for part in (coefficients.stiffness, coefficients.damping, coefficients.torque)
+        )
+        if coefficients.waves:
+            k, torque = k * wave[..., e], torque * wave[..., e]
+        r, r1, r_dot = np.ones(1), np.zeros(1), np.zeros(1)
+        if compliance.near != ref:
+            r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
+            r_dot = r1 * motion.speed[..., ref] * speed
         ratio_seen[..., e], slope_seen[..., e] = r, r_dot / speed
         if far >= 0:
             damping[..., far, far] += c

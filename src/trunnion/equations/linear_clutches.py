@@ -6,83 +6,19 @@ for its mean stiffness and loss over that swing, about the twist at which its sp
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Element
-from trunnion.equations.loads import mean_load, static_torque, station_loads
-from trunnion.equations.stage_laws import spring_damping, stage_law
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.loads import mean_loads, static_torque
+from trunnion.equations.mean_clutch import states_a_motion
 from trunnion.errors import InputError
-from trunnion.laws import friction
-
-if TYPE_CHECKING:
-    from trunnion.equations.coefficients import Assembly
-
-
-@dataclass(frozen=True)
-class MeanClutch:
-    """What stands for a clutch, (case,) each: middle [rad] of the swing, stiffness [N m/rad], damping [N m s/rad]."""
-
-    middle: Array
-    stiffness: Array
-    damping: Array
-
-
-def states_a_motion(element: Element) -> bool:
-    """Whether it is a clutch that states the motion at which linear equations take it."""
-    return isinstance(element, Clutch) and element.linear_amplitude is not None
 
 
 def mean_by_load(line: Driveline) -> bool:
     """Whether the mean of a clutch that states a motion depends on the torque that it carries: it has stages."""
     return any(isinstance(e, Clutch) and states_a_motion(e) and e.breakpoints for e in line.elements)
-
-
-def mean_clutch(
-    assembly: Assembly, table: Array, place: int, torque: Array, viscous: Array | None = None
-) -> MeanClutch:
-    """The clutch at ``place`` on average under a static ``torque`` (case,) [N m], at the rows of ``table``.
-
-    ``viscous`` : damping (case,) of its spring, by default that of its description.
-
-    Raises
-    ------
-    InputError : no stage of its spring carries the torque.
-    """
-    column, clutch = assembly.packed.column, assembly.line.elements[place]
-    assert isinstance(clutch, Clutch)
-    law = stage_law(assembly.line, place, column, table)
-    amplitude, frequency = (_positive(assembly, table, place, key) for key in ("amplitude", "frequency"))
-    middle = friction.middle_under(law, torque, amplitude)
-    if np.isnan(middle).any():
-        raise InputError(
-            f"has no stage that carries its load of {float(torque[np.isnan(middle)][0]):g} N·m", element=law.name,
-            remedy="raise its outermost stiffness",
-        )  # fmt: skip
-    stiffness = friction.over_a_cycle(law, middle, amplitude)[1]
-    lost = np.zeros(len(table))
-    for i in range(1, len(clutch.friction) + 1):
-        holds, spring = (table[:, column(place, f"friction {i} {key}")] for key in ("torque", "stiffness"))
-        stiffness = stiffness + friction.mean_stiffness(holds, spring, amplitude)
-        lost += friction.lost_per_cycle(holds, spring, amplitude)
-    damping = spring_damping(clutch, place, column, table) if viscous is None else viscous
-    if not law.softest_damped:
-        acts = np.arange(law.slopes.shape[1]) != np.argmin(law.slopes, axis=1)[:, None]
-        damping = damping * friction.damped_share(law, acts, middle, amplitude)
-    return MeanClutch(middle, stiffness, damping + lost / (np.pi * amplitude**2 * frequency))
-
-
-def _positive(assembly: Assembly, table: Array, place: int, key: str) -> Array:
-    numbers = table[:, assembly.packed.column(place, f"linear_{key}")]
-    if not np.all(numbers > 0):
-        name = assembly.line.names[place]
-        raise InputError("must be positive", element=name, key=f"linear_{key}", value=float(numbers.min()))
-    return np.asarray(numbers)
 
 
 def with_mean_clutches(assembly: Assembly, speed: float) -> Driveline:
@@ -117,14 +53,12 @@ def with_mean_clutches(assembly: Assembly, speed: float) -> Driveline:
 def static_torques(assembly: Assembly, speed: float) -> dict[int, float]:
     """Torque [N m] that each spring carries at a steady input ``speed``, by its place in the line."""
     table, topo = assembly.table(1, speed), assembly.topology
-    static = static_torque(topo, mean_load(topo, station_loads(topo, assembly.packed.column, table), table[:, 0]))
+    static = static_torque(topo, mean_loads(topo, assembly.packed.column, table))
     return {i: float(static[0, e]) for e, compliance in enumerate(topo.compliances) for i in compliance.shafts}
 
 
 def stand_ins(line: Driveline) -> tuple[str, ...]:
     """One sentence for every clutch that linear equations take at the motion it states."""
-    from trunnion.equations.coefficients import assemble
-
     if not any(states_a_motion(element) for element in line.elements):
         return ()
     assembly = assemble(line)

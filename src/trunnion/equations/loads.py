@@ -34,7 +34,7 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
     """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0."""
     loads = _described(topo, column, table)
     if topo.free and (share := given_shares(topo, column, table)).any():
-        left = unbalanced(topo, loads, table[:, 0])
+        left = mean_load(topo, loads, table[:, 0]) @ np.abs(topo.mean_speeds)
         loads = replace(loads, constant=loads.constant + drive_torques(topo, share, left))
     return loads
 
@@ -89,15 +89,15 @@ def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
     return np.asarray(loads.constant + np.where((loads.viscous != 0) | (loads.quadratic != 0), by_speed, 0.0))
 
 
+def mean_loads(topo: Topology, column: Column, table: Array) -> Array:
+    """The same of every row of packed numbers (cases, columns), drives balanced."""
+    return mean_load(topo, station_loads(topo, column, table), table[:, 0])
+
+
 def load_slope(topo: Topology, viscous: Array, quadratic: Array, speed: Array) -> Array:
     """Slope c₁ + 2c₂|ω| of every station's load by its speed [N m s/rad], (case, station), at its mean speed."""
     turning = np.abs(topo.mean_speeds) * np.asarray(speed)[:, None]
     return np.asarray(viscous + np.where(quadratic != 0, 2 * quadratic * turning, 0.0))
-
-
-def unbalanced(topo: Topology, loads: StationLoads, speed: Array) -> Array:
-    """Torque at the input [N m], (case,), that would keep the line at its mean speed: Σ M_s |R_s|."""
-    return np.asarray(mean_load(topo, loads, speed) @ np.abs(topo.mean_speeds))
 
 
 def given_shares(topo: Topology, column: Column, table: Array) -> Array:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +15,9 @@ from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
+from trunnion.driveline.parameters import PackedLine
+from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
-
-if TYPE_CHECKING:
-    from trunnion.equations.coefficients import Assembly
 
 SLIDER_STAGES = 3
 """Slips with falling twist, sticks, slips with rising twist."""
@@ -54,17 +52,17 @@ class PlacedSlider:
         return table
 
 
-def sliders(assembly: Assembly, row: Array) -> tuple[PlacedSlider, ...]:
+def sliders(packed: PackedLine, topo: Topology, row: Array) -> tuple[PlacedSlider, ...]:
     """All sliders of a line at one row of packed numbers.
 
     Raises
     ------
     InputError : a torque or stiffness that is not positive, where parameters were varied.
     """
-    found, column = [], assembly.packed.column
-    for e, compliance in enumerate(assembly.topology.compliances):
+    found, column = [], packed.column
+    for e, compliance in enumerate(topo.compliances):
         place = compliance.shafts[0]
-        element, name = assembly.line.elements[place], assembly.line.names[place]
+        element, name = packed.line.elements[place], packed.line.names[place]
         for i in range(1, len(element.friction) + 1 if isinstance(element, Clutch) else 1):
             torque, stiffness = (float(row[column(place, f"friction {i} {k}")]) for k in ("torque", "stiffness"))
             for key, value in (("torque", torque), ("stiffness", stiffness)):

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
-from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
+from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
@@ -241,7 +241,7 @@ def staged_line(line: Driveline | Assembly, speed: float | None = None) -> Stage
 
 def twisting_of(topo: Topology, turns: bool) -> Array:
     """E (m, n): twist of every spring per rotation of every unknown; a last row for the first inertia's rotation."""
-    rows = [elongation(topo, e) for e in range(len(topo.compliances))]
+    rows = [*topo.elongations]
     if turns:
         rows.append(np.eye(topo.size)[topo.coordinate[0]])
     return np.array(rows)
@@ -280,7 +280,7 @@ class _Builder:
         self.laws = staged_springs(assembly, self.row)
         self.viscous = self._viscous()
         self.turns = self.topo.free and bool(self.viscous.any())
-        self.sliders = sliders(assembly, self.row)
+        self.sliders = sliders(assembly.packed, assembly.topology, self.row)
         own = twisting_of(self.topo, self.turns)
         count = len(self.topo.compliances)
         places = [*range(count), *(slider.compliance for slider in self.sliders), *range(count, len(own))]
@@ -315,7 +315,7 @@ class _Builder:
         coordinate = self.topo.coordinate[self.topo.group_of(station)]
         if coordinate < 0:
             return np.zeros(len(self.twisting))
-        return np.asarray(self.accelerated[:, coordinate] * relative_ratio(self.topo, station))
+        return np.asarray(self.accelerated[:, coordinate] * self.topo.relative_ratios[station])
 
     def _loads(self) -> list[tuple[int, float]]:
         """Stations with viscous loads [N m s/rad]."""
@@ -328,7 +328,7 @@ class _Builder:
         for station, load in self._loads():
             coordinate = self.topo.coordinate[self.topo.group_of(station)]
             if coordinate >= 0:
-                out[coordinate] += load * relative_ratio(self.topo, station) ** 2
+                out[coordinate] += load * self.topo.relative_ratios[station] ** 2
         return out
 
     def _constant(self) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly, joint_laws
-from trunnion.equations.loads import drive_places, given_shares, mean_load, station_loads
+from trunnion.equations.loads import drive_places, given_shares, mean_loads
 from trunnion.errors import InputError
 
 BALANCED = 1e-9
@@ -66,8 +66,7 @@ def require_share(assembly: Assembly) -> None:
     """Refuse a free line of which no disk says that it drives: nothing tells what torque accelerates it."""
     topo, table = assembly.topology, assembly.table(1)
     if topo.free and not given_shares(topo, assembly.packed.column, table).any():
-        place = drive_places(topo, assembly.packed.column, table)[0]
-        _, element = max(topo.disks, key=lambda pair: float(place[pair[0]]))
+        _, element = _driving(assembly, table)
         raise InputError(
             "starts free, and no disk has a share in what accelerates it",
             element="driveline",
@@ -103,14 +102,18 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
 def _at_input(assembly: Assembly, table: Array) -> Array:
     """Mean load torques taken to the input (cases, station) [N m]."""
     topo = assembly.topology
-    loads = station_loads(topo, assembly.packed.column, table)
-    return mean_load(topo, loads, table[:, 0]) * np.abs(topo.mean_speeds)
+    return mean_loads(topo, assembly.packed.column, table) * np.abs(topo.mean_speeds)
+
+
+def _driving(assembly: Assembly, table: Array) -> tuple[int, int]:
+    """Station and element of the disk that drives most at the first row of ``table``, or could."""
+    place = drive_places(assembly.topology, assembly.packed.column, table)[0]
+    return max(assembly.topology.disks, key=lambda pair: float(place[pair[0]]))
 
 
 def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     topo = assembly.topology
-    place = drive_places(topo, assembly.packed.column, row[None])[0]
-    station, element = max(topo.disks, key=lambda pair: float(place[pair[0]]))
+    station, element = _driving(assembly, row[None])
     name = assembly.line.names[element]
     remedy = f'give the driving disk, "{name}" say, drive_share = 1'
     if any(row[assembly.packed.column(i, key)] for _, i in topo.disks for key in ("viscous_load", "quadratic_load")):

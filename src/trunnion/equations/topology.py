@@ -9,7 +9,7 @@ compliance. The root group is prescribed if the line starts with a ConstantSpeed
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
@@ -127,6 +127,11 @@ class Topology:
         return tuple(i for i, s in enumerate(self.stations) if s.link is Link.JOINT)
 
     @cached_property
+    def ends(self) -> tuple[tuple[int, int], ...]:
+        """Places among the unknowns of the far and the near end of every compliance; −1 where prescribed."""
+        return tuple((self.coordinate[c.far_group], int(self.unknown_of[c.near])) for c in self.compliances)
+
+    @cached_property
     def firsts(self) -> list[int]:
         """The first station of each unknown's group (n,)."""
         return [self.reference[g] for g, c in enumerate(self.coordinate) if c >= 0]
@@ -134,6 +139,13 @@ class Topology:
     def group_of(self, station: int) -> int:
         """The group a station belongs to."""
         return self.stations[station].group
+
+    def on_unknowns(self, parts: Array) -> Array:
+        """What stands at stations (case, station) as the unknowns feel it, joints straight: Σ part r² (case, n)."""
+        found = np.zeros((self.size, len(parts)))
+        moves = self.unknown_of >= 0
+        np.add.at(found, self.unknown_of[moves], (parts * self.relative_ratios**2).T[moves])
+        return np.ascontiguousarray(found.T)
 
     @cached_property
     def mean_speeds(self) -> Array:
@@ -164,6 +176,11 @@ class Topology:
         return np.array([self.coordinate[station.group] for station in self.stations], dtype=np.intp)
 
     @cached_property
+    def behind(self) -> dict[int, int]:
+        """The station behind every shaft, by its element."""
+        return {one.element: s for s, one in enumerate(self.stations) if one.link is Link.SHAFT}
+
+    @cached_property
     def stations_behind(self) -> tuple[Places, ...]:
         """Per compliance all stations that it drives: those of its far group and of every group behind that."""
         behind = [[s for s, one in enumerate(self.stations) if one.group == c.far_group] for c in self.compliances]
@@ -178,12 +195,11 @@ class Topology:
     def elongations(self) -> Array:
         """Twist of every compliance per rotation of every unknown (compliance, n), joints straight."""
         found = np.zeros((len(self.compliances), self.size))
-        for e, ends in enumerate(self.compliances):
-            far, near = self.coordinate[ends.far_group], self.coordinate[self.group_of(ends.near)]
+        for e, (far, near) in enumerate(self.ends):
             if far >= 0:
                 found[e, far] = 1.0
             if near >= 0:
-                found[e, near] = -self.relative_ratios[ends.near]
+                found[e, near] = -self.relative_ratios[self.compliances[e].near]
         found.flags.writeable = False
         return found
 
@@ -256,6 +272,12 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
     return turns
 
 
+def behind_joint(stations: Sequence[Station], station: int) -> bool:
+    """Whether a joint stands between a station and the first one of its group."""
+    one = stations[station]
+    return one.link in TIED and (one.link is Link.JOINT or behind_joint(stations, one.before))
+
+
 def _fixed(numbers: list[float]) -> Array:
     """As an array that nobody can change."""
     found = np.array(numbers)
@@ -293,11 +315,6 @@ class _Draft:
         self.speed_ratio.append(ratio)
         return len(self.stations) - 1
 
-    def jointed(self, station: int) -> bool:
-        """Whether a joint stands between a station and the first one of its group."""
-        one = self.stations[station]
-        return one.link in TIED and (one.link is Link.JOINT or self.jointed(one.before))
-
 
 def _walk(line: Driveline) -> _Draft:
     draft = _Draft([], [], [], [], [], [], [])
@@ -310,20 +327,16 @@ def _walk(line: Driveline) -> _Draft:
             draft.prescribed[draft.stations[here].group] = True
         elif isinstance(element, Disk):
             draft.disks.append((here, i))
-        elif isinstance(element, Spring):
+        elif isinstance(element, Spring | PiecewiseShaft | GearPair):
             near = here
+            if isinstance(element, GearPair):
+                # The output gear where a rigid mesh would hold it, and behind the mesh where it is.
+                ratio /= element.fraction
+                near = draft.add(here, Link.RATIO, i, ratio)
             here = draft.add(near, Link.SHAFT, i, ratio)
             draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
-            if element.moment_of_inertia:
+            if isinstance(element, Spring) and element.moment_of_inertia:
                 draft.tube_ends += [(near, i), (here, i)]
-        elif isinstance(element, PiecewiseShaft):
-            near, here = here, draft.add(here, Link.SHAFT, i, ratio)
-            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
-        elif isinstance(element, GearPair):
-            # The output gear where a rigid mesh would hold it, and behind the mesh where it is.
-            near = draft.add(here, Link.RATIO, i, ratio / element.fraction)
-            here = draft.add(near, Link.SHAFT, i, ratio / element.fraction)
-            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
         elif isinstance(element, Ratio):
             here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
         elif isinstance(element, Joint):
@@ -349,7 +362,7 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         out = [c for c in compliances if draft.stations[c.near].group == g]
         plain = sum(s.group == g for s in draft.stations) == 1
         if not (plain and len(into) == 1 and len(out) == 1):
-            raise InputError(*_bare(draft, g), **_bare_place(line, draft, g))
+            raise _bare(line, draft, g)
         _refuse_bare_law(line, (*into[0].shafts, *out[0].shafts))
         compliances.remove(into[0])
         place = compliances.index(out[0])
@@ -360,6 +373,7 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         unknown = g in heavy and not draft.prescribed[g]
         coordinate.append(count if unknown else -1)
         count += unknown
+    names = _names(line, draft, coordinate)
     return Topology(
         tuple(draft.stations),
         tuple(compliances),
@@ -369,19 +383,21 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         tuple(draft.disks),
         tuple(draft.tube_ends),
         tuple(draft.speed_ratio),
-        tuple(_names(line, draft, coordinate)),
+        tuple(names),
         tuple(_meshes(line, draft, compliances)),
-        tuple(_points(line, draft, coordinate)),
+        tuple(_points(line, draft, coordinate, names)),
     )
 
 
-def _points(line: Driveline, draft: _Draft, coordinate: list[int]) -> Iterable[tuple[int, str]]:
+def _points(line: Driveline, draft: _Draft, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:
     """Disks that move unevenly, held ones behind a joint among them, and the first ends of tubes without a disk."""
-    found = [(s, line.names[i]) for s, i in draft.disks if coordinate[draft.stations[s].group] >= 0 or draft.jointed(s)]
+    found = [
+        (s, line.names[i])
+        for s, i in draft.disks
+        if coordinate[draft.stations[s].group] >= 0 or behind_joint(draft.stations, s)
+    ]
     with_disk = {draft.stations[s].group for s, _ in draft.disks}
-    bare = [g for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
-    names = _names(line, draft, coordinate)
-    found += [(draft.reference[g], names[coordinate[g]]) for g in bare]
+    found += [(draft.reference[g], names[c]) for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
     return sorted(found, key=lambda point: point[0])
 
 
@@ -407,30 +423,21 @@ def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:
             )  # fmt: skip
 
 
-def _bare(draft: _Draft, group: int) -> tuple[str]:
-    joint = any(s.group == group and s.link in TIED for s in draft.stations)
-    what = "has no inertia rigidly in front of it" if joint else "ends where there is no inertia"
-    return (what,)
-
-
-def _bare_place(line: Driveline, draft: _Draft, group: int) -> dict[str, str]:
+def _bare(line: Driveline, draft: _Draft, group: int) -> InputError:
+    """What refuses a group that nothing can accelerate."""
     tied = [s.element for s in draft.stations if s.group == group and s.link in TIED]
     element = line.names[tied[0] if tied else draft.stations[draft.reference[group]].element]
-    remedy = (
-        f"put a Disk in front of {element} (half the joint's own inertia is a good start)"
-        if tied
-        else f"put a Disk behind {element}, or give the tube a density"
-    )
-    return {"element": element, "remedy": remedy}
+    if tied:
+        problem = "has no inertia rigidly in front of it"
+        remedy = f"put a Disk in front of {element} (half the joint's own inertia is a good start)"
+    else:
+        problem = "ends where there is no inertia"
+        remedy = f"put a Disk behind {element}, or give the tube a density"
+    return InputError(problem, element=element, remedy=remedy)
 
 
 def _names(line: Driveline, draft: _Draft, coordinate: list[int]) -> list[str]:
     """A name per unknown: the first disk of its group, or the shaft end that carries it."""
-    disks, tubes = (
-        {draft.stations[s].group: i for s, i in reversed(placed)} for placed in (draft.disks, draft.tube_ends)
-    )
-    return [
-        line.names[disks[g]] if g in disks else f"end of {line.names[tubes[g]]}"
-        for g, c in enumerate(coordinate)
-        if c >= 0
-    ]
+    named = {draft.stations[s].group: f"end of {line.names[i]}" for s, i in reversed(draft.tube_ends)}
+    named |= {draft.stations[s].group: line.names[i] for s, i in reversed(draft.disks)}
+    return [named[g] for g, c in enumerate(coordinate) if c >= 0]

@@ -20,10 +20,11 @@ from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.analyses.charts.few_nodes import leading_patches
 from trunnion.analyses.charts.leading_group import told_apart
 from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling, without_groups
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import (
@@ -305,7 +306,7 @@ class LineFamily:
         unlike = np.unique(np.concatenate(moving, axis=1), axis=0, return_index=True)[1]
         coefficients = self._coefficients(x[unlike], y[unlike])
         tau = np.linspace(begin, begin + length, 801)
-        speeds = np.abs(base_motion(topo, coefficients, tau, ratio_values(topo)).speed)
+        speeds = np.abs(base_motion(topo, coefficients, tau).speed)
         return tau, np.maximum(speeds.max(axis=(0, 2)), 1.0)
 
     def _strips(self, box: Box, frequency: float) -> list[Box]:

@@ -107,9 +107,8 @@ class _Search:
 
     def over(self, value: Array, speed: Array) -> Array:
         """What is compared over what is allowed, less 1 (demand, point); infinite at an undamped resonance."""
-        table = self.assembly.table(len(value))
+        table = self.assembly.table(len(value), speed)
         self.columns.put(table, value)
-        table[:, 0] = speed
         response = response_of_table(self.assembly, table)
         over = np.stack([d.values(response, table) / d.allowed - 1 for d in self.demands])
         return np.where(np.isnan(over), np.inf, over)

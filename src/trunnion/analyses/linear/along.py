@@ -14,15 +14,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Codes, Complex
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import (
     LARGEST_DENSE,
     LineRates,
     fastest_cycles,
     first_order,
     period_of,
+    scales,
     steps_that_see,
 )
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import bent, require_balance
 from trunnion.errors import InputError
@@ -78,8 +80,7 @@ def stability_along(
     speed = np.asarray(speeds, dtype=float)
     if assembly.topology.free and bent(assembly):
         return _about_own_motions(assembly, speed, motions)
-    table = assembly.table(len(speed))
-    table[:, 0] = speed
+    table = assembly.table(len(speed), speed)
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     small = assembly.topology.size <= LARGEST_DENSE
     return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
@@ -94,9 +95,7 @@ def straight_decay(assembly: Assembly, speed: float) -> float:
     topo, table = assembly.topology, assembly.table(1, speed)
     co = replace(assembly.coefficients(table, any_frequency=True).straight, waves=())
     m = line_matrices(topo, co, np.zeros(1))
-    root = np.sqrt(np.einsum("ctii->ci", m.mass))
-    stiffness = np.einsum("ctii->ci", m.stiffness)
-    unit = np.sqrt(np.maximum(np.abs(stiffness / root**2).mean(axis=1), 1e-300)) / speed
+    root, unit = scales(m, co.speed)
     slopes = first_order(m, co.speed, root, unit)[0, 0]
     aside = rigid_motions(topo, co) * np.concatenate([root[0], root[0] / unit[0]])[:, None]
     left = without(slopes, aside)[0] if aside.shape[1] else slopes
@@ -120,9 +119,7 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
 def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed | None) -> StabilityAlong:
     from trunnion.analyses.linear.own_motions import own_motions
 
-    table = assembly.table(len(speed))
-    table[:, 0] = speed
-    require_balance(assembly, table)
+    require_balance(assembly, assembly.table(len(speed), speed))
     motions = own_motions(assembly.line, speed, solved)
     if motions is None:
         raise NoSharedMotion(

@@ -24,7 +24,6 @@ from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import aligned_matrices, elongation
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exciters import Exciter, exciters, size
 from trunnion.equations.harmonic_torques import cylinders
@@ -303,22 +302,17 @@ def _largest(assembly: Assembly, exciter: Exciter, speeds: Array) -> float:
     fired = len(disk.firing_angles or ())
     if fired and abs(cylinders(disk, disk.excitation[exciter.number - 1])) <= CANCELLED * fired:
         return 0.0
-    table = assembly.table(len(speeds))
-    table[:, 0] = speeds
     try:
-        return float(np.abs(size(assembly, exciter, table)).max())
+        return float(np.abs(size(assembly, exciter, assembly.table(len(speeds), speeds))).max())
     except InputError:
         return np.nan
 
 
 def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
     """Shares of kinetic (rotation, mode) and elastic energy (spring, mode)."""
-    topo = assembly.topology
     coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
-    mass = aligned_matrices(topo, coefficients).mass[0]
-    kinetic = mass[:, None] * np.abs(shape) ** 2
-    twist = np.array([elongation(topo, e) @ shape for e in range(len(topo.compliances))])
-    potential = coefficients.stiffness[0][:, None] * np.abs(twist) ** 2
+    kinetic = assembly.aligned.mass[0][:, None] * np.abs(shape) ** 2
+    potential = coefficients.stiffness[0][:, None] * np.abs(assembly.topology.elongations @ shape) ** 2
     return kinetic / kinetic.sum(axis=0), potential / potential.sum(axis=0)
 
 

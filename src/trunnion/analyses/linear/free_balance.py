@@ -17,8 +17,9 @@ import numpy as np
 from trunnion.analyses.orbits.balancing import on_one_thread
 from trunnion.arrays import Array, Flags
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.integration.integration import Equations
@@ -215,11 +216,11 @@ class FreeBalance:
 
     def _rigid(self, speed: Array, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""
-        topo, ratios, times = self.assembly.topology, ratio_values(self.assembly.topology), 4 * h + 4
+        topo, times = self.assembly.topology, 4 * h + 4
         tau = self.period * np.arange(times) / times
-        base, plain = (base_motion(topo, case, tau, ratios).angle for case in (co, co.straight))
+        base, plain = (base_motion(topo, case, tau).angle for case in (co, co.straight))
         held = self.assembly.coefficients(self._table(speed), free_play=True)
-        loaded, loose = (base_motion(topo, case, np.zeros(1), ratios).angle[:, 0] for case in (held, co))
+        loaded, loose = (base_motion(topo, case, np.zeros(1)).angle[:, 0] for case in (held, co))
         rows = fourier.rows_of((base - plain)[..., topo.firsts].transpose(0, 2, 1), h)
         rows[..., 0] += (loaded - loose)[:, topo.firsts]
         rows[..., 0] -= np.outer(rows[..., 0] @ self.phase, self.phase) / (self.phase @ self.phase)

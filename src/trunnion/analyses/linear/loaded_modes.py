@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
-from trunnion.equations.aligned import aligned_matrices, elongation, relative_ratio
+from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.loads import load_slope
 
@@ -26,20 +26,10 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     mode does not oscillate.
     """
     topo = assembly.topology
-    table = assembly.table(len(speeds))
-    table[:, 0] = speeds
-    coefficients = assembly.coefficients(table, any_frequency=True)
+    coefficients = assembly.coefficients(assembly.table(len(speeds), speeds), any_frequency=True)
     matrices = aligned_matrices(topo, coefficients)
-    damping = matrices.damping.copy()
     slope = load_slope(topo, coefficients.viscous, coefficients.quadratic, np.asarray(speeds))
-    for s in range(len(topo.stations)):
-        c = topo.coordinate[topo.group_of(s)]
-        if c >= 0:
-            damping[:, c, c] += slope[:, s] * relative_ratio(topo, s) ** 2
-    loss = np.zeros_like(damping)
-    for e in range(len(topo.compliances)):
-        direction = elongation(topo, e)
-        loss += coefficients.loss[:, e, None, None] * np.outer(direction, direction)
+    damping = matrices.damping + topo.on_unknowns(slope)[:, :, None] * np.eye(topo.size)
     n, mass = topo.size, matrices.mass[0]
     root = np.sqrt(mass)
     scale = np.outer(root, root)
@@ -52,7 +42,7 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     for i in range(min(len(speeds), 1) if alike else len(speeds)):
         system = np.zeros((2 * n, 2 * n), dtype=complex)
         system[:n, n:] = np.eye(n)
-        system[n:, :n] = -(matrices.stiffness[i] + 1j * loss[i]) / scale
+        system[n:, :n] = -(matrices.stiffness[i] + 1j * matrices.loss[i]) / scale
         system[n:, n:] = -damping[i] / scale
         values, vectors = np.linalg.eig(system)
         kept = values.imag > RIGID * np.sqrt(max(squares.max(initial=0.0), 0.0))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.aligned import aligned_matrices, elongation
+from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.line_regimes import StagedSpring, staged_springs
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def spring_contacts(response: PeriodicResponse) -> tuple[SpringContact, ...]:
     )
     found = []
     for e, spring in springs.items():
-        direction = elongation(assembly.topology, e)
+        direction = assembly.topology.elongations[e]
         inertia = 1 / float(np.sum(direction**2 / matrices.mass[0]))
         found.append(_contact(response, e, spring, inertia))
     return tuple(found)

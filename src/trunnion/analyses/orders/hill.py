@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.orders.straight import SINGULAR
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.coefficients import LineCoefficients
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics import harmonics as fourier

@@ -19,12 +19,13 @@ import numpy as np
 from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics
 from trunnion.arrays import Array, Complex, Integers
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import BaseOfExcitation
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.steady_base import refuse_own_motion
-from trunnion.equations.topology import Link, Topology
+from trunnion.equations.topology import Topology
 from trunnion.errors import ComputationError
 from trunnion.numerics import harmonics as fourier
 
@@ -77,13 +78,13 @@ class OwnOrders:
             lost = speeds[~motions.found][0] * 30 / np.pi
             raise ComputationError(f"no own motion of the free line was found at {lost:.5g} rpm")
         topo, co, n = self.topo, motions.coefficients, self.topo.size
-        ratios, tau = ratio_values(topo), motions.tau
+        tau = motions.tau
         rates, slopes = motions.sampled()
         drive = motions.sampled(more=1.0)[0] - rates
         observed = motions.observed()
-        uniform = base_motion(topo, co.straight, tau, ratios).angle
-        rigid = base_motion(topo, co, tau, ratios).angle - uniform
-        relative = _relative(topo, co, uniform + observed.rotation, ratios)
+        uniform = base_motion(topo, co.straight, tau).angle
+        rigid = base_motion(topo, co, tau).angle - uniform
+        relative = base_motion(topo, co, tau, stood=uniform + observed.rotation).relative
         mass = np.zeros((len(speeds), len(tau), n))
         for s in range(len(topo.stations)):
             if (i := topo.coordinate[topo.group_of(s)]) >= 0:
@@ -112,19 +113,6 @@ class OwnOrders:
             rate=motions.rate,
             count=motions.h,
         )
-
-
-def _relative(topo: Topology, co: LineCoefficients, angle: Array, ratios: Array) -> Array:
-    """r (case, time, station) of every station from its group's first, where stations stand at ``angle``, of the same
-    shape."""
-    r, laws = np.ones_like(angle), list(co.joints)
-    for s, station in enumerate(topo.stations):
-        b = station.before
-        if station.link is Link.JOINT:
-            r[..., s] = laws.pop(0).at(angle[..., b] + co.shift[:, s, None]).ratio * r[..., b]
-        elif station.link not in (Link.ROOT, Link.SHAFT):
-            r[..., s] = r[..., b] / ratios[s]
-    return r
 
 
 def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:

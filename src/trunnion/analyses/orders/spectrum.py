@@ -19,7 +19,7 @@ from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
 from trunnion.analyses.orders.straight import loss_matrix, straight_about_first, straight_response
 from trunnion.arrays import Array, Complex, Integers
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import (
     BaseOfExcitation,
     Exciter,
@@ -29,6 +29,7 @@ from trunnion.equations.exciters import (
     torque_on_unknowns,
     twist_on_unknowns,
 )
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period

@@ -8,7 +8,8 @@ import numpy as np
 
 from trunnion.analyses.linear.along import stability_along
 from trunnion.arrays import Array, Codes
-from trunnion.equations.coefficients import Assembly, LineCoefficients
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import bent
 from trunnion.results.verdict import Verdict
@@ -31,8 +32,7 @@ def verdicts_at(
     which has no equations in time, so that no multipliers exist, and where the computation failed.
     ``motions``: own motions that are known already.
     """
-    table = assembly.table(len(speed))
-    table[:, 0] = speed
+    table = assembly.table(len(speed), speed)
     co = assembly.coefficients(table, statically_twisted=statically_twisted, any_frequency=True)
     varies = bent(assembly) or bool(co.waves)
     if co.loss.any() and varies:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers, Places
-from trunnion.equations.coefficients import LineCoefficients
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve

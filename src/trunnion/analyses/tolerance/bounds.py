@@ -16,9 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.equations.aligned import relative_ratio
-from trunnion.equations.coefficients import Assembly, LineCoefficients
-from trunnion.equations.kinematics import base_motion, ratio_values
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.kinematics import base_motion
 from trunnion.equations.topology import Link
 
 Array = NDArray[np.float64]
@@ -57,7 +56,7 @@ def over_boxes(assembly: Assembly, low: Array, high: Array) -> Coefficients:
     ends = [assembly.coefficients(t, statically_twisted=False) for t in (low, high)]
     k, dk = _middle(ends[0].stiffness, ends[1].stiffness)
     c, dc = _middle(ends[0].damping, ends[1].damping)
-    inertia = [_inertia(assembly, e) for e in ends]
+    inertia = [assembly.topology.on_unknowns(e.inertia) for e in ends]
     g, dg = _middle(1 / inertia[1], 1 / inertia[0])
     s, ds = _middle(1 / ends[1].speed, 1 / ends[0].speed)
     places = [assembly.packed.column(assembly.topology.stations[j].element, "angle") for j in assembly.topology.joints]
@@ -74,16 +73,6 @@ def _middle(low: Array, high: Array) -> tuple[Array, Array]:
     half = np.abs(np.log(safe[1] / safe[0])) / 2
     middle = np.sign(low) * np.sqrt(safe[0] * safe[1])
     return np.where(there, middle, 0.0), np.where(there, half * (1 + ROUNDED) + ROUNDED, 0.0)
-
-
-def _inertia(assembly: Assembly, co: LineCoefficients) -> Array:
-    topo = assembly.topology
-    inertia = np.zeros((len(co.speed), topo.size))
-    for station in range(len(topo.stations)):
-        i = topo.coordinate[topo.group_of(station)]
-        if i >= 0:
-            inertia[:, i] += co.inertia[:, station] * relative_ratio(topo, station) ** 2
-    return inertia
 
 
 @dataclass(frozen=True)
@@ -121,7 +110,7 @@ def ratios(assembly: Assembly, middle: Array, co: Coefficients, tau: Array) -> R
     """
     topo = assembly.topology
     coefficients = assembly.coefficients(middle, statically_twisted=False)
-    motion = base_motion(topo, coefficients, tau, ratio_values(topo))
+    motion = base_motion(topo, coefficients, tau)
     near = [c.near for c in topo.compliances]
     shape = (len(middle), len(topo.stations))
     steep = np.abs(co.angle) + co.turned

@@ -1,0 +1,64 @@
+"""The numbers that the equations of a line hold, one row per case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.laws.joint import JointLaw
+
+
+@dataclass(frozen=True)
+class MeshWave:
+    """A mesh's stiffness over its mean: 1 + Σ share cos(cycles τ + phase), as a factor of one compliance's.
+
+    cycles (harmonic,) per turn of the input; share and phase (case, harmonic).
+    """
+
+    compliance: int
+    cycles: Array
+    share: Array
+    phase: Array
+
+    def at(self, tau: Array) -> Array:
+        """The factor (case, time) at input angles ``tau`` (time,) or (case, time) [rad]."""
+        angle = np.asarray(tau)[..., None] * self.cycles + self.phase[:, None, :]
+        return np.asarray(1 + np.sum(self.share[:, None, :] * np.cos(angle), axis=-1))
+
+
+@dataclass(frozen=True)
+class LineCoefficients:
+    """What the equations of a line need, one row per case (axes: case, then as named).
+
+    speed [rad/s]; stiffness [N m/rad], damping [N m s/rad], torque and twist of the static state [N m, rad] per
+    compliance; inertia [kg m²] per station; load [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] per
+    station: its outer torque is load + viscous ω + quadratic ω|ω| against the mean sense of rotation, what a
+    drive_share carries included in ``load``; not_carried [N m] per station: its mean where the line is taken
+    untwisted, a base state in which no torque acts (0 otherwise); ``joints``: the law of each joint, its numbers
+    (case, 1); ``shift`` [rad] per station: what a shaft adds to the angle at its far end (fork offset and static
+    twist), and what a joint subtracts from its input angle to measure it from its own plane. ``loss`` [N m/rad] per
+    compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
+    ``waves``: meshes whose stiffness varies about the one given here.
+    """
+
+    speed: Array
+    stiffness: Array
+    damping: Array
+    torque: Array
+    twist: Array
+    inertia: Array
+    load: Array
+    viscous: Array
+    quadratic: Array
+    not_carried: Array
+    joints: tuple[JointLaw, ...]
+    shift: Array
+    loss: Array
+    waves: tuple[MeshWave, ...] = ()
+
+    @property
+    def straight(self) -> LineCoefficients:
+        """The same without any bend."""
+        return replace(self, joints=tuple(law.straight() for law in self.joints))
