@@ -17,7 +17,6 @@ from trunnion.analyses.assessment.check import Check, Rule, Status, below, judge
 from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
-from trunnion.analyses.orders.totals import extremes
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import against, shown
 from trunnion.driveline.shafts import Shaft
@@ -159,9 +158,7 @@ def limited_values(
     if limit.key == "max_stress":
         factor = _stress_factors(assembly, table, limit.element)
         return response.peak_torque[:, c] * factor, torque * factor[:, None]
-    places = response.spectrum.channels
-    low, high = extremes(response.spectrum, response.spectrum.amplitude[..., places.twist], response.mean_twist)
-    twist = np.maximum(np.abs(low), np.abs(high))[:, c] * _share(assembly, table, limit.element, c)
+    twist = response.twist_range.largest[:, c] * _share(assembly, table, limit.element, c)
     return twist, np.abs(response.twist[:, :, c])
 
 

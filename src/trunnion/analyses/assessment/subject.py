@@ -16,7 +16,7 @@ from trunnion.analyses.linear.along import StabilityAlong, stability_along
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
-from trunnion.analyses.orders.response import order_response, own_motions_of, response_about, rough_response
+from trunnion.analyses.orders.response import order_response, own_motions_of, response_about
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
@@ -66,7 +66,7 @@ class Subject:
 @dataclass(frozen=True)
 class Case:
     """The line under one load case ("" as stated), and the speeds that it is judged at; ``known``: its response there,
-    where that is known already; ``rough``: to look around, see ``rough_response``."""
+    where that is known already; ``rough``: to look around, see ``response_about``."""
 
     name: str
     assembly: Assembly
@@ -93,7 +93,7 @@ class Case:
     def _peaks(self, grid: Array) -> Array:
         """Speeds between those of ``grid`` at which a torque may be largest, by parabolas through three of them."""
         try:
-            seen = rough_response(self.assembly, grid)
+            seen = response_about(self.assembly, grid, rough=True)
         except (InputError, ComputationError):  # said where it is asked for
             return np.zeros(0)
         found = np.concatenate([seen.vibratory_torque, seen.peak_torque, seen.heat], axis=1)
@@ -116,7 +116,7 @@ class Case:
             return self.known
         try:
             if self.rough:
-                return rough_response(self.assembly, self.speeds)
+                return response_about(self.assembly, self.speeds, rough=True)
             if not self.parametric:
                 return order_response(self.assembly, self.speeds)
             found = response_about(self.assembly, self.speeds, self.motions)

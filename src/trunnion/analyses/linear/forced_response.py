@@ -102,7 +102,8 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
     topo = assembly.topology
     spectrum = order_spectrum(assembly, np.array([speed]), statically_twisted=statically_twisted)
     places = spectrum.channels
-    low, high = (part[0] for part in extremes(spectrum, spectrum.amplitude, spectrum.mean))
+    between = extremes(spectrum, spectrum.amplitude, spectrum.mean)
+    swing = between.swing[0]
     turns = float(common_turns(spectrum) or (TURNS if spectrum.order else 1))
     cycles = max(np.abs(spectrum.angular_frequency).max(initial=speed) / speed * turns, 1.0)
     times = np.ceil(max(TIMES, PER_CYCLE * cycles))
@@ -119,9 +120,9 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
         twist=seen[:, places.twist],
         torque=seen[:, places.torque],
         rotation=seen[:, places.deviation],
-        joint_rotation=np.maximum(np.abs(low), np.abs(high))[places.joint_input],
-        twist_amplitude=((high - low) / 2)[places.twist],
-        torque_amplitude=((high - low) / 2)[places.torque],
+        joint_rotation=between.largest[0, places.joint_input],
+        twist_amplitude=swing[places.twist],
+        torque_amplitude=swing[places.torque],
         torque_mean=spectrum.mean[0, places.torque],
         shafts=shaft_names(assembly),
         joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),

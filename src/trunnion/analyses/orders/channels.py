@@ -68,8 +68,7 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     """
     places = channels_of(topo)
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
-    for e, compliance in enumerate(topo.compliances):
-        far, near = topo.coordinate[compliance.far_group], topo.coordinate[topo.group_of(compliance.near)]
+    for e, (far, near) in enumerate(topo.ends):
         if far >= 0:
             seen[..., e] += x[..., far]
         if near >= 0:

@@ -28,6 +28,10 @@ class Group:
     members: tuple[tuple[Exciter, int], ...]
     own: bool = False
 
+    def carrier_at(self, speed: Array) -> Array:
+        """Its frequency [rad/s] at input speeds."""
+        return np.full(len(speed), self.frequency) if self.frequency else float(self.carrier) * speed
+
     def harmonics(self, layers: dict[int, int], reach: int) -> tuple[Integers, Flags]:
         """Harmonics h (h,) about the members and which of them are the outermost (h,); ``layers`` as of ``offsets``."""
         centres = {m for _, m in self.members} or {0}

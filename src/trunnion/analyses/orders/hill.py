@@ -136,11 +136,9 @@ class HillBlocks:
 
     def _add_loss(self, matrix: Complex, place: Integers, sign: Array) -> None:
         every = np.arange(sign.shape[1])
-        for e, compliance in enumerate(self.topo.compliances):
+        for e, (far, near) in enumerate(self.topo.ends):
             if not self.loss[:, e].any():
                 continue
-            far = self.topo.coordinate[compliance.far_group]
-            near = self.topo.coordinate[self.topo.group_of(compliance.near)]
             ratio = self.ratio[:, place, e]
             loss = 1j * self.loss[:, e, None] * sign
             if far >= 0:

@@ -33,7 +33,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
-from trunnion.equations.steady_base import bent, require_steady_base
+from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.verdict import Verdict
@@ -82,9 +82,6 @@ def order_response(
     """
     assembly = _assembled(line, load_case)
     speed = _checked_speeds(speeds)
-    table = assembly.table(len(speed))
-    table[:, 0] = speed
-    require_steady_base(assembly, table)
     wanted = None if orders is None else _checked_orders(orders)
     twisted, motions = statically_twisted, own_motions_of(assembly)
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
@@ -102,25 +99,18 @@ def own_motions_of(assembly: Assembly) -> MotionsBySpeed | None:
     return MotionsBySpeed(assembly.line)
 
 
-def response_about(assembly: Assembly, speeds: Array, motions: MotionsBySpeed | None) -> OrderResponse:
-    """As ``order_response``, about ``motions`` that may be known already; its verdicts are not judged."""
-    table = assembly.table(len(speeds))
-    table[:, 0] = speeds
-    require_steady_base(assembly, table)
-    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, motions=motions))
+def response_about(
+    assembly: Assembly, speeds: Array, motions: MotionsBySpeed | None = None, *, rough: bool = False
+) -> OrderResponse:
+    """As ``order_response``, its verdicts not judged, about ``motions`` that may be known already.
 
-
-def rough_response(assembly: Assembly, speeds: Array) -> OrderResponse:
-    """To look around: right to first order in what joints and varying meshes force, a fraction of the time.
+    ``rough`` : to look around, right to first order in what joints and varying meshes force, a fraction of the time.
 
     Raises
     ------
     InputError : as of ``order_response``.
     """
-    table = assembly.table(len(speeds))
-    table[:, 0] = speeds
-    require_steady_base(assembly, table)
-    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, rough=True))
+    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, rough=rough, motions=motions))
 
 
 def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
@@ -132,7 +122,6 @@ def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
     ------
     InputError : see ``order_spectrum``.
     """
-    require_steady_base(assembly, table)
     found = response_of_spectrum(assembly, order_spectrum(assembly, table[:, 0], table=table))
     return replace(found, stress_factor=np.full_like(found.stress_factor, np.nan))
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
-from trunnion.analyses.orders.totals import adds_exactly, common_turns, extremes, wave
+from trunnion.analyses.orders.totals import Range, adds_exactly, common_turns, extremes, extremes_at, wave
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.arrays import Array, Codes, Complex, Flags
-from trunnion.results.declared import Held, Judged, along, axis, over, remark
+from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
@@ -90,29 +90,29 @@ class OrderResponse(Judged):
         return not adds_exactly(self.spectrum)
 
     @cached_property
-    def torque_range(self) -> tuple[Array, Array]:
+    def torque_range(self) -> Range:
         """Lowest and highest torque (speed, spring) [N m] over the cycle, mean included."""
-        places = self.spectrum.channels
-        return extremes(self.spectrum, self.spectrum.amplitude[..., places.torque], self.mean_torque)
+        return extremes_at(self.spectrum, self.spectrum.channels.torque)
 
     @property
     def peak_torque(self) -> Array:
         """Largest |mean + vibratory torque| (speed, spring) [N m] over the cycle."""
-        low, high = self.torque_range
-        return np.asarray(np.maximum(np.abs(low), np.abs(high)))
+        return self.torque_range.largest
 
     @property
     def vibratory_torque(self) -> Array:
         """Half of the peak-to-peak torque (speed, spring) [N m]."""
-        low, high = self.torque_range
-        return np.asarray((high - low) / 2)
+        return self.torque_range.swing
 
     @cached_property
+    def twist_range(self) -> Range:
+        """Lowest and highest twist (speed, spring) [rad] over the cycle, mean included."""
+        return extremes_at(self.spectrum, self.spectrum.channels.twist)
+
+    @property
     def vibratory_twist(self) -> Array:
         """Half of the peak-to-peak twist (speed, spring) [rad]."""
-        places = self.spectrum.channels
-        low, high = extremes(self.spectrum, self.spectrum.amplitude[..., places.twist], self.mean_twist)
-        return np.asarray((high - low) / 2)
+        return self.twist_range.swing
 
     @property
     def vibratory_stress(self) -> Array:
@@ -155,8 +155,7 @@ class OrderResponse(Judged):
         spectrum = self.spectrum
         whole = spectrum.amplitude[..., spectrum.channels.point] + spectrum.base
         turned = whole * (1j * spectrum.angular_frequency[..., None]) ** rates
-        low, high = extremes(spectrum, turned, np.zeros((len(self.speed), len(self.inertias))))
-        return np.asarray((high - low) / 2)
+        return extremes(spectrum, turned, np.zeros((len(self.speed), len(self.inertias)))).swing
 
     @cached_property
     def joint_rotation(self) -> Array:
@@ -166,10 +165,7 @@ class OrderResponse(Judged):
     @cached_property
     def joint_rotations(self) -> Array:
         """The same for every joint (speed, joint)."""
-        spectrum = self.spectrum
-        at = spectrum.channels.joint_input
-        low, high = extremes(spectrum, spectrum.amplitude[..., at], spectrum.mean[:, at])
-        return np.asarray(np.maximum(np.abs(low), np.abs(high)))
+        return extremes_at(self.spectrum, self.spectrum.channels.joint_input).largest
 
     @property
     def linear(self) -> Flags:
@@ -239,21 +235,15 @@ class OrderResponse(Judged):
         yield along("order_number", "frequency", self.frequency, "rad/s", "beside the order")
         yield axis("spring", list(self.springs))
         yield axis("inertia", list(self.inertias))
-        yield over("speed order_number spring", "torque", self.torque, "N*m")
-        yield over("speed order_number spring", "twist", self.twist, "rad")
+        yield from fields_over("speed order_number spring", self, torque="N*m", twist="rad")
         yield over("speed order_number inertia", "rotation", self.rotation, "rad")
-        for name, unit in (
-            ("mean_torque", "N*m"),
-            ("peak_torque", "N*m"),
-            ("vibratory_torque", "N*m"),
-            ("vibratory_twist", "rad"),
-            ("vibratory_stress", "Pa"),
-            ("peak_stress", "Pa"),
-            ("heat", "W"),
-        ):
-            yield over("speed spring", name, getattr(self, name), unit)
-        for name, unit in (("rotation_amplitude", "rad"), ("speed_fluctuation", "rad/s"), ("acceleration", "rad/s^2")):
-            yield over("speed inertia", name, getattr(self, name), unit)
+        yield from fields_over(
+            "speed spring", self, mean_torque="N*m", peak_torque="N*m", vibratory_torque="N*m", vibratory_twist="rad",
+            vibratory_stress="Pa", peak_stress="Pa", heat="W",
+        )  # fmt: skip
+        yield from fields_over(
+            "speed inertia", self, rotation_amplitude="rad", speed_fluctuation="rad/s", acceleration="rad/s^2"
+        )
         yield over("speed", "joint_rotation", self.joint_rotation, "rad")
         yield over("speed", "linear", self.linear.astype(np.int8))
         yield over("speed", "cut_off", self.cut_off, "1")

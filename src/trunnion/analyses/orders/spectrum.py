@@ -9,16 +9,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
-from trunnion.analyses.orders.straight import loss_matrix, straight_about_first, straight_response
+from trunnion.analyses.orders.straight import straight_about_first, straight_response
 from trunnion.arrays import Array, Complex, Integers
+from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import (
     BaseOfExcitation,
@@ -31,7 +33,7 @@ from trunnion.equations.exciters import (
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import bent, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
@@ -113,30 +115,30 @@ def order_spectrum(
 
 
 def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, table: Array | None) -> Array:
-    """The packed numbers (speed, column) to solve; checked where they are given."""
-    if table is None:
-        numbers = assembly.table(len(speed))
-    else:
-        numbers = table.copy()
-        if assembly.topology.free and bent(assembly, table):
-            remedy = "ask order_response of each line by itself"
-            raise InputError("starts free and is bent: its cases are not solved together", element="driveline",
-                             remedy=remedy)  # fmt: skip
-        for exciter in shaken:
-            if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
-                raise InputError(
-                    "is a frequency of excitation, which is no parameter of the orders",
-                    key=assembly.packed.labels[exciter.frequency], remedy="ask order_response of each line by itself",
-                )  # fmt: skip
+    """The packed numbers (speed, column) to solve, which have a steady base; checked where they are given."""
+    numbers = assembly.table(len(speed)) if table is None else table.copy()
     numbers[:, 0] = speed
+    require_steady_base(assembly, numbers)
+    if table is None:
+        return numbers
+    remedy = "ask order_response of each line by itself"
+    if assembly.topology.free and bent(assembly, numbers):
+        raise InputError(
+            "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
+        )
+    for exciter in shaken:
+        if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
+            label = assembly.packed.labels[exciter.frequency]
+            raise InputError(
+                "is a frequency of excitation, which is no parameter of the orders", key=label, remedy=remedy
+            )
     return numbers
 
 
 def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
-    numbers = len(set(first.amplitude) | set(first.base)) * (
-        channels_of(assembly.topology).count + len(assembly.topology.points)
-    )
+    places = channels_of(assembly.topology)
+    numbers = len(set(first.amplitude) | set(first.base)) * (places.count + places.points)
     # Complex, and held twice while the parts are put together.
     require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
 
@@ -169,6 +171,7 @@ class _Case:
     ) -> None:
         self.linearised, self.rough = linearised, rough
         self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
+        self.places = channels_of(self.topo)
         self.twisted = statically_twisted
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
@@ -180,7 +183,12 @@ class _Case:
         self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
-        self.own = _own_orders(assembly, motions) if self.topo.free and bent(assembly) and not about_rigid else None
+        self.own: OwnOrders | None = None
+        if self.topo.free and bent(assembly) and not about_rigid:
+            # Loaded for lines that need it: it brings the compiler and the orbits with it.
+            from trunnion.analyses.orders.own_orders import OwnOrders
+
+            self.own = OwnOrders(assembly, motions)
         self.reach = ROUGH_REACH if rough else _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.few: Array | None = None
@@ -229,28 +237,22 @@ class _Case:
             self.reach = min(MOST, self.reach + max(1, self.reach // 2))
 
     def _straight(self, table: Array) -> OrderSum:
-        topo, speed, co = self.topo, table[:, 0], self.coefficients(table)
-        matrices = line_matrices(topo, co, np.zeros(1))
-        loss = loss_matrix(topo, co)
-        base = self._base(table, co, np.zeros(1))
-        total = OrderSum(len(speed), channels_of(topo).count, len(topo.points))
+        topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
+        matrices, base = line_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
+        total = OrderSum(len(table), self.places.count, self.places.points)
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
         if groups:
-            carrier = [[g.frequency if g.frequency else float(e.order) for e, _ in g.members][0] for g in groups]
-            in_time = np.array([g.frequency > 0 for g in groups])
-            nu = np.where(in_time[:, None], np.array(carrier)[:, None], np.array(carrier)[:, None] * speed)
+            nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
             sources = [
-                self._sources(g, table, co, base, nu[j][:, None], matrices.wave, None) for j, g in enumerate(groups)
+                self._sources(group, once, table, co, base, at[:, None], matrices.wave)
+                for group, at in zip(groups, nu, strict=True)
             ]
-            right = np.stack([force[:, 0, :] for force, _ in sources])
             solve = straight_about_first if self.linearised else straight_response
-            y = solve(topo, matrices, loss, nu, right)
-            for j, group in enumerate(groups):
-                seen = motion_channels(topo, y[j][:, None], matrices.ratio, base.relative)
-                seen[:, :, channels_of(topo).twist] += sources[j][1]
-                self._add_torque(seen, co, nu[j][:, None])
-                order = Fraction(0) if group.frequency else group.members[0][0].order
-                total.add(order, group.frequency, seen[:, 0])
+            right = np.stack([force[:, 0] for force, _ in sources])
+            y = solve(topo, matrices, aligned_matrices(topo, co).loss, nu, right)
+            for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
+                seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
+                self._gather(total, group, once, seen, error, at[:, None], co, matrices.wave)
         self._add_static(total, co)
         return total
 
@@ -274,69 +276,52 @@ class _Case:
         return found
 
     def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
-        topo, cycles, speed = self.topo, 1 / self.turns, cases[:, 0]
+        topo, speed = self.topo, cases[:, 0]
         nodes, out = nodes_at(self.few, speed), self._written(reach, cases)
-        table, co, layers, matrices, base, blocks = (
-            out.table, out.co, out.layers, out.matrices, out.base, out.blocks,
-        )  # fmt: skip
-        every = co if self.few is None else self.springs
-        step, times = blocks.step, blocks.times
+        every = self.springs if self.few is not None else out.co
         alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
-        ratio, relative = matrices.ratio[alike], base.relative[alike]
-        places = channels_of(topo)
-        total = OrderSum(len(speed), places.count, len(topo.points))
+        ratio, relative, wave = (part[alike] for part in (out.matrices.ratio, out.base.relative, out.matrices.wave))
+        total = OrderSum(len(speed), self.places.count, self.places.points)
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in out.groups:
-            carrier = np.full(len(step), group.frequency) if group.frequency else float(group.carrier) * table[:, 0]
-            h, rim = group.harmonics(layers, reach)
-            nu = carrier[:, None] + h * step[:, None]
-            right, error = self._sources_by_harmonic(group, h, table, co, base, nu, matrices)
+            carrier = group.carrier_at(out.table[:, 0])
+            h, rim = group.harmonics(out.layers, reach)
+            nu = carrier[:, None] + h * out.blocks.step[:, None]
+            right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
+            if group.own:
+                right += self._harmonics(out.matrices.forcing, h)
             least = np.maximum(least, 1e-6 * np.abs(nodes.everywhere(right)).max(axis=(1, 2)))
-            x = blocks.solve(nodes, carrier, h, rim, right)
-            seen = channels_of_harmonics(topo, x, h, times, ratio, relative)
-            seen[..., places.twist] += nodes.everywhere(error)
-            self._add_torque(seen, every, nodes.everywhere(nu))
-            self._add_waves(seen, every, h, matrices.wave[alike], own=group.own)
-            last = np.maximum(last, np.abs(seen[:, rim, places.torque]).max(axis=(1, 2)))
-            for j, harmonic in enumerate(h):
-                total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
-        self._add_base(total, base.rotation[alike], cycles, max(layers))
+            x = out.blocks.solve(nodes, carrier, h, rim, right)
+            seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
+            self._gather(total, group, h, seen, nodes.everywhere(error), nodes.everywhere(nu), every, wave)
+            last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
+        self._add_base(total, out.base.rotation[alike], max(out.layers))
         self._add_static(total, every)
-        largest = np.max([np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()], axis=0)
-        largest = np.maximum(largest, least)
-        return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
+        return total, self._share(last, total, least)
 
     def _about_own_motions(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
         """Some speeds of a bent line that starts free."""
         from trunnion.analyses.orders.own_orders import about, add_own, seen_about
 
-        topo, cycles, speed, times = self.topo, 1 / self.turns, table[:, 0], len(own.tau)
-        places, co = channels_of(topo), own.coefficients
-        total, last = OrderSum(len(speed), places.count, len(topo.points)), np.zeros(len(speed))
-        add_own(own, cycles, total.add)
-        for group in groups_of(self.shaken, self.row, cycles, own.count):
-            carrier = np.full(len(speed), group.frequency) if group.frequency else float(group.carrier) * speed
+        co, speed = own.coefficients, table[:, 0]
+        total, last = OrderSum(len(speed), self.places.count, self.places.points), np.zeros(len(speed))
+        add_own(own, 1 / self.turns, total.add)
+        for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
+            carrier = group.carrier_at(speed)
             centres = [m for _, m in group.members]
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
-            right = np.zeros((len(speed), len(h), topo.size), dtype=complex)
-            error = np.zeros((len(speed), len(h), places.springs), dtype=complex)
-            for exciter, m in group.members:
-                nu = (carrier + m * own.rate)[:, None]
-                force, twist = self._sources(group, table, co, own.base, nu, own.wave, exciter)
-                near = np.abs(h - m) <= own.count
-                change = np.fft.fft(force / own.mass, axis=1) / times
-                right[:, near] += change[:, (h[near] - m) % times]
-                error[:, h == m] += twist
-            seen = seen_about(own, topo, h, about(own, carrier, h, right))
-            seen[..., places.twist] += error
-            self._add_torque(seen, co, carrier[:, None] + own.rate[:, None] * h)
-            self._add_waves(seen, co, h, own.wave, own=False)
-            last = np.maximum(last, np.abs(seen[:, [0, -1]][..., places.torque]).max(axis=(1, 2)))
-            for j, harmonic in enumerate(h):
-                total.add(group.carrier + int(harmonic) * cycles, group.frequency, seen[:, j])
-        sizes = [np.abs(a[:, places.torque]).max(axis=1) for a in total.amplitude.values()]
-        largest = np.max(sizes, axis=0) if sizes else np.zeros(len(speed))
-        return total, np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
+            nu = carrier[:, None] + own.rate[:, None] * h
+            right, error = self._sources(group, h, table, co, own.base, nu, own.wave, own.mass)
+            seen = seen_about(own, self.topo, h, about(own, carrier, h, right))
+            self._gather(total, group, h, seen, error, nu, co, own.wave)
+            last = np.maximum(last, np.abs(seen[:, [0, -1]][..., self.places.torque]).max(axis=(1, 2)))
+        return total, self._share(last, total)
+
+    def _share(self, last: Array, total: OrderSum, least: Array | float = 0.0) -> Array:
+        """Torques ``last`` (case,) over the largest of any order, which is no less than ``least``."""
+        sizes = [np.abs(a[:, self.places.torque]).max(axis=1) for a in total.amplitude.values()]
+        largest = np.maximum(np.max([np.zeros(len(last)), *sizes], axis=0), least)
+        return np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
     def _base(self, table: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
         plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
@@ -345,64 +330,64 @@ class _Case:
     def _sources(
         self,
         group: Group,
-        table: Array,
-        co: LineCoefficients,
-        base: BaseOfExcitation,
-        nu: Array,
-        wave: Array,
-        only: Exciter | None,
-    ) -> tuple[Complex, Complex]:
-        """Torque on the unknowns (case, time, n) and twist by transmission errors (case, 1, spring), all members
-        (or one) together; ``nu`` (case, 1) is their frequency."""
-        cases, times = base.relative.shape[:2]
-        force = np.zeros((cases, times, self.topo.size), dtype=complex)
-        error = np.zeros((cases, 1, len(self.topo.compliances)), dtype=complex)
-        for exciter, _ in group.members:
-            if only is not None and exciter is not only:
-                continue
-            sizes = size(self.assembly, exciter, table)
-            if exciter.compliance < 0:
-                force += torque_on_unknowns(self.topo, exciter, sizes, base)
-                continue
-            e = exciter.compliance
-            stiffness = co.stiffness[:, e, None] * wave[..., e]
-            torque = (stiffness + 1j * nu * co.damping[:, e, None]) * sizes[:, None]
-            force += twist_on_unknowns(self.topo, exciter, torque, base.relative)
-            error[:, 0, e] += sizes
-        return force, error
-
-    def _sources_by_harmonic(
-        self,
-        group: Group,
         h: Integers,
         table: Array,
         co: LineCoefficients,
         base: BaseOfExcitation,
         nu: Array,
-        matrices: LineMatrices,
+        wave: Array,
+        mass: Array | float = 1.0,
     ) -> tuple[Complex, Complex]:
-        """The same as Fourier coefficients (case, h, n) and (case, h, spring)."""
-        cases, times, n = matrices.forcing.shape
-        right = np.zeros((cases, len(h), n), dtype=complex)
-        error = np.zeros((cases, len(h), len(self.topo.compliances)), dtype=complex)
-        if group.own:
-            right += np.fft.fft(matrices.forcing, axis=1)[:, h % times] / times
+        """Torques on the unknowns (case, h, n), over their ``mass`` (case, time, n), and twists by transmission errors
+        (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
+        right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
+        error = np.zeros((len(base.relative), len(h), self.places.springs), dtype=complex)
         for exciter, m in group.members:
-            at = int(np.searchsorted(h, m))
-            force, twist = self._sources(group, table, co, base, nu[:, at : at + 1], matrices.wave, exciter)
-            right += np.fft.fft(force, axis=1)[:, (h - m) % times] / times
-            error[:, at] += twist[:, 0]
+            at, e = int(np.searchsorted(h, m)), exciter.compliance
+            sizes = size(self.assembly, exciter, table)
+            if e < 0:
+                force = torque_on_unknowns(self.topo, exciter, sizes, base)
+            else:
+                stiffness = co.stiffness[:, e, None] * wave[..., e]
+                torque = (stiffness + 1j * nu[:, at, None] * co.damping[:, e, None]) * sizes[:, None]
+                force = twist_on_unknowns(self.topo, exciter, torque, base.relative)
+                error[:, at, e] += sizes
+            near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
+            right[:, near] += self._harmonics(force / mass, h[near] - m)
         return right, error
+
+    def _harmonics(self, values: NDArray[Any], h: Integers) -> Complex:
+        """Fourier coefficients (case, h, …) at ``h`` of values (case, time, …) over the period."""
+        times = values.shape[1]
+        return np.asarray(np.fft.fft(values, axis=1)[:, h % times] / times)
+
+    def _gather(
+        self,
+        total: OrderSum,
+        group: Group,
+        h: Integers,
+        seen: Complex,
+        error: Complex,
+        nu: Array,
+        co: LineCoefficients,
+        wave: Array,
+    ) -> None:
+        """Give motions ``seen`` (case, h, channel) of a group their torques, in place, and add them up by order."""
+        seen[..., self.places.twist] += error
+        self._add_torque(seen, co, nu)
+        self._add_waves(seen, co, h, wave, own=group.own)
+        for j, harmonic in enumerate(h.tolist()):
+            total.add(group.carrier + harmonic / self.turns, group.frequency, seen[:, j])
 
     def _add_torque(self, seen: Complex, co: LineCoefficients, nu: Array) -> None:
         """Torque of every spring from its elastic twist, in place."""
-        places, v = channels_of(self.topo), nu[..., None]
+        places, v = self.places, nu[..., None]
         k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
         seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
 
     def _add_waves(self, seen: Complex, co: LineCoefficients, h: Integers, wave: Array, *, own: bool) -> None:
         """What the varying part of mesh stiffnesses adds to their torques, in place."""
-        places, times = channels_of(self.topo), wave.shape[1]
+        places, times = self.places, wave.shape[1]
         for e in sorted({mesh.compliance for mesh in co.waves}):
             change = np.fft.fft(wave[..., e] - 1.0, axis=1) / times
             apart = change[:, (h[:, None] - h[None, :]) % times]
@@ -413,28 +398,20 @@ class _Case:
             seen[..., places.torque.start + e] += torque
 
     def _add_static(self, total: OrderSum, co: LineCoefficients) -> None:
-        places = channels_of(self.topo)
-        total.mean[:, places.twist] += co.twist
-        total.mean[:, places.torque] += co.torque
+        total.mean[:, self.places.twist] += co.twist
+        total.mean[:, self.places.torque] += co.torque
 
-    def _add_base(self, total: OrderSum, rotation: Array, cycles: Fraction, highest: int) -> None:
+    def _add_base(self, total: OrderSum, rotation: Array, highest: int) -> None:
         """How the base motion itself turns: what joints force without any twist."""
         points = [station for station, _ in self.topo.points]
         spectrum = np.fft.rfft(rotation[..., points], axis=1) / rotation.shape[1]
         least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
-                total.base[h * cycles, 0.0] = 2 * spectrum[:, h]
+                total.base[h / self.turns, 0.0] = 2 * spectrum[:, h]
 
 
 def _reach(joints: tuple[JointLaw, ...]) -> int:
     """As many harmonics as the most uneven joint asks for: behind a Hooke's joint they fall off as tan^2h(β/2)."""
     share = max((law.spread for law in joints), default=0.0)
     return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))
-
-
-def _own_orders(assembly: Assembly, motions: MotionsBySpeed | None) -> OwnOrders:
-    """Loaded for lines that need it: it brings the compiler and the orbits with it."""
-    from trunnion.analyses.orders.own_orders import OwnOrders
-
-    return OwnOrders(assembly, motions)

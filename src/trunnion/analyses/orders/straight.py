@@ -13,8 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers, Places
-from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.linear import LineMatrices, line_matrices
+from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve
 
@@ -25,16 +24,6 @@ SINGULAR = 1e-13
 """Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
 
 
-def loss_matrix(topo: Topology, co: LineCoefficients) -> Array:
-    """H (case, n, n) of a straight line: its stiffness matrix with the loss in the place of k."""
-    if not co.loss.any():
-        return np.zeros((len(co.speed), topo.size, topo.size))
-    none = {
-        key: np.zeros_like(getattr(co, key)) for key in ("damping", "torque", "inertia", "load", "viscous", "quadratic")
-    }
-    return line_matrices(topo, replace(co, stiffness=co.loss, **none), np.zeros(1)).stiffness[:, 0]
-
-
 def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
@@ -42,10 +31,9 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
     """
     mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
     parent = np.full(topo.size, -1, dtype=np.int64)
-    for compliance in topo.compliances:
-        far = topo.coordinate[compliance.far_group]
+    for far, near in topo.ends:
         if far >= 0:
-            parent[far] = topo.coordinate[topo.group_of(compliance.near)]
+            parent[far] = near
     orders, cases, n = right.shape
     tied = np.where(parent >= 0, parent, 0)
     every = np.arange(n)

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.arrays import Array, Complex
-from trunnion.equations.topology import LONGEST_PERIOD
+from trunnion.equations.topology import LONGEST_PERIOD, common_rate
 from trunnion.numerics.cycle_extremes import cycle_extremes
 
 
 def common_base(orders: tuple[Fraction, ...]) -> Fraction | None:
     """Largest order that all ``orders`` are multiples of; None without orders or with too long a common period."""
-    base = Fraction(0)
-    for order in orders:
-        other = order
-        while other:
-            base, other = other, base % other
+    base = common_rate(orders)
     return base if base and 1 / base <= LONGEST_PERIOD else None
 
 
@@ -38,8 +35,25 @@ def adds_exactly(spectrum: OrderSpectrum) -> bool:
     return not spectrum.order or common_turns(spectrum) is not None
 
 
-def extremes(spectrum: OrderSpectrum, amplitude: Complex, mean: Array) -> tuple[Array, Array]:
-    """Lowest and highest value (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
+class Range(NamedTuple):
+    """Lowest and highest values over the cycle."""
+
+    low: Array
+    high: Array
+
+    @property
+    def swing(self) -> Array:
+        """Half of the peak-to-peak values."""
+        return np.asarray((self.high - self.low) / 2)
+
+    @property
+    def largest(self) -> Array:
+        """Largest absolute values."""
+        return np.maximum(np.abs(self.low), np.abs(self.high))
+
+
+def extremes(spectrum: OrderSpectrum, amplitude: Complex, mean: Array) -> Range:
+    """Extremes (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
 
     With phases over the common period of the orders; what has no common period is added by its amplitudes, a bound.
     """
@@ -54,7 +68,12 @@ def extremes(spectrum: OrderSpectrum, amplitude: Complex, mean: Array) -> tuple[
         index = np.array([int(order / base) for order in orders], dtype=np.int64)
         rows = np.moveaxis(amplitude[:, turning], 1, 2).reshape(-1, len(orders))
         low, high = (part.reshape(shape) for part in cycle_extremes(index, rows))
-    return mean + low - beside, mean + high + beside
+    return Range(mean + low - beside, mean + high + beside)
+
+
+def extremes_at(spectrum: OrderSpectrum, channels: slice) -> Range:
+    """Extremes (speed, channel) of some channels of a spectrum, mean included."""
+    return extremes(spectrum, spectrum.amplitude[..., channels], spectrum.mean[:, channels])
 
 
 def wave(spectrum: OrderSpectrum, at: int, amplitude: Complex, mean: Array, time: Array) -> Array:

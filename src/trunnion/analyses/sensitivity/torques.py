@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.analyses.linear.along import stability_along
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.response import order_response
-from trunnion.analyses.orders.totals import extremes
+from trunnion.analyses.orders.totals import extremes_at
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.responses import spectrum_slope
@@ -58,9 +58,8 @@ def exact_torque_slopes(
 
 def _extremes(spectrum: OrderSpectrum) -> Array:
     """Peak and vibratory torque (2, spring) [N m] at the one speed of a spectrum."""
-    at = spectrum.channels.torque
-    low, high = extremes(spectrum, spectrum.amplitude[..., at], spectrum.mean[:, at])
-    return np.stack([np.maximum(np.abs(low), np.abs(high))[0], (high - low)[0] / 2])
+    found = extremes_at(spectrum, spectrum.channels.torque)
+    return np.stack([found.largest[0], found.swing[0]])
 
 
 def torques(speeds: Array, line: Driveline | Assembly) -> Array:
