@@ -139,7 +139,7 @@ def test_a_failed_computation_has_exit_code_1(run, monkeypatch):
     def fail(*_, **__):
         raise ComputationError("the integration did not settle; raise the lowest speed")
 
-    monkeypatch.setattr("trunnion.analyses.linear.stability.stability", fail)
+    monkeypatch.setattr("trunnion.stability", fail)
     result = run("stability", "line.toml")
     assert result.exit_code == 1
     assert result.stderr == "error: the integration did not settle; raise the lowest speed\n"

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+import trunnion as tn
+from trunnion.cli.options import read_line
 from trunnion.errors import InputError
 
 STARTER = "two-shaft"
@@ -35,13 +38,9 @@ def app(
 
 def _text(file: str | None) -> str:
     """The driveline file to begin with, checked."""
-    from pathlib import Path
-
-    from trunnion.cli.options import read_line
-    from trunnion.driveline.files import dumps
     from trunnion.driveline.starter import starter
 
     if file is None:
         return starter(STARTER)
     line = read_line(file)
-    return Path(file).read_text(encoding="utf-8") if Path(file).is_file() else dumps(line)
+    return Path(file).read_text(encoding="utf-8") if Path(file).is_file() else tn.dumps(line)

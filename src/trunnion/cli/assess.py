@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Unit, read_line, read_unit
+from trunnion.cli.options import File, Json, LoadCase, Unit, read_case
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from trunnion.analyses.assessment.remedies.result import Remedies
     from trunnion.analyses.assessment.result import Assessment
-    from trunnion.driveline.driveline import Driveline
 
 DIAGRAM_POINTS = 201
 """Speeds at which the modes of a diagram are computed."""
@@ -32,30 +30,21 @@ def assess(
     as_json: Json = False,
 ) -> None:
     """Judge every limit of the file and every rule that applies, over its speed range; the binding one first."""
-    line = read_line(file)
-    unit = read_unit(line, unit)
-    helping = _helping(line, load_case, unit) if remedies else None
-    if helping is not None:
-        result = helping.assessment
+    line, unit = read_case(file, unit)
+    helping = None
+    if remedies:
+        with output.progress("remedies") as advance:
+            helping = tn.remedies(line, load_case=load_case, unit=unit, progress=advance)
+            result = helping.assessment
     else:
-        from trunnion.analyses.assessment.assess import assess as judge
-
         with output.compile_notice():
-            result = judge(line, load_case=load_case, unit=unit)
+            result = tn.assess(line, load_case=load_case, unit=unit)
     if as_json:
         output.write_json("assess", assessment_json(result) | (remedies_json(helping) if helping else {}))
         return
-    out = output.console()
-    print_assessment(out, result)
+    print_assessment(result)
     if helping is not None:
-        print_remedies(out, helping)
-
-
-def _helping(line: Driveline, load_case: str | None, unit: str) -> Remedies:
-    from trunnion.analyses.assessment.remedies.remedies import remedies as look
-
-    with output.progress("remedies") as advance:
-        return look(line, load_case=load_case, unit=unit, progress=advance)
+        print_remedies(helping)
 
 
 def campbell_diagram(
@@ -68,56 +57,45 @@ def campbell_diagram(
     as_json: Json = False,
 ) -> None:
     """Modes of the loaded line over its speed range, what excites them, and where the two meet."""
+    line, unit = read_case(file, unit, load_case)
     import numpy as np
 
-    from trunnion.equations.coefficients import assemble
-
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    from trunnion.analyses.linear.campbell_diagram import campbell_diagram as diagram
     from trunnion.plots.style import check_format, save
     from trunnion.reporting.ranges import speed_range
 
     if picture is not None:
         check_format(picture)
-    assembly = assemble(line)
-    result = diagram(assembly, np.linspace(*speed_range(assembly), DIAGRAM_POINTS))
+    result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
     if picture is not None:
         save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
     if as_json:
         output.write_json("campbell-diagram", result.to_dict())
         return
-    out = output.console()
-    out.print(result.describe(unit), soft_wrap=True)
+    output.say(result.describe(unit))
     if picture is not None:
-        out.print(f"  written: {picture}", soft_wrap=True)
+        output.say(f"  written: {picture}")
 
 
-def print_assessment(out: Console, result: Assessment) -> None:
+def print_assessment(result: Assessment) -> None:
     """The verdict, the table of checks, and the rules that they stand on."""
-    out.print(result.sentence, style="bold", soft_wrap=True)
-    output.heading(out, "Checks, the binding one first")
+    output.say(result.sentence, style="bold")
     rows = result.table()
-    output.table(out, [{k: v for k, v in row.items() if k != "because"} for row in rows])
-    output.heading(out, "Because")
+    output.table([{k: v for k, v in row.items() if k != "because"} for row in rows], "Checks, the binding one first")
+    output.heading("Because")
     for row in rows:
-        out.print(f"  {row['check']}: {row['because']}", soft_wrap=True)
-    output.heading(out, "Rules")
-    rules = dict.fromkeys((c.rule, c.inputs) for c in result.checks if c.margin == c.margin)
-    for rule, inputs in rules:
-        out.print(
-            f"  {rule.formula}: {rule.source} ({rule.certainty})" + (f"; {inputs}" if inputs else ""), soft_wrap=True
-        )
+        output.say(f"  {row['check']}: {row['because']}")
+    output.heading("Rules")
+    for rule, inputs in dict.fromkeys((c.rule, c.inputs) for c in result.checks if c.margin == c.margin):
+        output.say(f"  {rule.formula}: {rule.source} ({rule.certainty})" + (f"; {inputs}" if inputs else ""))
     if result.findings:
-        output.heading(out, "Findings")
-        output.findings(out, result.findings)
+        output.findings(result.findings)
 
 
-def print_remedies(out: Console, found: Remedies) -> None:
+def print_remedies(found: Remedies) -> None:
     """What would help, and what each check follows most."""
-    output.heading(out, "What would help")
+    output.heading("What would help")
     for sentence in (*found.sentences, *(s for check in found.checks for s in found.sensitivity_sentences(check))):
-        out.print(f"  {sentence}", soft_wrap=True)
+        output.say(f"  {sentence}")
 
 
 def remedies_json(found: Remedies) -> dict[str, Any]:

@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Final
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.motion import START, Set, Tolerance, _state
+from trunnion.cli.motion import START, Set, Tolerance
 from trunnion.cli.options import (
     Json,
     LoadCase,
     OutputNoTable,
     Speed,
     Unit,
-    file_stem,
-    read_line,
+    only_for_lines,
+    read_case,
     read_set,
     read_speed,
-    read_unit,
+    read_state,
 )
-from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, write_results
+from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, deliver, write_results
 from trunnion.errors import InputError
-
-if TYPE_CHECKING:
-    from trunnion.systems.events import Event
-    from trunnion.systems.system import System
 
 Subject = Annotated[
     str,
@@ -42,7 +39,7 @@ Section = Annotated[
     str | None,
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
 ]
-TRIPOD = "double-tripod"
+TRIPOD: Final = "double-tripod"
 
 
 def lyapunov_spectrum(
@@ -64,16 +61,13 @@ def lyapunov_spectrum(
 
     Example: trunnion lyapunov-spectrum ueda --set force=7.5
     """
-    from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum as compute
-
     system = _subject(file, parameters, speed, unit, load_case)
     check_places(to, PICTURES_AND_DATA)
     with output.progress("exponents") as advance:
-        result = compute(
-            system, periods, duration=duration, start=_state(start), starts=starts, transient=transient,
+        result = tn.lyapunov_spectrum(
+            system, periods, duration=duration, start=read_state(start), starts=starts, transient=transient,
             tolerance=tolerance, progress=advance,
         )  # fmt: skip
-    written = write_results(to, _stem(file), "exponents", result.data, lambda: result.plot())
     content = {
         "system": system.name,
         "exponents": result.exponents,
@@ -87,7 +81,7 @@ def lyapunov_spectrum(
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
     }
-    answer("lyapunov-spectrum", lambda: content, result.__str__, written, as_json)
+    written = deliver("lyapunov-spectrum", _stem(file), result, to, as_json, what="exponents", content=lambda: content)
     output.finish(result.outcome, written)
 
 
@@ -110,16 +104,14 @@ def poincare_map(
 
     Example: trunnion poincare-map rossler --section y=0 -o map.png
     """
-    from trunnion.analyses.chaos.poincare_map import poincare_map as compute
-
     system = _subject(file, parameters, speed, unit, load_case)
     check_places(to, PICTURES_AND_DATA)
     with output.compile_notice():
-        result = compute(
-            system, points, section=_section(section), every=every, start=_state(start),
+        result = tn.poincare_map(
+            system, points, section=_section(section), every=every, start=read_state(start),
             transient=500 if transient is None else transient, tolerance=tolerance,
         )  # fmt: skip
-    written = write_results(to, _stem(file), "map", result.data, lambda: result.plot())
+    written = write_results(to, _stem(file), "map", result, result.plot)
     if not as_json:
         output.finish(result.outcome, written)
     content = {
@@ -131,7 +123,7 @@ def poincare_map(
         "outcome": result.outcome.kind,
         "says": str(result.outcome),
     }
-    answer("poincare-map", lambda: content, result.__str__, written, as_json)
+    answer("poincare-map", written, as_json, lambda: content, result.__str__)
     output.finish(result.outcome, written)
 
 
@@ -158,16 +150,13 @@ def certify_chaos(
 
     Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
     """
-    from trunnion.analyses.chaos.certify_chaos import certify_chaos as compute
-
     system = _subject(file, parameters, speed, unit, load_case)
     check_places(to, PICTURES_AND_DATA)
     with output.progress("exponents, map and sweep") as advance:
-        result = compute(
-            system, periods, duration=duration, section=_section(section), start=_state(start), starts=starts,
+        result = tn.certify_chaos(
+            system, periods, duration=duration, section=_section(section), start=read_state(start), starts=starts,
             transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,
         )  # fmt: skip
-    written = write_results(to, _stem(file), "certificate", result.data, lambda: result.plot())
     content = {
         "system": system.name,
         "verdict": str(result.verdict),
@@ -180,51 +169,35 @@ def certify_chaos(
         "half_width": result.spectrum.half_width,
         "zero_one_test": None if result.zero_one is None else result.zero_one.k,
     }
-    answer("certify-chaos", lambda: content, result.__str__, written, as_json)
+    deliver("certify-chaos", _stem(file), result, to, as_json, what="certificate", content=lambda: content)
 
 
 def _subject(
     file: str, parameters: list[str] | None, speed: str | None, unit: str | None, load_case: str | None
-) -> System:
+) -> tn.System:
     """The system that FILE names, with parameters set."""
-    name, _, part = file.partition(":")
-    if name == TRIPOD:
-        from trunnion.studies.double_tripod.published import DoubleTripod
-
-        _only_for_lines(speed, load_case)
-        return _with(DoubleTripod().system(part or "input"), parameters)
+    from trunnion.analyses.chaos.chaos_subject import as_system
     from trunnion.systems.reference import SYSTEMS
 
-    if file in SYSTEMS:
-        _only_for_lines(speed, load_case)
-        return _with(SYSTEMS[file](), parameters)
-    from trunnion.analyses.chaos.chaos_subject import as_system
-
-    line = read_line(file, load_case, (*SYSTEMS, TRIPOD))
-    return _with(as_system(line, read_speed(speed, read_unit(line, unit))), parameters)
-
-
-def _with(system: System, parameters: list[str] | None) -> System:
+    name, _, part = file.partition(":")
+    if name == TRIPOD or file in SYSTEMS:
+        only_for_lines("use --set for a system", {"--speed": speed, "--load-case": load_case})
+        system = tn.catalogue(TRIPOD).system(part or "input") if name == TRIPOD else SYSTEMS[file]()
+    else:
+        line, unit = read_case(file, unit, load_case, (*SYSTEMS, TRIPOD))
+        system = as_system(line, read_speed(speed, unit))
     return system.with_parameters(read_set(parameters))
 
 
-def _only_for_lines(speed: str | None, load_case: str | None) -> None:
-    for key, value in (("--speed", speed), ("--load-case", load_case)):
-        if value is not None:
-            raise InputError("belongs to drivelines", key=key, value=value, remedy="use --set for a system")
-
-
-def _section(text: str | None) -> Event | None:
+def _section(text: str | None) -> tn.Event | None:
     if text is None:
         return None
-    from trunnion.systems.events import Event
-
     state, _, rest = text.partition("=")
     level, _, sign = rest.partition(":")
     try:
         if sign not in ("", "+", "-"):
             raise ValueError
-        return Event(state.strip(), float(level), direction=-1 if sign == "-" else 1)
+        return tn.Event(state.strip(), float(level), direction=-1 if sign == "-" else 1)
     except ValueError:
         raise InputError("is not STATE=LEVEL", key="--section", value=text, remedy='write "z=27" or "z=27:-"') from None
 
@@ -242,4 +215,5 @@ def _sweep(text: str | None) -> tuple[str, float, float, int] | bool:
 
 
 def _stem(file: str) -> str:
-    return file_stem(file.replace(":", "-"))
+    """``double-tripod:output`` in the names of files."""
+    return file.replace(":", "-")

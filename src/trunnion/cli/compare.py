@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import Json, LoadCase, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
+from trunnion.cli.options import Json, LoadCase, Output, Unit, file_stem, read_case, read_line, read_speed_ends
 from trunnion.cli.places import answer, check_places, write_result
 
 Before = Annotated[str, typer.Argument(metavar="BEFORE", help="Driveline file (TOML) or a name of the catalogue.")]
@@ -29,19 +31,13 @@ def compare(
 
     Example: trunnion compare truck.toml truck-stiffer.toml
     """
-    from dataclasses import replace
-
-    from trunnion.analyses.comparison.compare import compare as find
-
-    a, b = read_line(before), read_line(after)
-    unit = read_unit(a, unit)
+    (a, unit), b = read_case(before, unit), read_line(after)
     span = read_speed_ends(speeds, unit)
     if to:
         check_places(to)
     with output.progress("comparison") as advance:
-        found = find(a, b, span, load_case=load_case, unit=unit, progress=advance)
+        found = tn.compare(a, b, span, load_case=load_case, unit=unit, progress=advance)
     names = (file_stem(before), file_stem(after))
     found = replace(found, names=names if names[0] != names[1] else (before, after))
-    data = found.data
-    written = [write_result(path, data, lambda: found.plot(), table=data.drop_dims("change")) for path in to or []]
-    answer("compare", found.to_dict, found.__str__, written, as_json)
+    written = [write_result(path, found, found.plot, found.data.drop_dims("change")) for path in to or []]
+    answer("compare", written, as_json, found.to_dict, found.__str__)

@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli.options import Json
-from trunnion.cli.output import console, table, write_json
+from trunnion.cli.output import table, write_json
 from trunnion.errors import InputError
 
 
@@ -18,7 +19,6 @@ def catalogue(
     as_json: Json = False,
 ) -> None:
     """List the published drivelines, or print one as a file to start from."""
-    from trunnion.studies.entries import catalogue as published
     from trunnion.studies.entries import entries
 
     if name is None:
@@ -26,13 +26,10 @@ def catalogue(
         if as_json:
             write_json("catalogue", {"entries": rows})
         else:
-            table(console(), rows)
+            table(rows)
         return
-    from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.files import dumps
-
-    found = published(name)
-    text = dumps(found) if isinstance(found, Driveline) else f"{found}\n"
+    found = tn.catalogue(name)
+    text = tn.dumps(found) if isinstance(found, tn.Driveline) else f"{found}\n"
     entry = next(e for e in entries() if e.name == name)
     if as_json:
         write_json("catalogue", {"name": name, "title": entry.title, "source": entry.source, "toml": text})
@@ -55,7 +52,7 @@ def new(
         if as_json:
             write_json("new", {"starters": rows})
         else:
-            table(console(), rows)
+            table(rows)
         return
     text = starter_text(starter)
     target = path or Path(f"{starter}.toml")

@@ -6,14 +6,15 @@ from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
-from trunnion.cli.places import answer, check_places, write_results
+from trunnion.cli.options import File, Json, Output, SpeedRange, Unit, read_case, read_speed_ends
+from trunnion.cli.places import check_places, deliver
 
 
 def envelope(
     file: File,
-    speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
+    speeds: SpeedRange = None,
     points: Annotated[int, typer.Option("--points", help="Of each schedule, beside those it states.")] = 5,
     parameter: Annotated[
         str, typer.Option("--parameter", "-p", metavar="PARAMETER", help="Also its largest stable value everywhere.")
@@ -26,13 +27,9 @@ def envelope(
 
     Example: trunnion envelope truck.toml -o envelope.png
     """
-    from trunnion.analyses.assessment.envelope import envelope as judge
-
-    line = read_line(file)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit)
     span = read_speed_ends(speeds, unit)
     check_places(to)
     with output.progress("envelope") as advance:
-        found = judge(line, span, points=points, parameter=parameter, unit=unit, progress=advance)
-    written = write_results(to, file_stem(file), "envelope", found.data, lambda: found.plot())
-    answer("envelope", found.to_dict, found.__str__, written, as_json)
+        found = tn.envelope(line, span, points=points, parameter=parameter, unit=unit, progress=advance)
+    deliver("envelope", file, found, to, as_json)

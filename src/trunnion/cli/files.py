@@ -1,19 +1,14 @@
-"""Where charts are written; everything that can be refused is refused before the computation."""
+"""What may be written where; everything that can be refused is refused before the computation."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from trunnion.errors import InputError
 from trunnion.plots.style import FORMATS
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from trunnion.results.chart import StabilityChart
 
 DATA_FORMATS = ("nc", "csv")
 REPORTS = (".html", ".htm")
@@ -63,24 +58,3 @@ def check_outputs(paths: Sequence[Path]) -> None:
 
 def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> NoReturn:
     raise InputError(problem, key="--output", value=str(path), remedy=remedy) from None
-
-
-def chart_files(chart: StabilityChart, folder: Path, stem: str, unit: str, drawn: Figure | None = None) -> list[Path]:
-    """Picture and data of a chart in ``folder``; ``drawn``: its picture, where there is one already."""
-    names = [folder / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
-    return [write_chart(chart, path, unit, drawn) for path in names]
-
-
-def write_chart(chart: StabilityChart, path: Path, unit: str, drawn: Figure | None = None) -> Path:
-    """Write ``chart`` in the format that the ending of ``path`` names; ``drawn``: its picture, if there already."""
-    ending = path.suffix.removeprefix(".").lower()
-    if ending == "nc":
-        chart.save(path)
-    elif ending == "csv":
-        chart.to_csv(path)
-    else:
-        from trunnion.plots.stability_chart import draw
-        from trunnion.plots.style import save
-
-        save(drawn or draw(chart, unit=unit).figure.figure, path)
-    return path

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.options import (
     File,
@@ -16,18 +18,15 @@ from trunnion.cli.options import (
     Speed,
     Unit,
     file_stem,
-    read_line,
+    read_case,
+    read_quantity,
     read_speed,
-    read_unit,
 )
-from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.cli.places import DEFAULT_FOLDER, answer, check_places, write_result
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.analyses.kinetostatics import Kinetostatics, Phasing
-    from trunnion.analyses.kinetostatics.friction import CrossFriction
-    from trunnion.driveline.quantities import Kind
-    from trunnion.results.finding import Finding
+    from trunnion.analyses.kinetostatics import Kinetostatics
 
 SUPPORT_EXAMPLE = 'write "Shaft 1:-300mm:-100mm", positions from the joint in front (first shaft: behind)'
 
@@ -72,65 +71,46 @@ def kinetostatics(
 
     Example: trunnion kinetostatics truck.toml --support "front tube:1.2m" --elastic -o truck.csv
     """  # fmt: skip
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    at = read_speed(speed, unit)
-    from trunnion.analyses.kinetostatics import check_limits, phase_forks
-    from trunnion.analyses.kinetostatics import kinetostatics as compute
-    from trunnion.cli.files import check_folder, check_outputs
     from trunnion.driveline.quantities import LENGTH, TORQUE
 
-    if to:
-        check_outputs(to)
-    else:
-        check_folder(DEFAULT_FOLDER)
-    result = compute(
+    line, unit = read_case(file, unit, load_case)
+    at = read_speed(speed, unit)
+    check_places(to)
+    result = tn.kinetostatics(
         line,
         at,
         branch=branch,
         rigid=not elastic,
         inertia=inertia,
-        output_torque=_quantity(torque, TORQUE, "--output-torque"),
+        output_torque=read_quantity(torque, TORQUE, "--output-torque"),
         friction=_friction(friction),
         supports=[_support(text) for text in support] if support else None,
-        lengths={name: _quantity(x, LENGTH, "--length") for name, x in map(_named, length or [])},
+        lengths={name: read_quantity(x, LENGTH, "--length") for name, x in map(_named, length or [])},
         turns=turns,
         points=points,
     )
-    limits = check_limits(result, irregularity=irregularity)
-    phasing = phase_forks(line, pitch, branch=branch) if phase or pitch else None
-    written = [_write(result, path, unit) for path in to] if to else _files(result, file_stem(file), unit)
-    if as_json:
-        content = kinetostatics_json(result) | {
+    limits = tn.check_limits(result, irregularity=irregularity)
+    phasing = tn.phase_forks(line, pitch, branch=branch) if phase or pitch else None
+
+    def content() -> dict[str, Any]:
+        return kinetostatics_json(result) | {
             "phasing": None if phasing is None else _phasing_json(phasing),
-            "limits": [_finding(f) for f in limits],
-            "written": [str(path) for path in written],
+            "limits": output.findings_json(limits),
         }
-        output.write_json("kinetostatics", content)
-        return
-    _print(result, limits, phasing, written, unit)
 
+    def more() -> None:
+        if result.shafts:
+            output.table(result.table(unit), "Shafts")
+        if phasing is not None:
+            output.heading("Fork phasing")
+            output.say(str(phasing))
+        output.findings((*limits, *result.findings), "Limits and findings")
 
-def _print(
-    result: Kinetostatics,
-    limits: tuple[Finding, ...],
-    phasing: Phasing | None,
-    written: list[Path],
-    unit: str,
-) -> None:
-    from trunnion.cli.report import print_written
+    def draw() -> Any:
+        return result.plot(unit=unit)
 
-    out = output.console()
-    out.print(result.describe(unit), soft_wrap=True)
-    if result.shafts:
-        output.heading(out, "Shafts")
-        output.table(out, result.table(unit))
-    if phasing is not None:
-        output.heading(out, "Fork phasing")
-        out.print(str(phasing), soft_wrap=True)
-    output.heading(out, "Limits and findings")
-    output.findings(out, (*limits, *result.findings))
-    print_written(out, written)
+    written = [write_result(path, result, draw) for path in to] if to else _files(result, file_stem(file), unit, draw)
+    answer("kinetostatics", written, as_json, content, lambda: result.describe(unit), more)
 
 
 def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
@@ -158,11 +138,11 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
             {"bearing": b, **_parts(result.support_parts(b))}
             for b in (result.supports.names if result.supports else ())
         ],
-        "findings": [_finding(f) for f in result.findings],
+        "findings": output.findings_json(result.findings),
     }  # fmt: skip
 
 
-def _phasing_json(phasing: Phasing) -> dict[str, Any]:
+def _phasing_json(phasing: Any) -> dict[str, Any]:
     return {
         "fork_offsets": phasing.offsets,
         "irregularity": phasing.irregularity,
@@ -182,46 +162,29 @@ def _parts(part: Any) -> dict[str, Any]:
     }
 
 
-def _finding(finding: Finding) -> dict[str, str]:
-    return {"gravity": str(finding.gravity), "sentence": finding.sentence}
-
-
-def _files(result: Kinetostatics, stem: str, unit: str) -> list[Path]:
+def _files(result: Kinetostatics, stem: str, unit: str, draw: Callable[[], Any]) -> list[Path]:
     """Curves, polar curves and data in the default folder, and a sketch where there is a joint to draw."""
     from trunnion.plots.kinetostatics import draw_polar
-    from trunnion.plots.layout import sketch
     from trunnion.plots.style import save
     from trunnion.writing import folder_written_whole
 
     with folder_written_whole(DEFAULT_FOLDER) as temporary:
         base = temporary / f"{stem}-kinetostatics"
-        written = [_write(result, base.with_suffix(ending), unit) for ending in (".png", ".csv")]
-        save(draw_polar(result, unit=unit), polar := base.with_name(f"{base.name}-polar.png"))
-        written.append(polar)
+        written = [
+            write_result(base.with_suffix(ending), result, lambda: result.plot(unit=unit))
+            for ending in (".png", ".csv")
+        ]
+        pictures = {"polar": draw_polar(result, unit=unit)}
         if result.joints:
             try:
-                drawing = sketch(result.line)
+                pictures["sketch"] = tn.sketch(result.line)
             except InputError as error:  # the turn itself is known, whatever cannot be drawn
                 output.note(f"no sketch: {error}")
-            else:
-                save(drawing, drawn := base.with_name(f"{base.name}-sketch.png"))
-                written.append(drawn)
+        for name, picture in pictures.items():
+            path = base.with_name(f"{base.name}-{name}.png")
+            save(picture, path)
+            written.append(path)
     return [DEFAULT_FOLDER / path.name for path in written]
-
-
-def _write(result: Kinetostatics, path: Path, unit: str) -> Path:
-    ending = path.suffix.removeprefix(".").lower()
-    if ending == "csv":
-        result.to_csv(path)
-    elif ending == "nc":
-        from trunnion.results.files import save_dataset
-
-        save_dataset(result.data, path)
-    else:
-        from trunnion.plots.style import save
-
-        save(result.plot(unit=unit), path)
-    return path
 
 
 def _named(text: str) -> tuple[str, str]:
@@ -240,7 +203,7 @@ def _support(text: str) -> tuple[object, ...]:
         name, places = f"{name}:{places[0]}", places[1:]
     if not places:
         raise InputError("names no position", key="--support", value=text, remedy=SUPPORT_EXAMPLE)
-    return name, *(_quantity(place, LENGTH, "--support", SUPPORT_EXAMPLE) for place in places)
+    return name, *(read_quantity(place, LENGTH, "--support", SUPPORT_EXAMPLE) for place in places)
 
 
 def _reads(text: str) -> bool:
@@ -248,28 +211,13 @@ def _reads(text: str) -> bool:
     return text.strip()[:1] in tuple("+-.0123456789")
 
 
-def _friction(text: str | None) -> CrossFriction | None:
+def _friction(text: str | None) -> tn.CrossFriction | None:
     if text is None:
         return None
-    from trunnion.analyses.kinetostatics import CrossFriction
     from trunnion.driveline.quantities import LENGTH, RATIO
 
     parts = text.split(":")
     if len(parts) != 3:
         raise InputError("is not a friction", key="--friction", value=text, remedy="write 0.005:12mm:40mm")
     kinds = (RATIO, LENGTH, LENGTH)
-    return CrossFriction(*(_quantity(p, k, "--friction") for p, k in zip(parts, kinds, strict=True)))
-
-
-def _quantity(text: str, kind: Kind, key: str, remedy: str = "") -> float:
-    """A number with a unit, or a bare one in SI units."""
-    from trunnion.driveline.quantities import parse
-
-    try:
-        value: object = float(text)
-    except ValueError:
-        value = text
-    try:
-        return parse(value, kind)
-    except InputError as error:
-        raise InputError(error.problem, key=key, value=text, remedy=remedy or error.remedy) from None
+    return tn.CrossFriction(*(read_quantity(p, k, "--friction") for p, k in zip(parts, kinds, strict=True)))

@@ -6,9 +6,10 @@ from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Output, Speed, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import answer, check_places, write_results
+from trunnion.cli.options import File, Json, LoadCase, Output, Speed, Unit, read_case, read_speed
+from trunnion.cli.places import check_places, deliver
 
 
 def linearity_check(
@@ -32,15 +33,12 @@ def linearity_check(
 
     Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
     """
-    from trunnion.analyses.motion.linearity_check import linearity_check as compute
-
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit, load_case)
     check_places(to)
     with output.compile_notice():
-        found = compute(line, read_speed(speed, unit), allowed=allowed, acceleration=acceleration)
+        found = tn.linearity_check(line, read_speed(speed, unit), allowed=allowed, acceleration=acceleration)
     found.nonlinear.outcome.require()
-    written = write_results(
-        to, file_stem(file), "linearity-check", found.data, lambda: found.plot(spring=spring, unit=unit)
-    )
-    answer("linearity-check", found.to_dict, lambda: found.describe(unit), written, as_json)
+    deliver(
+        "linearity-check", file, found, to, as_json,
+        draw=lambda: found.plot(spring=spring, unit=unit), text=lambda: found.describe(unit),
+    )  # fmt: skip

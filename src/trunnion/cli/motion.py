@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.options import (
     File,
@@ -15,37 +15,37 @@ from trunnion.cli.options import (
     Output,
     Speed,
     Unit,
-    file_stem,
-    is_number,
-    read_line,
+    only_for_lines,
+    read_case,
+    read_quantity,
     read_set,
     read_speed,
+    read_state,
+    read_stated_speed,
     read_time,
-    read_unit,
-    reference_systems,
 )
-from trunnion.cli.places import answer, check_places, print_result, write_results
+from trunnion.cli.places import check_places, deliver
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.analyses.motion.run_up import RunUp
     from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
     from trunnion.analyses.orbits.periodic_response import PeriodicResponse
-    from trunnion.driveline.driveline import Driveline
-    from trunnion.systems.system import System
 
+Subject = Annotated[
+    str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
+]
 Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
 Set = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Parameter of a reference system; repeat it for more."),
 ]
+OF_SYSTEM = "use --set for a reference system"
 START = Annotated[str | None, typer.Option("--start", metavar="X,Y,…", help="State to start from.")]
 
 
 def simulate(
-    file: Annotated[
-        str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
-    ],
+    file: Subject,
     speed: Speed = None,
     to_speed: Annotated[str | None, typer.Option("--to-speed", help="Speed at the end, reached evenly.")] = None,
     turns: Annotated[float | None, typer.Option("--turns", help="Turns of the input; default 20.")] = None,
@@ -62,33 +62,32 @@ def simulate(
 
     Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
     """
-    from trunnion.analyses.motion.simulate import simulate as compute
-
     with output.compile_notice():
         system = _system(file, parameters)
         if system is not None:
-            _only_for_lines(("--speed", speed), ("--to-speed", to_speed), ("--load-case", load_case))
-            _only_for_lines(("--turns", turns), remedy="use --duration, in seconds")
+            only_for_lines(OF_SYSTEM, {"--speed": speed, "--to-speed": to_speed, "--load-case": load_case})
+            only_for_lines("use --duration, in seconds", {"--turns": turns})
             check_places(to)
             seconds = 100.0 if duration is None else duration
-            result: Any = compute(system, seconds, start=_state(start), tolerance=tolerance)
-            written = write_results(to, file_stem(file), "motion", result.data, lambda: result.plot())
+            result: Any = tn.simulate(system, seconds, start=read_state(start), tolerance=tolerance)
         else:
-            line = read_line(file, load_case, reference_systems())
-            unit = read_unit(line, unit)
+            line, unit = read_case(file, unit, load_case, _reference_systems())
             check_places(to)
             profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
             length = None if duration is not None else 20.0 if turns is None else turns
-            result = compute(line, duration, speed=profile, turns=length, start=_state(start), tolerance=tolerance)
-            written = write_results(to, file_stem(file), "motion", result.data, lambda: result.plot(unit=unit))
-    answer("simulate", lambda: _simulation_json(result), result.__str__, written, as_json)
+            result = tn.simulate(
+                line, duration, speed=profile, turns=length, start=read_state(start), tolerance=tolerance
+            )
+    written = deliver(
+        "simulate", file, result, to, as_json, what="motion",
+        draw=result.plot if system is not None else lambda: result.plot(unit=unit),
+        content=lambda: _simulation_json(result),
+    )  # fmt: skip
     output.finish(result.outcome, written)
 
 
 def periodic_response(
-    file: Annotated[
-        str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
-    ],
+    file: Subject,
     speed: Speed = None,
     periods: Annotated[int, typer.Option("--periods", help="Of the excitation in one of the motion.", min=1)] = 1,
     period: Annotated[
@@ -105,37 +104,30 @@ def periodic_response(
 
     Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
     """
-    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
-    from trunnion.analyses.orbits.periodic_response import periodic_response as compute
-
     with output.compile_notice():
         system = _system(file, parameters)
         if system is not None:
-            _only_for_lines(("--speed", speed), ("--load-case", load_case))
+            only_for_lines(OF_SYSTEM, {"--speed": speed, "--load-case": load_case})
             guess = read_time(period, "--period")
             check_places(to)
-            result = compute(system, start=_state(start), period=guess, periods=periods)
+            result: Any = tn.periodic_response(system, start=read_state(start), period=guess, periods=periods)
         else:
-            line = read_line(file, load_case, reference_systems())
-            unit = read_unit(line, unit)
+            line, unit = read_case(file, unit, load_case, _reference_systems())
             if period is not None:
                 remedy = "leave it out; the speed of a driveline gives it"
                 raise InputError("belongs to reference systems", key="--period", value=period, remedy=remedy)
             check_places(to)
-            result = compute(line, read_speed(speed, unit), start=_state(start), periods=periods)
+            result = tn.periodic_response(line, read_speed(speed, unit), start=read_state(start), periods=periods)
     result.outcome.require()
-    shown = unit or "rad/s"
-    written = write_results(
-        to, file_stem(file), "periodic-response", result.data,
-        lambda: result.plot(unit=shown) if isinstance(result, PeriodicResponse) else result.plot(),
-    )  # fmt: skip
-    if as_json:
-        output.write_json("periodic-response", _response_json(result, written))
-        return
-    if isinstance(result, PeriodicResponse):
-        _print_response(result, shown, written)
+    if system is not None:
+        deliver("periodic-response", file, result, to, as_json, content=lambda: _orbit_json(result))
     else:
-        print_result(str(result), written)
+        shown = unit or "rad/s"
+        deliver(
+            "periodic-response", file, result, to, as_json, draw=lambda: result.plot(unit=shown),
+            content=lambda: _orbit_json(result) | _response_json(result),
+            text=lambda: result.describe(shown), more=lambda: _print_orders(result, shown),
+        )  # fmt: skip
 
 
 def run_up(
@@ -159,108 +151,84 @@ def run_up(
 
     Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
     """
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit, load_case)
     low, high = _range(line, read_speed(first, unit, "--from"), read_speed(last, unit, "--to"))
-    rate = read_speed(acceleration, unit, "--acceleration")
-    assert rate is not None
-    from trunnion.analyses.motion.run_up import run_up as compute
-    from trunnion.analyses.motion.safe_accelerations import safe_accelerations
-
+    rate = read_stated_speed(acceleration, unit, "--acceleration")
     torque = None if limit is None else _torque(limit)
     check_places(to)
+    safe = None
     with output.compile_notice():
-        result = compute(line, low, high, acceleration=rate, ramp=ramp)
-        safe = None
+        result = tn.run_up(line, low, high, acceleration=rate, ramp=ramp)
         if torque is not None:
             tried = (rate / 4, rate * 4)
-            safe = safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
-    written = write_results(to, file_stem(file), "run-up", result.data, lambda: result.plot(unit=unit))
-    content = _run_up_json(result)
+            safe = tn.safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
+    content, said = _run_up_json(result), result.describe(unit)
     if safe is not None:
         content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
-    said = result.describe(unit) + (f"\n  {safe}" if safe is not None else "")
-    answer("run-up", lambda: content, lambda: said, written, as_json)
+        said += f"\n  {safe}"
+    deliver(
+        "run-up", file, result, to, as_json,
+        draw=lambda: result.plot(unit=unit), content=lambda: content, text=lambda: said,
+    )  # fmt: skip
 
 
-def _system(name: str, parameters: list[str] | None) -> System | None:
+def _reference_systems() -> tuple[str, ...]:
+    """Names that stand for equations of motion, not for drivelines."""
+    from trunnion.systems.reference import SYSTEMS
+
+    return tuple(SYSTEMS)
+
+
+def _system(name: str, parameters: list[str] | None) -> tn.System | None:
     """The reference system of that name, with ``--set`` applied; None for a driveline."""
-    from trunnion.systems.reference import SYSTEMS, reference_system
-
-    if name not in SYSTEMS:
-        if parameters:
-            remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
-            raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
-        return None
-    return reference_system(name, **read_set(parameters))
-
-
-def _only_for_lines(*given: tuple[str, object], remedy: str = "use --set for a reference system") -> None:
-    for key, value in given:
-        if value is not None:
-            raise InputError("belongs to drivelines", key=key, value=value, remedy=remedy)
+    names = _reference_systems()
+    if name in names:
+        return tn.reference_system(name, **read_set(parameters))
+    if parameters:
+        remedy = f"edit the file instead; reference systems are: {', '.join(names)}"
+        raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
+    return None
 
 
-def _state(text: str | None) -> list[float] | None:
-    if text is None:
-        return None
-    parts = text.split(",")
-    if not all(is_number(part) for part in parts):
-        raise InputError("is not a list of numbers", key="--start", value=text, remedy='write "0.1,0"')
-    return [float(part) for part in parts]
-
-
-def _course(line: Driveline, first: float | None, last: float | None, duration: float | None) -> Any:
+def _course(line: tn.Driveline, first: float | None, last: float | None, duration: float | None) -> Any:
     """The speed, or a profile to the speed at the end."""
     from trunnion.driveline.operating_speed import operating_speed
-    from trunnion.equations.speed_profile import SpeedProfile
 
     if last is None:
         return first
     if duration is None:
         raise InputError("is missing beside --to-speed", key="--duration", remedy="write --duration 10, in seconds")
-    return SpeedProfile([0.0, duration], [operating_speed(line, first), last])
+    return tn.SpeedProfile([0.0, duration], [operating_speed(line, first), last])
 
 
 def _torque(text: str) -> float:
     """A positive torque [N m] written at ``--limit``, refused before anything is computed."""
-    from trunnion.driveline.quantities import TORQUE, parse
+    from trunnion.driveline.quantities import TORQUE
 
-    try:
-        torque = parse(float(text) if is_number(text) else text, TORQUE)
-    except InputError as error:
-        raise InputError(error.problem, key="--limit", value=text, remedy=error.remedy) from None
+    torque = read_quantity(text, TORQUE, "--limit")
     if not torque > 0:
         raise InputError("must be a positive torque", key="--limit", value=text)
     return torque
 
 
-def _range(line: Driveline, first: float | None, last: float | None) -> tuple[float, float]:
-    from trunnion.equations.coefficients import assemble
+def _range(line: tn.Driveline, first: float | None, last: float | None) -> tuple[float, float]:
     from trunnion.reporting.ranges import speed_range
 
     if first is not None and last is not None:
         return first, last
-    low, high = speed_range(assemble(line))
+    low, high = speed_range(line)
     return first or low, last or high
 
 
-def _print_response(result: PeriodicResponse, unit: str, written: list[Path]) -> None:
-    from trunnion.cli.report import print_written
-
-    out = output.console()
-    out.print(result.describe(unit), soft_wrap=True)
+def _print_orders(result: PeriodicResponse, unit: str) -> None:
     orders, amplitude = result.order_spectrum()
     rows = [
         {"order": float(order), **{f"{s} [N m]": float(a) for s, a in zip(result.shafts, row, strict=True)}}
         for order, row in zip(orders, amplitude, strict=True)
         if row.max() > 1e-3 * amplitude[1:].max(initial=0.0)
     ]
-    output.heading(out, "Orders: torque amplitude by cycles per turn of the input (0 is the mean)")
-    output.table(out, rows)
-    output.heading(out, "Findings")
-    output.findings(out, result.findings_in(unit))
-    print_written(out, written)
+    output.table(rows, "Orders: torque amplitude by cycles per turn of the input (0 is the mean)")
+    output.findings(result.findings_in(unit))
 
 
 def _simulation_json(result: Any) -> dict[str, Any]:
@@ -280,10 +248,8 @@ def _simulation_json(result: Any) -> dict[str, Any]:
     return content
 
 
-def _response_json(result: PeriodicResponse | PeriodicOrbit, written: list[Path]) -> dict[str, Any]:
-    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
-
-    content: dict[str, Any] = {
+def _orbit_json(result: PeriodicResponse | PeriodicOrbit) -> dict[str, Any]:
+    return {
         "verdict": str(result.verdict),
         "period": result.period,
         "spectral_radius": result.spectral_radius,
@@ -291,23 +257,24 @@ def _response_json(result: PeriodicResponse | PeriodicOrbit, written: list[Path]
         "growth_rate": result.growth_rate,
         "multipliers": list(map(complex, result.multipliers)),
         "says": str(result.outcome),
-        "written": [str(path) for path in written],
+        "written": (),  # its place; the answer fills it
     }
-    if isinstance(result, PeriodicResponse):
-        orders, amplitude = result.order_spectrum()
-        content |= {
-            "speed": result.speed,
-            "turns": result.turns,
-            "shafts": [
-                {"name": name, "mean_torque": mean, "torque_peak_to_peak": peak}
-                for name, mean, peak in zip(result.shafts, result.torque_mean, result.torque_peak_to_peak, strict=True)
-            ],
-            "orders": orders,
-            "order_amplitude": amplitude,
-            "linear_theory": str(result.comparison or result.no_comparison),
-            "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
-        }
-    return content
+
+
+def _response_json(result: PeriodicResponse) -> dict[str, Any]:
+    orders, amplitude = result.order_spectrum()
+    return {
+        "speed": result.speed,
+        "turns": result.turns,
+        "shafts": [
+            {"name": name, "mean_torque": mean, "torque_peak_to_peak": peak}
+            for name, mean, peak in zip(result.shafts, result.torque_mean, result.torque_peak_to_peak, strict=True)
+        ],
+        "orders": orders,
+        "order_amplitude": amplitude,
+        "linear_theory": str(result.comparison or result.no_comparison),
+        "findings": output.findings_json(result.findings),
+    }
 
 
 def _run_up_json(result: RunUp) -> dict[str, Any]:

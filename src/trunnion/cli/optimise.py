@@ -7,8 +7,19 @@ from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed_ends, read_unit
+from trunnion.cli.options import (
+    File,
+    Json,
+    LoadCase,
+    Output,
+    SpeedRange,
+    Unit,
+    is_number,
+    read_case,
+    read_speed_ends,
+)
 from trunnion.cli.places import answer, check_places, write_results
 from trunnion.errors import InputError
 
@@ -24,7 +35,7 @@ def optimise(
         list[str],
         typer.Option("--aim", "-a", metavar="AIM", help='As "irregularity", "peak torque of Shaft 1"; one or two.'),
     ],
-    speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
+    speeds: SpeedRange = None,
     checks: Annotated[
         bool, typer.Option("--checks/--no-checks", help="Whether limits and ratings of assess must be satisfied.")
     ] = True,
@@ -45,26 +56,22 @@ def optimise(
 
     Example: trunnion optimise truck.toml --free "rear tube.fork_offset:-90deg:90deg" --aim irregularity
     """
-    from trunnion.analyses.optimisation.optimise import optimise as find
-    from trunnion.driveline.files import dump
-
-    line = read_line(file)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit)
     bounds = dict(_bounds(text) for text in free)
     span = read_speed_ends(speeds, unit)
     check_places(to)
     if best is not None and (best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir()):
         raise InputError("is no place for a driveline file", key="--write", value=str(best), remedy="best.toml, say")
     with output.progress("optimise") as advance:
-        found = find(
+        found = tn.optimise(
             line, bounds, aim, span, checks=checks, load_case=load_case, designs=designs, seed=seed, unit=unit,
             progress=advance,
         )  # fmt: skip
-    written = write_results(to, file_stem(file), "optimise", found.data, lambda: found.plot())
+    written = write_results(to, file, "optimise", found, found.plot)
     if best is not None:
-        dump(found.line, best)
+        tn.dump(found.line, best)
         written.append(best)
-    answer("optimise", found.to_dict, found.__str__, written, as_json)
+    answer("optimise", written, as_json, found.to_dict, found.__str__)
 
 
 def _bounds(text: str) -> tuple[str, tuple[object, object]]:
@@ -72,12 +79,6 @@ def _bounds(text: str) -> tuple[str, tuple[object, object]]:
     parts = text.rsplit(":", 2)
     if len(parts) != 3:
         raise InputError("needs two bounds", key="--free", value=text, remedy=EXAMPLE)
-    path, low, high = (part.strip() for part in parts)
-    return path, (_number(low), _number(high))
-
-
-def _number(text: str) -> object:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    path, *ends = (part.strip() for part in parts)
+    low, high = (float(end) if is_number(end) else end for end in ends)
+    return path, (low, high)

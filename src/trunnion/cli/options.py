@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from trunnion.errors import InputError
+from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.parameters import Columns
-    from trunnion.equations.coefficients import Assembly
+    from trunnion.driveline.quantities import Kind
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of the catalogue.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else.")]
@@ -40,26 +40,32 @@ Speed = Annotated[
         help='Input speed: "1500 rpm", "25 Hz", "157 rad/s", or a number in --unit; default: the file\'s.',
     ),
 ]
+SpeedRange = Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")]
 LoadCase = Annotated[str | None, typer.Option("--load-case", help="Torques of this load case of the file.")]
 Points = Annotated[str, typer.Option("--points", metavar="NXxNY", help="Points along x and y where not said there.")]
 
+ROWS = 65
+"""Rows of a search of a box."""
 AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30deg:300"'
 
 
-def read_line(file: str, load_case: str | None = None, besides: Sequence[str] = ()) -> Driveline:
+def read_case(
+    file: str, unit: str | None, load_case: str | None = None, besides: Collection[str] = ()
+) -> tuple[Driveline, str]:
+    """The driveline under its own torques or those of a load case, and the unit asked for or else that of the file."""
+    from trunnion.driveline.operating_speed import speed_unit
+
+    line = read_line(file, besides)
+    if load_case is not None:
+        line = line.with_load(load_case)
+    if unit is None:
+        return line, speed_unit(line)
+    speed_factor(unit)
+    return line, unit
+
+
+def read_line(file: str, besides: Collection[str] = ()) -> Driveline:
     """The driveline in a file, or of the catalogue where no such file exists; ``besides`` are also names to tell."""
-    line = _file_or_catalogue(file, besides)
-    return line if load_case is None else line.with_load(load_case)
-
-
-def reference_systems() -> Sequence[str]:
-    """Names that stand for equations of motion, not for drivelines."""
-    from trunnion.systems.reference import SYSTEMS
-
-    return tuple(SYSTEMS)
-
-
-def _file_or_catalogue(file: str, besides: Sequence[str]) -> Driveline:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.files import load
 
@@ -87,24 +93,26 @@ def file_stem(file: str) -> str:
     return Path(file).stem
 
 
-def read_unit(line: Driveline, unit: str | None) -> str:
-    """The unit asked for, or the one of the description."""
-    from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import speed_factor
+def read_quantity(text: str, kind: Kind, key: str, remedy: str = "", per: float = 1.0) -> float:
+    """A number with a unit, or a bare one, ``per`` of which are the SI unit of ``kind``."""
+    from trunnion.driveline.quantities import parse
 
-    if unit is None:
-        return speed_unit(line)
-    speed_factor(unit)
-    return unit
+    try:
+        return parse(float(text) / per if is_number(text) else text, kind)
+    except InputError as error:
+        raise InputError(error.problem, key=key, value=text, remedy=remedy or error.remedy) from None
 
 
 def read_speed(text: str | None, unit: str, key: str = "--speed") -> float | None:
     """``"1500 rpm"``, or a bare number in ``unit``, as a positive speed in rad/s."""
-    if text is None:
-        return None
+    return None if text is None else read_stated_speed(text, unit, key)
+
+
+def read_stated_speed(text: str, unit: str, key: str = "--speed") -> float:
+    """The same of a text that is there."""
     from trunnion.driveline.quantities import SPEED
 
-    speed = _quantity(text, SPEED.name, unit, key=key)
+    speed = _read_end(text, SPEED, unit, key)
     if not speed > 0:
         raise InputError("must be positive", key=key, value=text, remedy='write "1500 rpm", say')
     return speed
@@ -114,25 +122,39 @@ def read_speed_ends(text: str | None, unit: str) -> tuple[float, float] | None:
     """``LOW:HIGH`` in rad/s; None where nothing is written."""
     if text is None:
         return None
-    read = [read_speed(end, unit) for end in text.split(":")]
-    if len(read) != 2 or read[0] is None or read[1] is None or not read[0] < read[1]:
+    read = [read_stated_speed(end, unit) for end in text.split(":")]
+    if len(read) != 2 or not read[0] < read[1]:
         raise InputError("is no rising range", key="--speed", value=text, remedy='write "300rpm:2400rpm", say')
     return read[0], read[1]
+
+
+def read_speed_range(text: str | None, line: Driveline, unit: str) -> tuple[float, float]:
+    """``LOW:HIGH`` in rad/s, or the file's range."""
+    from trunnion.reporting.ranges import speed_range
+
+    return read_speed_ends(text, unit) or speed_range(line)
 
 
 def read_time(text: str | None, key: str) -> float | None:
     """``"20 ms"``, or a bare number of seconds, as a positive time in seconds."""
     if text is None:
         return None
-    from trunnion.driveline.quantities import Kind, parse
+    from trunnion.driveline.quantities import Kind
 
-    try:
-        time = float(text) if is_number(text) else parse(text, Kind("time", "s", "2.5 s"))
-    except InputError as error:
-        raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
+    time = float(text) if is_number(text) else read_quantity(text, Kind("time", "s", "2.5 s"), key)
     if not (math.isfinite(time) and time > 0):
         raise InputError("must be a positive time", key=key, value=text, remedy='write "2.5 s", say')
     return time
+
+
+def read_state(text: str | None) -> list[float] | None:
+    """``0.1,0`` as a state to start from."""
+    if text is None:
+        return None
+    parts = text.split(",")
+    if not all(is_number(part) for part in parts):
+        raise InputError("is not a list of numbers", key="--start", value=text, remedy='write "0.1,0"')
+    return [float(part) for part in parts]
 
 
 def is_number(text: str) -> bool:
@@ -144,31 +166,47 @@ def is_number(text: str) -> bool:
     return True
 
 
-def read_axis(text: str, assembly: Assembly, unit: str, points: int, key: str) -> tuple[object, ...]:
+def read_axis(text: str, line: Driveline, unit: str, points: int, key: str) -> tuple[str, float, float, int, str]:
     """``PARAMETER:LOW:HIGH:POINTS[:log]``, or PARAMETER alone for the range of the file, as an axis request.
 
     Read from the right, so that names with colons remain possible.
     """
+    from trunnion.driveline.parameters import pack
+    from trunnion.driveline.quantities import KINDS, SPEED
     from trunnion.reporting.ranges import angle_range, speed_range
 
-    parts = text.split(":")
+    packed, parts = pack(line), text.split(":")
     scale = "log" if len(parts) > 4 and parts[-1].strip() == "log" else "linear"
     if scale == "log":
         parts.pop()
     if len(parts) < 4:
-        columns = assembly.packed.resolve(text.strip()) if len(parts) == 1 else None
+        columns = packed.resolve(text.strip()) if len(parts) == 1 else None
         if columns is None or not (columns.label == "speed" or columns.label.endswith(".angle")):
             raise InputError("needs a range", key=key, value=text, remedy=AXIS_EXAMPLE)
-        low, high = speed_range(assembly) if columns.label == "speed" else angle_range(assembly.line)
-        return (columns.label, low, high, points)
+        low, high = speed_range(line) if columns.label == "speed" else angle_range(line)
+        return columns.label, low, high, points, scale
     *name, low_text, high_text, count = parts
-    columns = assembly.packed.resolve(":".join(name).strip())
-    low, high = (_quantity(end, _kind(columns), unit, key=key) for end in (low_text, high_text))
+    columns = packed.resolve(":".join(name).strip())
+    kind = SPEED
+    if columns.label != SPEED.name:
+        kind = next(k for k in KINDS if k.unit == columns.unit and k is not SPEED)
+    low, high = (_read_end(end, kind, unit, key) for end in (low_text, high_text))
     if low == high:
         raise InputError("is a range of zero size", key=key, value=text, remedy="give low < high")
     if low > high:
         raise InputError("is a reversed range", key=key, value=text, remedy="give the lower end first")
-    return (columns.label, low, high, _count(count, key), scale)
+    return columns.label, low, high, _count(count, key), scale
+
+
+def read_box_range(text: str, line: Driveline, unit: str, key: str) -> tuple[tuple[str, float, float], int]:
+    """``PARAMETER:LOW:HIGH[:ROWS]`` as a range and a number of rows."""
+    parts = text.split(":")
+    if parts[-1].strip() == "log":
+        raise InputError("is searched evenly", key=key, value=text, remedy="leave out :log")
+    counted = len(parts) > 3 and parts[-1].strip().isdecimal()
+    whole = text if counted or len(parts) < 3 else f"{text}:{ROWS}"
+    label, low, high, rows, _ = read_axis(whole, line, unit, ROWS, key)
+    return (label, low, high), rows
 
 
 def read_points(text: str) -> tuple[int, int]:
@@ -194,33 +232,18 @@ def _count(text: str, key: str) -> int:
     return count
 
 
-def _kind(columns: Columns) -> str:
-    from trunnion.driveline.quantities import KINDS
-
-    if columns.label == "speed":
-        return "speed"
-    return next(k.name for k in KINDS if k.unit == columns.unit and k.name != "speed")
-
-
-def _quantity(text: str, kind_name: str, unit: str, *, key: str) -> float:
-    """A number with a unit, or a bare one: in ``unit`` for speeds, in SI otherwise."""
-    from trunnion.driveline.quantities import KINDS, parse
-    from trunnion.results.speeds import speed_factor
-
-    kind = next(k for k in KINDS if k.name == kind_name)
-    try:
-        number = float(text)
-    except ValueError:
-        try:
-            return parse(text, kind)
-        except InputError as error:
-            raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
-    if not math.isfinite(number):
+def _read_end(text: str, kind: Kind, unit: str, key: str) -> float:
+    """As ``read_quantity``, but a bare speed is in ``unit``."""
+    if is_number(text) and not math.isfinite(float(text)):
         raise InputError("must be finite", key=key, value=text, remedy=f'write "{kind.example}", say')
-    try:
-        return parse(number / speed_factor(unit) if kind_name == "speed" else number, kind)
-    except InputError as error:
-        raise InputError(error.problem, key=key, value=text, remedy=error.remedy) from None
+    return read_quantity(text, kind, key, per=speed_factor(unit) if kind.name == "speed" else 1.0)
+
+
+def only_for_lines(remedy: str, given: Mapping[str, object]) -> None:
+    """Refuse options that a system of equations has no use for."""
+    for key, value in given.items():
+        if value is not None:
+            raise InputError("belongs to drivelines", key=key, value=value, remedy=remedy)
 
 
 def read_set(texts: Sequence[str] | None) -> dict[str, float]:

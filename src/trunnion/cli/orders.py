@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.options import (
     File,
@@ -15,15 +15,14 @@ from trunnion.cli.options import (
     LoadCase,
     Output,
     Unit,
-    file_stem,
     is_number,
     read_axis,
-    read_line,
-    read_speed,
-    read_unit,
+    read_case,
+    read_stated_speed,
 )
-from trunnion.cli.places import answer, check_places, write_results
+from trunnion.cli.places import check_places, deliver
 from trunnion.errors import InputError
+from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from trunnion.analyses.limits.result import StableLimit
     from trunnion.analyses.linear.speed_sweep import SpeedSweep
     from trunnion.analyses.orders.result import OrderResponse
-    from trunnion.equations.coefficients import Assembly
     from trunnion.results.finding import Finding
 
     Array = NDArray[np.float64]
@@ -70,27 +68,23 @@ def order_response(
 
     Example: trunnion order-response truck.toml --load-case climb --speed 300rpm:2400rpm -o truck.png -o truck.csv
     """
-    from trunnion.analyses.orders.response import order_response as compute
-
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    from trunnion.equations.coefficients import assemble
-
-    assembly = assemble(line)
-    at, wanted = _speeds(assembly, speeds, unit), _orders(orders)
-    _known(assembly, spring)
+    line, unit = read_case(file, unit, load_case)
+    at, wanted = _speeds(line, speeds, unit), _orders(orders)
+    _known(line, spring)
     check_places(to)
     with output.progress("order response") as advance:
-        result = compute(assembly, at, wanted, progress=advance)
+        result = tn.order_response(line, at, wanted, progress=advance)
         findings = result.findings_in(unit)
-    written = write_results(
-        to, file_stem(file), "order-response", result.data,
-        lambda: result.plot(spring=spring, unit=unit, operating=line.operation), _by_order(result, unit),
+
+    def more() -> None:
+        output.table(result.table(unit))
+        output.findings(findings)
+
+    deliver(
+        "order-response", file, result, to, as_json,
+        draw=lambda: result.plot(spring=spring, unit=unit, operating=line.operation), table=_by_order(result, unit),
+        content=lambda: _response_json(result, findings, unit), text=lambda: result.headline, more=more,
     )  # fmt: skip
-    if as_json:
-        output.write_json("order-response", _response_json(result, findings, unit, written))
-        return
-    _print_response(result, findings, unit, written)
 
 
 def speed_sweep(
@@ -105,21 +99,16 @@ def speed_sweep(
 
     Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png
     """
-    from trunnion.analyses.linear.speed_sweep import speed_sweep as compute
-    from trunnion.equations.coefficients import assemble
-
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    assembly = assemble(line)
-    at = _speeds(assembly, speeds, unit)
+    line, unit = read_case(file, unit, load_case)
+    at = _speeds(line, speeds, unit)
     check_places(to)
     with output.progress("torque over speed") as advance:
-        result = compute(assembly, at, progress=advance)
-    written = write_results(
-        to, file_stem(file), "speed-sweep", result.data, lambda: result.plot(unit=unit, operating=line.operation),
-        _in_unit(result.data, unit),
+        result = tn.speed_sweep(line, at, progress=advance)
+    deliver(
+        "speed-sweep", file, result, to, as_json,
+        draw=lambda: result.plot(unit=unit, operating=line.operation), table=_in_unit(result.data, unit),
+        content=lambda: _sweep_json(result, unit), text=lambda: result.describe(unit),
     )  # fmt: skip
-    answer("speed-sweep", lambda: _sweep_json(result, unit), lambda: result.describe(unit), written, as_json)
 
 
 def stable_limit(
@@ -149,43 +138,37 @@ def stable_limit(
     Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
     """  # fmt: skip
     from trunnion.analyses.limits.other_limits import SCAN
-    from trunnion.analyses.limits.stable_limit import stable_limit as compute
-    from trunnion.equations.coefficients import assemble
 
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    assembly = assemble(line)
-    label, low, high, points, *scale = read_axis(parameter, assembly, unit, SCAN + 1, "--parameter")
-    if "log" in scale:
+    line, unit = read_case(file, unit, load_case)
+    label, low, high, points, scale = read_axis(parameter, line, unit, SCAN + 1, "--parameter")
+    if scale == "log":
         raise InputError("is scanned evenly", key="--parameter", value=parameter, remedy="leave out :log")
-    at = _speeds(assembly, speeds, unit, points=FEW, even=True)
+    at = _speeds(line, speeds, unit, points=FEW, even=True)
     check_places(to)
-    assert isinstance(label, str) and isinstance(low, float) and isinstance(high, float) and isinstance(points, int)
     with output.progress("stable limit") as advance:
-        result = compute(assembly, label, at, low=low, high=high, margin=margin, scan=points - 1, progress=advance)
-    written = write_results(
-        to, file_stem(file), "stable-limit", result.data, lambda: result.plot(unit=unit, operating=line.operation),
-        _in_unit(result.data, unit),
+        result = tn.stable_limit(line, label, at, low=low, high=high, margin=margin, scan=points - 1, progress=advance)
+    deliver(
+        "stable-limit", file, result, to, as_json,
+        draw=lambda: result.plot(unit=unit, operating=line.operation), table=_in_unit(result.data, unit),
+        content=lambda: _limit_json(result, unit), text=lambda: result.describe(unit),
     )  # fmt: skip
-    answer("stable-limit", lambda: _limit_json(result, unit), lambda: result.describe(unit), written, as_json)
 
 
-def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
+def _speeds(line: tn.Driveline, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
     """Speeds asked for [rad/s]; without a number of them closer together about the resonances, unless ``even``."""
     import numpy as np
 
-    from trunnion.analyses.linear.speed_sweep import sweep_speeds
     from trunnion.reporting.ranges import speed_range
 
     if text is None:
-        low, high = speed_range(assembly)
+        low, high = speed_range(line)
     else:
         ends, counted = text.split(":"), None
         if len(ends) > 3:
             raise InputError("is no range", key="--speed", value=text, remedy=SPEED_EXAMPLE)
         if len(ends) == 3:
             counted = ends.pop()
-        read = [_speed(end, unit) for end in ends]
+        read = [read_stated_speed(end.strip(), unit) for end in ends]
         if len(read) == 1 and not even:
             return np.array(read)
         if len(read) == 1 or not read[0] < read[1]:
@@ -196,13 +179,7 @@ def _speeds(assembly: Assembly, text: str | None, unit: str, *, points: int = 24
                 problem = "must end in a whole number of speeds, 2 to 100 000"
                 raise InputError(problem, key="--speed", value=text, remedy=SPEED_EXAMPLE)
             return np.linspace(low, high, int(counted))
-    return np.linspace(low, high, points) if even else sweep_speeds(assembly, low, high, points)
-
-
-def _speed(text: str, unit: str) -> float:
-    speed = read_speed(text.strip(), unit)
-    assert speed is not None
-    return speed
+    return np.linspace(low, high, points) if even else tn.sweep_speeds(line, low, high, points)
 
 
 def _orders(text: str | None) -> list[float] | None:
@@ -214,19 +191,18 @@ def _orders(text: str | None) -> list[float] | None:
     return [float(part) for part in parts]
 
 
-def _known(assembly: Assembly, spring: str | None) -> None:
+def _known(line: tn.Driveline, spring: str | None) -> None:
     from trunnion.analyses.linear.forced_response import shaft_names
     from trunnion.driveline.refusals import nearest
+    from trunnion.equations.coefficients import assemble
 
-    names = shaft_names(assembly)
+    names = shaft_names(assemble(line))
     if spring is not None and spring not in names:
         remedy = nearest(spring, list(names))
         raise InputError("is no shaft or mesh of the line", key="--spring", value=spring, remedy=remedy)
 
 
 def _in_unit(data: Any, unit: str) -> Any:
-    from trunnion.results.speeds import speed_factor
-
     return data.assign_coords(speed=("speed", data.speed.values * speed_factor(unit), {"units": unit}))
 
 
@@ -248,20 +224,7 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
     return kept.assign(parts).assign(moving.data_vars).assign_coords(order_number=labels)
 
 
-def _print_response(result: OrderResponse, findings: Sequence[Finding], unit: str, written: list[Path]) -> None:
-    from trunnion.cli.report import print_written
-
-    out = output.console()
-    out.print(result.headline, soft_wrap=True)
-    output.table(out, result.table(unit))
-    output.heading(out, "Findings")
-    output.findings(out, findings)
-    print_written(out, written)
-
-
-def _response_json(
-    result: OrderResponse, findings: Sequence[Finding], unit: str, written: Sequence[Path]
-) -> dict[str, Any]:
+def _response_json(result: OrderResponse, findings: Sequence[Finding], unit: str) -> dict[str, Any]:
     """The largest of every spring; the numbers by speed and order are in the files written."""
     keys = ("spring", "peak_torque", "speed", "vibratory_torque", "order", "order_amplitude", "order_speed")
     return {
@@ -271,14 +234,11 @@ def _response_json(
         ],
         "sum_is_bound": result.sum_is_bound,
         "springs": [dict(zip(keys, row.values(), strict=True)) for row in result.table(unit)],
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in findings],
-        "written": [str(path) for path in written],
+        "findings": output.findings_json(findings),
     }
 
 
 def _span(speed: Array, unit: str) -> dict[str, Any]:
-    from trunnion.results.speeds import speed_factor
-
     factor = speed_factor(unit)
     return {
         "speed_unit": unit,
@@ -287,8 +247,6 @@ def _span(speed: Array, unit: str) -> dict[str, Any]:
 
 
 def _sweep_json(result: SpeedSweep, unit: str) -> dict[str, Any]:
-    from trunnion.results.speeds import speed_factor
-
     peaks = {shaft: result.peak(shaft) for shaft in result.shafts}
     return {
         **_span(result.speed, unit),
@@ -297,13 +255,12 @@ def _sweep_json(result: SpeedSweep, unit: str) -> dict[str, Any]:
             for shaft, (torque, at) in peaks.items()
         ],
         "linear": bool(result.linear.all()),
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings_in(unit)],
+        "findings": output.findings_json(result.findings_in(unit)),
     }
 
 
 def _limit_json(result: StableLimit, unit: str) -> dict[str, Any]:
     from trunnion.analyses.limits.result import LimitKind
-    from trunnion.results.speeds import speed_factor
 
     at, factor = result.critical_speed, speed_factor(unit)
     return {
@@ -323,5 +280,5 @@ def _limit_json(result: StableLimit, unit: str) -> dict[str, Any]:
         "others": [{"name": o.name, "allowed": o.allowed, "unit": o.unit, "reached": o.reached} for o in result.others],
         "whole": None if result.whole is None else result.whole.to_dict(),
         "search": {"low": result.low, "high": result.high, "complete": result.complete, "words": result.search},
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings],
+        "findings": output.findings_json(result.findings),
     }

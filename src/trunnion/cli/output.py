@@ -31,7 +31,7 @@ PIPED_WIDTH = 110
 _COLOUR = {"danger": "bold red", "caution": "yellow", "note": "green"}
 
 
-def console() -> Console:
+def _console() -> Console:
     """stdout; wide enough for tables when it is piped into a file."""
     from rich.console import Console
 
@@ -39,37 +39,58 @@ def console() -> Console:
     return Console(width=PIPED_WIDTH if piped else None, highlight=False, markup=False)
 
 
-def heading(out: Console, text: str) -> None:
+def say(text: str, style: str | None = None, *, wrap: bool = False) -> None:
+    """Text on stdout, its lines left to the terminal or wrapped at the width of the tables."""
+    _console().print(text, style=style, soft_wrap=not wrap)
+
+
+def heading(text: str) -> None:
     """A line that opens a section."""
-    out.print()
-    out.print(text, style="bold")
+    say("")
+    say(text, style="bold", wrap=True)
 
 
-def table(out: Console, rows: Sequence[Mapping[str, object]]) -> None:
+def table(rows: Sequence[Mapping[str, object]], title: str = "") -> None:
     """Rows with common keys; numbers right-aligned with six figures, nothing for None."""
     from rich import box
     from rich.table import Table
 
+    if title:
+        heading(title)
     drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for key, value in rows[0].items():
         drawn.add_column(key, justify="right" if value is None or isinstance(value, int | float) else "left")
     for row in rows:
         drawn.add_row(*("" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()))
-    out.print(drawn)
+    _console().print(drawn)
 
 
-def findings(out: Console, found: Sequence[Finding]) -> None:
+def findings(found: Sequence[Finding], title: str = "Findings") -> None:
     """One paragraph each, the gravest first, in the colour of its gravity."""
     from rich.table import Table
     from rich.text import Text
 
+    heading(title)
     grid = Table.grid(padding=(0, 1))
     grid.add_column(no_wrap=True)
     grid.add_column()
     for finding in found:
         word = str(finding.gravity)
         grid.add_row(Text(f"  {word}", style=_COLOUR[word]), Text(finding.sentence))
-    out.print(grid)
+    _console().print(grid)
+
+
+def findings_json(found: Sequence[Finding]) -> list[dict[str, str]]:
+    """Gravity and sentence of each."""
+    return [{"gravity": str(f.gravity), "sentence": f.sentence} for f in found]
+
+
+def written(paths: Sequence[Path]) -> None:
+    """The files that were written, one a line, never broken."""
+    if paths:
+        heading("Written")
+    for path in paths:
+        say(f"  {path}")
 
 
 def write_json(command: str, content: Mapping[str, Any]) -> None:
@@ -78,10 +99,10 @@ def write_json(command: str, content: Mapping[str, Any]) -> None:
     print(json.dumps(plain(whole), indent=2, allow_nan=False))
 
 
-def finish(outcome: Outcome, written: Sequence[Path] = ()) -> None:
+def finish(outcome: Outcome, paths: Sequence[Path]) -> None:
     """Exit code 1 with the sentence of a failed outcome, once what was computed is written and printed."""
     if not outcome.ok:
-        kept = f"; what was computed is in {', '.join(map(str, written))}" if written else ""
+        kept = f"; what was computed is in {', '.join(map(str, paths))}" if paths else ""
         raise ComputationError(f"{outcome}{kept}")
 
 

@@ -1,4 +1,4 @@
-"""Where results are written: refused before the computation, whole afterwards, and named at the end."""
+"""Where results are written: refused before the computation, whole afterwards, and named in the answer."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.cli import output
-from trunnion.cli.study import DEFAULT_FOLDER
+from trunnion.cli.options import file_stem
 from trunnion.errors import InputError
 
+DEFAULT_FOLDER = Path("trunnion-out")
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
 
@@ -28,57 +29,71 @@ def check_places(to: list[Path] | None, endings: tuple[str, ...] = ()) -> None:
         check_folder(DEFAULT_FOLDER)
 
 
-def write_results(
-    to: list[Path] | None, stem: str, what: str, data: Any, draw: Callable[[], Any], table: Any = None
-) -> list[Path]:
-    """The files asked for, or a picture and the data in the default folder; ``table`` as of ``write_result``."""
-    from trunnion.writing import folder_written_whole
+def write_result(path: Path, found: Any, draw: Callable[[], Any], table: Any = None) -> Path:
+    """Numbers or picture by the ending of ``path``; ``table`` as of ``write_numbers``."""
+    from trunnion.plots.style import FORMATS, save
+    from trunnion.results.written import write_numbers
 
-    if to:
-        return [write_result(path, data, draw, table) for path in to]
-    with folder_written_whole(DEFAULT_FOLDER) as temporary:
-        names = [temporary / f"{stem}-{what}.{ending}" for ending in ("png", "nc")]
-        for name in names:
-            write_result(name, data, draw)
-    return [DEFAULT_FOLDER / name.name for name in names]
-
-
-def write_result(path: Path, data: Any, draw: Callable[[], Any], table: Any = None) -> Path:
-    """Data, table or picture by the ending of ``path``; a table may stand on another dataset than the data."""
-    from trunnion.plots.style import save
-    from trunnion.results.files import save_dataset
-    from trunnion.results.tables import write_table
-    from trunnion.writing import written_whole
-
-    ending = path.suffix.removeprefix(".").lower()
-    if ending == "nc":
-        save_dataset(data, path)
-    elif ending == "csv":
-        with written_whole(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
-            write_table(stream, data if table is None else table)
-    else:
+    if path.suffix.removeprefix(".").lower() in FORMATS:
         save(draw().figure.figure, path)
+    else:
+        write_numbers(found, path, table)
     return path
 
 
-def print_result(text: str, written: list[Path]) -> None:
-    """A result in words and where it was written."""
-    from trunnion.cli.report import print_written
+def write_results(
+    to: list[Path] | None, file: str, what: str, found: Any, draw: Callable[[], Any], table: Any = None
+) -> list[Path]:
+    """The files asked for, or a picture and the numbers of ``file`` in the default folder."""
+    from trunnion.writing import folder_written_whole
 
-    out = output.console()
-    out.print(text, soft_wrap=True)
-    print_written(out, written)
+    if to:
+        return [write_result(path, found, draw, table) for path in to]
+    with folder_written_whole(DEFAULT_FOLDER) as temporary:
+        names = [temporary / f"{file_stem(file)}-{what}.{ending}" for ending in ("png", "nc")]
+        for name in names:
+            write_result(name, found, draw)
+    return [DEFAULT_FOLDER / name.name for name in names]
+
+
+def deliver(
+    command: str,
+    file: str,
+    found: Any,
+    to: list[Path] | None,
+    as_json: bool,
+    *,
+    what: str = "",
+    draw: Callable[[], Any] | None = None,
+    table: Any = None,
+    content: Callable[[], Mapping[str, Any]] | None = None,
+    text: Callable[[], str] | None = None,
+    more: Callable[[], None] | None = None,
+    wrap: bool = False,
+) -> list[Path]:
+    """What a command found: written, then said, see ``answer``; without other words the result has its own.
+
+    what : its part in the names of files; default ``command``. draw : its picture. table : as of ``write_numbers``.
+    """
+    written = write_results(to, file, what or command, found, draw or found.plot, table)
+    answer(command, written, as_json, content or found.to_dict, text or found.__str__, more, wrap)
+    return written
 
 
 def answer(
     command: str,
-    content: Callable[[], Mapping[str, Any]],
-    text: Callable[[], str],
     written: Sequence[Path],
     as_json: bool,
+    content: Callable[[], Mapping[str, Any]],
+    text: Callable[[], str],
+    more: Callable[[], None] | None = None,
+    wrap: bool = False,
 ) -> None:
-    """A result as one JSON object, or in words, and where it was written."""
+    """A result as one JSON object, or in words with ``more`` below them, and where it was written."""
     if as_json:
         output.write_json(command, {**content(), "written": [str(path) for path in written]})
-    else:
-        print_result(text(), list(written))
+        return
+    output.say(text(), wrap=wrap)
+    if more is not None:
+        more()
+    output.written(written)

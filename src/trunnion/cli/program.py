@@ -177,41 +177,46 @@ def _root(
         typer.echo(ctx.get_help())
 
 
-app.command("analyze")(study.analyze)
-app.command("assess")(assess)
-app.command("campbell-diagram")(campbell_diagram)
-app.command("envelope")(envelope)
-app.command("stability")(study.stability)
-app.command("stability-chart")(study.stability_chart)
-app.command("natural-frequencies")(study.natural_frequencies)
-app.command("resonance-speeds")(study.resonance_speeds)
-app.command("kinetostatics")(kinetostatics)
-app.command("order-response")(order_response)
-app.command("speed-sweep")(speed_sweep)
-app.command("stable-limit")(stable_limit)
-app.command("tongues")(tongues)
-app.command("stable-windows")(stable_windows)
-app.command("minimum-damping")(minimum_damping)
-app.command("compare")(compare)
-app.command("optimise")(optimise)
-app.command("sensitivity")(sensitivity)
-app.command("certify-stability")(certify_stability)
-app.command("tolerance-study")(tolerance_study)
-app.command("simulate")(simulate)
-app.command("periodic-response")(periodic_response)
-app.command("linearity-check")(linearity_check)
-app.command("run-up")(run_up)
-app.command("frequency-response")(frequency_response)
-app.command("sweep")(sweep)
-app.command("lyapunov-spectrum")(lyapunov_spectrum)
-app.command("poincare-map")(poincare_map)
-app.command("certify-chaos")(certify_chaos)
-app.command("reproduce")(reproduce)
-app.command("app")(serve_app)
-app.command("warm-up")(warm_up)
-app.command("catalogue")(describe.catalogue)
-app.command("new")(describe.new)
-app.command("schema")(describe.schema)
+COMMANDS = (
+    study.analyze,
+    assess,
+    campbell_diagram,
+    envelope,
+    study.stability,
+    study.stability_chart,
+    study.natural_frequencies,
+    study.resonance_speeds,
+    kinetostatics,
+    order_response,
+    speed_sweep,
+    stable_limit,
+    tongues,
+    stable_windows,
+    minimum_damping,
+    compare,
+    optimise,
+    sensitivity,
+    certify_stability,
+    tolerance_study,
+    simulate,
+    periodic_response,
+    linearity_check,
+    run_up,
+    frequency_response,
+    sweep,
+    lyapunov_spectrum,
+    poincare_map,
+    certify_chaos,
+    reproduce,
+    serve_app,
+    warm_up,
+    describe.catalogue,
+    describe.new,
+    describe.schema,
+)
+"""In the order of the help; each goes by the name of its function."""
+for command in COMMANDS:
+    app.command(command.__name__.replace("_", "-"))(command)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Final
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import Json, OutputNoTable, file_stem, read_line, read_set, read_speed
-from trunnion.cli.places import PICTURES_AND_DATA, check_places, write_results
+from trunnion.cli.options import Json, OutputNoTable, read_line, read_set, read_speed
+from trunnion.cli.places import PICTURES_AND_DATA, check_places, deliver
 from trunnion.errors import InputError
 
-if TYPE_CHECKING:
-    from trunnion.driveline.driveline import Driveline
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
-    from trunnion.systems.system import System
-
-GEARS, DEAD_ZONE = "gear-rattle", "dead-zone-oscillator"
+GEARS: Final = "gear-rattle"
+DEAD_ZONE = "dead-zone-oscillator"
 Subject = Annotated[
     str,
     typer.Argument(
@@ -60,10 +58,8 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.orbits.frequency_response import frequency_response as compute
     from trunnion.analyses.orbits.frequency_response import methods_of
     from trunnion.analyses.orbits.frequency_response_result import ResponseComparison
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     subject, length = _subject(name, parameters)
     unit = _unit(subject)
@@ -71,15 +67,17 @@ def frequency_response(
     check_places(to, PICTURES_AND_DATA)
     known = methods_of(subject)
     # The exact motion of longer lines is for those without joints: asked for by name.
-    every = known if isinstance(subject, PiecewiseOscillator) else known[:2]
+    every = known if isinstance(subject, tn.PiecewiseOscillator) else known[:2]
     chosen = list(every) if method == ["all"] else (method or [known[0]])
-    if "shooting" in chosen and methods_of(subject)[0] == "shooting":
+    if "shooting" in chosen and known[0] == "shooting":
         output.note("following the motions through their contacts, which may take minutes; a narrower range is quicker")
     with output.progress("frequency response") as advance:
         shares = _shares(advance, chosen)
         found = ResponseComparison(
             {
-                m: compute(subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics, shares[m]))
+                m: tn.frequency_response(
+                    subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics, shares[m])
+                )
                 for m in chosen
             }
         )
@@ -87,14 +85,11 @@ def frequency_response(
         if not len(response.frequency):
             response.outcome.require()
     one = found.responses[chosen[0]]
-    written = write_results(
-        to, file_stem(name), "frequency-response", one.data, lambda: found.plot(length=length, unit=unit)
-    )
-    if as_json:
-        output.write_json("frequency-response", {"methods": _json(found), "written": [str(path) for path in written]})
-        return
     text = one.describe(unit) if len(chosen) == 1 else f"{found.describe(unit)}\n\n{one.describe(unit)}"
-    _print(text, written)
+    deliver(
+        "frequency-response", name, one, to, as_json,
+        draw=lambda: found.plot(length=length, unit=unit), content=lambda: {"methods": _json(found)}, text=lambda: text,
+    )  # fmt: skip
 
 
 def sweep(
@@ -116,14 +111,12 @@ def sweep(
 
     from trunnion.analyses.orbits.free_play import require_forced
     from trunnion.analyses.orbits.piecewise_branch import check_range
-    from trunnion.analyses.orbits.piecewise_sweep import sweep as compute
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.staged_line import staged_line
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
-    from trunnion.systems.system import System
+    from trunnion.plots.frequency_response import draw_line_sweeps, draw_sweeps
 
     subject, length = _subject(name, parameters)
-    if isinstance(subject, System):
+    if isinstance(subject, tn.System):
         raise InputError(
             "has no gap to be swept over", key="NAME", value=name,
             remedy=f"use {GEARS}, {DEAD_ZONE} or a line with gears; or frequency-response, periodic-response",
@@ -132,7 +125,7 @@ def sweep(
     if direction not in ("up", "down", "both"):
         raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
     check_range(first, last)
-    if isinstance(subject, PiecewiseOscillator):
+    if isinstance(subject, tn.PiecewiseOscillator):
         require_forced(subject)
     elif curve and curve not in (springs := staged_line(subject, first).springs):
         remedy = nearest(curve, list(springs))
@@ -140,86 +133,69 @@ def sweep(
     check_places(to, PICTURES_AND_DATA)
     grid = np.linspace(first, last, points)
     grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
-    if not isinstance(subject, PiecewiseOscillator):
-        _sweep_line(subject, grids, name, curve, to, as_json)
-        return
+    unit = _unit(subject)
     with output.compile_notice():
-        found = [compute(subject, values) for values in grids]
-
-    def draw() -> Any:
-        from trunnion.plots.frequency_response import draw_sweeps
-
-        return draw_sweeps(found, length=length)
-
-    written = write_results(to, file_stem(name), "sweep", _sweeps_data(found), draw)
-    if as_json:
-        content = [
-            {
-                "direction": "up" if one.up else "down",
-                "frequency": one.frequency,
-                "half_peak_to_peak": one.peak_to_peak / 2,
-                "mean": one.mean,
-                "contact": list(one.contact),
-                "impacts": one.impacts,
-                "impact_energy": one.impact_energy,
-                "settled": [bool(s) for s in one.settled],
-                "jumps": [list(jump) for jump in one.jumps],
-                "says": str(one.outcome),
-            }
-            for one in found
-        ]
-        output.write_json("sweep", {"sweeps": content, "written": [str(path) for path in written]})
-        return
-    _print("\n".join(map(str, found)), written)
+        found: list[Any] = [tn.sweep(subject, values) for values in grids]
+    if isinstance(subject, tn.PiecewiseOscillator):
+        deliver(
+            "sweep", name, _Sweeps(found), to, as_json,
+            draw=lambda: draw_sweeps(found, length=length),
+            content=lambda: {"sweeps": [_sweep_json(one, _oscillator_json(one)) for one in found]},
+            text=lambda: "\n".join(map(str, found)),
+        )  # fmt: skip
+    else:
+        deliver(
+            "sweep", name, _Sweeps(found), to, as_json,
+            draw=lambda: draw_line_sweeps(found, spring=curve, unit=unit),
+            content=lambda: {"sweeps": [_sweep_json(one, _line_json(one)) for one in found]},
+            text=lambda: "\n".join(one.describe(unit) for one in found),
+        )  # fmt: skip
 
 
-def _sweep_line(line: Driveline, grids: list[Any], name: str, curve: str, to: list[Path] | None, as_json: bool) -> None:
-    """Torques of all springs of a line with several inertias."""
-    from trunnion.analyses.orbits.piecewise_sweep import sweep as compute
-
-    unit = _unit(line)
-    with output.compile_notice():
-        found = [compute(line, values) for values in grids]
-
-    def draw() -> Any:
-        from trunnion.plots.frequency_response import draw_line_sweeps
-
-        return draw_line_sweeps(found, spring=curve, unit=unit)
-
-    written = write_results(to, file_stem(name), "sweep", _sweeps_data(found), draw)
-    if as_json:
-        staged = [row[0].spring for row in zip(*found[0].contacts, strict=True)]
-        content = [
-            {
-                "direction": "up" if one.up else "down",
-                one.line.clock: one.value,
-                "torque_peak_to_peak": {s: one.swing_of(s) for s in one.springs},
-                "contact": {s: one.contact_of(s) for s in staged},
-                "impact_energy": {s: [row[i].impact_energy for row in one.contacts] for i, s in enumerate(staged)},
-                "settled": [bool(s) for s in one.settled],
-                "jumps": [list(jump) for jump in one.jumps],
-                "says": str(one.outcome),
-            }
-            for one in found
-        ]
-        output.write_json("sweep", {"sweeps": content, "written": [str(path) for path in written]})
-        return
-    _print("\n".join(one.describe(unit) for one in found), written)
+def _sweep_json(one: Any, measured: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "direction": "up" if one.up else "down",
+        **measured,
+        "settled": [bool(s) for s in one.settled],
+        "jumps": [list(jump) for jump in one.jumps],
+        "says": str(one.outcome),
+    }
 
 
-def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillator | System | Driveline, str]:
+def _oscillator_json(one: Any) -> dict[str, Any]:
+    return {
+        "frequency": one.frequency,
+        "half_peak_to_peak": one.peak_to_peak / 2,
+        "mean": one.mean,
+        "contact": list(one.contact),
+        "impacts": one.impacts,
+        "impact_energy": one.impact_energy,
+    }
+
+
+def _line_json(one: Any) -> dict[str, Any]:
+    """Torques of all springs of a line with several inertias, and contacts of those with stages."""
+    staged = [contact.spring for contact in one.contacts[0]]
+    return {
+        one.line.clock: one.value,
+        "torque_peak_to_peak": {s: one.swing_of(s) for s in one.springs},
+        "contact": {s: one.contact_of(s) for s in staged},
+        "impact_energy": {s: [row[i].impact_energy for row in one.contacts] for i, s in enumerate(staged)},
+    }
+
+
+def _subject(name: str, parameters: list[str] | None) -> tuple[tn.PiecewiseOscillator | tn.System | tn.Driveline, str]:
     """What is meant, and the unit of its x if it has one."""
     from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import catalogue, entries
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+    from trunnion.studies.entries import entries
     from trunnion.systems.reference import SYSTEMS
 
     values = read_set(parameters)
     if name == GEARS:
-        return catalogue("gear-rattle", **values), "rad"
+        return tn.catalogue(GEARS, **values), "rad"
     if name in SYSTEMS:
         system = SYSTEMS[name]().with_parameters(values)
-        return PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system, ""
+        return tn.PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system, ""
     lines = [entry.name for entry in entries()]
     if not Path(name).suffix and not Path(name).exists() and name not in lines:
         remedy = nearest(name, [GEARS, *SYSTEMS, *lines])
@@ -230,45 +206,38 @@ def _subject(name: str, parameters: list[str] | None) -> tuple[PiecewiseOscillat
     return _of_line(read_line(name))
 
 
-def _of_line(line: Driveline) -> tuple[PiecewiseOscillator | Driveline, str]:
+def _of_line(line: tn.Driveline) -> tuple[tn.PiecewiseOscillator | tn.Driveline, str]:
     """One equation where the line is that, and nothing in it grows with the speed; and the unit of its x."""
-    from trunnion.driveline.gears import GearPair
-    from trunnion.driveline.stages import PiecewiseShaft
-    from trunnion.equations.exact_oscillator import exact_oscillator
-
     spring = line.elements[1] if len(line.elements) == 3 else None
-    phased = isinstance(spring, GearPair) and bool(spring.transmission_error)
-    if not isinstance(spring, GearPair | PiecewiseShaft) or phased:
+    phased = isinstance(spring, tn.GearPair) and bool(spring.transmission_error)
+    if not isinstance(spring, tn.GearPair | tn.PiecewiseShaft) or phased:
         return line, ""
-    return exact_oscillator(line), "m" if isinstance(spring, GearPair) else "rad"
+    return tn.exact_oscillator(line), "m" if isinstance(spring, tn.GearPair) else "rad"
 
 
-def _unit(subject: PiecewiseOscillator | System | Driveline) -> str:
-    from trunnion.driveline.driveline import Driveline
+def _unit(subject: tn.PiecewiseOscillator | tn.System | tn.Driveline) -> str:
     from trunnion.driveline.operating_speed import speed_unit
     from trunnion.results.speeds import frequency_unit
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-    if isinstance(subject, Driveline):
+    if isinstance(subject, tn.Driveline):
         return speed_unit(subject)
-    return frequency_unit(subject.speed_unit) if isinstance(subject, PiecewiseOscillator) else "rad/s"
+    return frequency_unit(subject.speed_unit) if isinstance(subject, tn.PiecewiseOscillator) else "rad/s"
 
 
-def _range(subject: PiecewiseOscillator | System | Driveline, low: str | None, high: str | None) -> tuple[float, float]:
+def _range(
+    subject: tn.PiecewiseOscillator | tn.System | tn.Driveline, low: str | None, high: str | None
+) -> tuple[float, float]:
     """As given; else about the frequency of the excitation, or a line's range of speeds."""
-    from trunnion.driveline.driveline import Driveline
-    from trunnion.equations.coefficients import assemble
     from trunnion.reporting.ranges import speed_range
-    from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
     unit = _unit(subject)
     first, last = read_speed(low, unit, "--from"), read_speed(high, unit, "--to")
     if first is not None and last is not None:
         return first, last
     usual = 0.3, 1.3
-    if isinstance(subject, Driveline):
-        usual = speed_range(assemble(subject))
-    elif isinstance(subject, PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
+    if isinstance(subject, tn.Driveline):
+        usual = speed_range(subject)
+    elif isinstance(subject, tn.PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
         usual = 0.5 * subject.frequency, 1.5 * subject.frequency
     return usual[0] if first is None else first, usual[1] if last is None else last
 
@@ -303,19 +272,20 @@ def _json(found: Any) -> list[dict[str, Any]]:
     ]
 
 
-def _sweeps_data(found: list[Any]) -> Any:
-    import xarray as xr
+@dataclass(frozen=True)
+class _Sweeps:
+    """One sweep, or one up and one down."""
 
-    if len(found) == 1:
-        return found[0].data
-    over = next(str(n) for n in found[0].data.dims if n in ("frequency", "speed"))
-    parts = [one.data.sortby(over) for one in found]
-    return xr.concat(parts, dim="direction", combine_attrs="drop_conflicts").assign_coords(direction=["up", "down"])
+    found: list[Any]
 
+    @property
+    def data(self) -> Any:
+        """Its dataset, or both along a new axis."""
+        import xarray as xr
 
-def _print(text: str, written: list[Path]) -> None:
-    from trunnion.cli.report import print_written
-
-    out = output.console()
-    out.print(text, soft_wrap=True, markup=False, highlight=False)
-    print_written(out, written)
+        if len(self.found) == 1:
+            return self.found[0].data
+        over = next(str(n) for n in self.found[0].data.dims if n in ("frequency", "speed"))
+        parts = [one.data.sortby(over) for one in self.found]
+        both = xr.concat(parts, dim="direction", combine_attrs="drop_conflicts")
+        return both.assign_coords(direction=["up", "down"])

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trunnion.cli import output
+from trunnion.cli.assess import assessment_json
+from trunnion.cli.kinetostatics import kinetostatics_json
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import frequency_unit, show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
     from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
     from trunnion.analyses.linear.stability import Stability
@@ -29,58 +29,47 @@ MOST_ROWS = 24
 """Resonances that an overview prints."""
 
 
-def print_answer(out: Console, given: Answer) -> None:
+def print_answer(given: Answer) -> None:
     """The verdict, the checks and the findings: what is known before anything is drawn."""
     from trunnion.analyses.assessment.check import Status
 
     judged, unit = given.assessment, given.unit
-    out.print(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold", soft_wrap=True)
+    low, high = (show_speed(end, unit) for end in given.speed_range)
+    output.say(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold")
+    output.heading(f"Checks from {low} to {high}")
     rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
-    output.heading(
-        out, f"Checks from {show_speed(given.speed_range[0], unit)} to {show_speed(given.speed_range[1], unit)}"
-    )
     if rows:
-        output.table(out, [{k: v for k, v in row.items() if k != "because"} for row in rows])
-    output.heading(out, "Findings")
-    output.findings(out, given.findings)
-    out.print("\ntrunnion assess gives the reasons and rules of every check")
+        output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
+    output.findings(given.findings)
+    output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 
 
-def print_overview(out: Console, seen: Overview) -> None:
+def print_overview(seen: Overview) -> None:
     """What follows the answer: modes, resonance speeds, the joints, stability at one speed, the chart."""
     unit, (low, high) = seen.unit, seen.speed_range
-    output.heading(out, "Driveline")
-    out.print(str(seen.line), soft_wrap=True)
-    output.heading(out, "Natural frequencies, all joints straight")
-    output.table(out, seen.natural_frequencies.table(frequency_unit(speed_unit(seen.line))))
+    output.heading("Driveline")
+    output.say(str(seen.line))
+    modes = seen.natural_frequencies.table(frequency_unit(speed_unit(seen.line)))
+    output.table(modes, "Natural frequencies, all joints straight")
     span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
-    output.heading(out, f"Resonance speeds {span} that can open: {len(able) or 'none'}")
+    output.heading(f"Resonance speeds {span} that can open: {len(able) or 'none'}")
     if able:
-        output.table(out, [{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
+        output.table([{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
     if len(able) > MOST_ROWS:
-        out.print(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds")
+        output.say(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds", wrap=True)
     if seen.turn is not None and seen.turn.joints:
-        output.heading(out, "One turn of the joints")
-        out.print(seen.turn.describe(unit), soft_wrap=True)
+        output.heading("One turn of the joints")
+        output.say(seen.turn.describe(unit))
     if seen.stability is not None:
-        output.heading(out, f"Stability at {show_speed(seen.stability.speed, unit)}")
-        out.print(seen.stability.describe(unit))
+        output.heading(f"Stability at {show_speed(seen.stability.speed, unit)}")
+        output.say(seen.stability.describe(unit), wrap=True)
     if seen.chart is not None:
-        output.heading(out, "Stability chart, all joints at one angle")
-        out.print(chart_text(seen.chart, unit))
+        output.heading("Stability chart, all joints at one angle")
+        output.say(chart_text(seen.chart, unit), wrap=True)
     known = set(seen.answer.findings)
     if more := [finding for finding in seen.findings if finding not in known]:
-        output.heading(out, "Further findings")
-        output.findings(out, more)
-
-
-def print_written(out: Console, written: Sequence[Path]) -> None:
-    """The paths, one a line, never broken."""
-    if written:
-        output.heading(out, "Written")
-    for path in written:
-        out.print(f"  {path}", soft_wrap=True)
+        output.findings(more, "Further findings")
 
 
 def chart_text(chart: StabilityChart, unit: str) -> str:
@@ -108,10 +97,7 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
 
 def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
     """An overview as plain values; angles in rad, speeds in ``speed_unit``, frequencies in Hz."""
-    from trunnion.cli.assess import assessment_json
-    from trunnion.cli.kinetostatics import kinetostatics_json
-
-    factor = speed_factor(seen.unit)
+    factor, paths = speed_factor(seen.unit), [str(path) for path in written]
     return {
         "driveline": seen.line.name,
         "elements": list(seen.line.names),
@@ -123,9 +109,9 @@ def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
         "resonance_speeds": resonances_json(seen.resonance_speeds, seen.unit),
         "kinetostatics": None if seen.turn is None else kinetostatics_json(seen.turn),
         "stability": None if seen.stability is None else stability_json(seen.stability, seen.unit),
-        "stability_chart": None if seen.chart is None else chart_json(seen.chart, seen.unit, written),
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in seen.findings],
-        "written": [str(path) for path in written],
+        "stability_chart": None if seen.chart is None else chart_json(seen.chart, seen.unit) | {"written": paths},
+        "findings": output.findings_json(seen.findings),
+        "written": paths,
     }
 
 
@@ -156,11 +142,11 @@ def stability_json(result: Stability, unit: str) -> dict[str, Any]:
         "resonance": None if result.resonance is None else str(result.resonance),
         "forced_response": shafts,
         "forced_response_linear": None if response is None else response.linear,
-        "findings": [{"gravity": str(f.gravity), "sentence": f.sentence} for f in result.findings_in(unit)],
+        "findings": output.findings_json(result.findings_in(unit)),
     }
 
 
-def chart_json(chart: StabilityChart, unit: str, written: Sequence[Path]) -> dict[str, Any]:
+def chart_json(chart: StabilityChart, unit: str) -> dict[str, Any]:
     """What the chart covers and counts; the points themselves are in the files written."""
 
     def ends(label: str, si_unit: str, values: Any) -> dict[str, Any]:
@@ -179,7 +165,6 @@ def chart_json(chart: StabilityChart, unit: str, written: Sequence[Path]) -> dic
         "spot_check": None if chart.spot_check is None else asdict(chart.spot_check),
         "way": chart.way,
         "remarks": list(chart.remarks),
-        "written": [str(path) for path in written],
     }
 
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.options import Json
-
-if TYPE_CHECKING:
-    from trunnion.studies.result import Comparison, Reproduction
+from trunnion.cli.places import DEFAULT_FOLDER, answer
 
 
 def reproduce(
@@ -33,41 +32,31 @@ def reproduce(
     With "all" every study goes into one page with an index.
     """
     from trunnion.cli.files import check_folder
-    from trunnion.cli.report import print_written
-    from trunnion.studies.reproduce import reproduce as compute
     from trunnion.studies.result import Reproductions
 
-    target = folder or Path("trunnion-out") / name
+    target = folder or DEFAULT_FOLDER / name
     check_folder(target)
     with output.progress(f"reproducing {name}") as advance:
-        found = compute(name, progress=advance)
-    written = found.save(target)
-
-    if as_json:
-        studies = found.studies if isinstance(found, Reproductions) else (found,)
-        paths = [str(path) for path in written]
-        contents = [_plain(study) for study in studies]
-        content = {"studies": contents} if isinstance(found, Reproductions) else contents[0]
-        output.write_json("reproduce", {**content, "written": paths})
-        return
-    out = output.console()
-    out.print(str(found), soft_wrap=True)
-    print_written(out, written)
+        found = tn.reproduce(name, progress=advance)
+    if isinstance(found, Reproductions):
+        content: dict[str, object] = {"studies": [_plain(study) for study in found.studies]}
+    else:
+        content = _plain(found)
+    answer("reproduce", found.save(target), as_json, lambda: content, found.__str__)
 
 
-def _plain(found: Reproduction) -> dict[str, object]:
+def _plain(found: Any) -> dict[str, object]:
     """A study as JSON."""
-
-    def table(comparison: Comparison) -> dict[str, object]:
-        rows = [vars(row) for row in comparison.rows]
-        return {"title": comparison.title, "note": comparison.note, "rows": rows}
-
     return {
         "name": found.name,
         "title": found.title,
         "source": found.source,
-        "tables": [table(comparison) for comparison in found.tables],
-        "errata": table(found.errata),
+        "tables": [_table(comparison) for comparison in found.tables],
+        "errata": _table(found.errata),
         "argument": list(found.argument.steps) if found.argument else [],
         "conclusions": [vars(c) for c in found.conclusions],
     }
+
+
+def _table(comparison: Any) -> dict[str, object]:
+    return {"title": comparison.title, "note": comparison.note, "rows": [vars(row) for row in comparison.rows]}

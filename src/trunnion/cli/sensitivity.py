@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.limits import read_box_range
-from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import answer, check_places, write_results
-
-if TYPE_CHECKING:
-    from trunnion.analyses.tongues.result import Tongues
-    from trunnion.driveline.driveline import Driveline
+from trunnion.cli.options import File, Json, LoadCase, Output, Unit, read_box_range, read_case, read_speed
+from trunnion.cli.places import check_places, deliver
 
 
 def sensitivity(
@@ -50,38 +46,27 @@ def sensitivity(
     """
     from trunnion.analyses.sensitivity.directions import directions_of
     from trunnion.analyses.sensitivity.sensitivity import KINDS
-    from trunnion.analyses.sensitivity.sensitivity import sensitivity as find
     from trunnion.equations.coefficients import assemble
 
-    line = read_line(file)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit)
     if parameters:
         directions_of(assemble(line), parameters)
     at = [read_speed(text, unit) for text in speeds] if speeds else None
     check_places(to)
     found_tips = _tips(line, tips, unit, load_case) if tips is not None else None
     with output.progress("sensitivity") as advance:
-        found = find(
+        found = tn.sensitivity(
             line, at, parameters or None, of=of or KINDS, checks=check or None, tips=found_tips,  # type: ignore[arg-type]
             load_case=load_case, unit=unit, progress=advance,
         )  # fmt: skip
-    written = write_results(
-        to, file_stem(file), "sensitivity", found.data, lambda: found.plot(draw), table=_table(found.data)
-    )
-    answer("sensitivity", found.to_dict, found.__str__, written, as_json)
+    rows = found.data[["quantity_unit", "kind", "method", "value", "derivative"]]
+    deliver("sensitivity", file, found, to, as_json, draw=lambda: found.plot(draw), table=rows)
 
 
-def _tips(line: Driveline, text: str, unit: str, load_case: str | None) -> Tongues:
-    from trunnion.analyses.tongues.tongues import tongues
-    from trunnion.equations.coefficients import assemble
-
-    assembly = assemble(line if load_case is None else line.with_load(load_case))
-    up, rows = read_box_range(text, assembly, unit, "--tips")
-    across, _ = read_box_range("speed", assembly, unit, "--tips")
+def _tips(line: tn.Driveline, text: str, unit: str, load_case: str | None) -> Any:
+    if load_case is not None:
+        line = line.with_load(load_case)
+    up, rows = read_box_range(text, line, unit, "--tips")
+    across, _ = read_box_range("speed", line, unit, "--tips")
     with output.progress("tongues") as advance:
-        return tongues(assembly, across, up, rows=rows, progress=advance)
-
-
-def _table(data: Any) -> Any:
-    """Derivatives as a table: a row for every quantity."""
-    return data[["quantity_unit", "kind", "method", "value", "derivative"]]
+        return tn.tongues(line, across, up, rows=rows, progress=advance)

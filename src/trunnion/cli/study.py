@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.options import (
     File,
@@ -18,18 +19,17 @@ from trunnion.cli.options import (
     Unit,
     file_stem,
     read_axis,
+    read_case,
     read_line,
     read_points,
     read_speed,
-    read_unit,
 )
+from trunnion.cli.places import DEFAULT_FOLDER, check_places, deliver, write_result
 
 if TYPE_CHECKING:
     from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
     from trunnion.reporting.report import Report
-
-DEFAULT_FOLDER = Path("trunnion-out")
 
 
 def analyze(
@@ -52,25 +52,23 @@ def analyze(
     as_json: Json = False,
 ) -> None:
     """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit, load_case)
     size, at = read_points(points) if points else None, read_speed(speed, unit)
     from trunnion.cli.files import check_report
-    from trunnion.cli.report import overview_json, print_answer, print_overview, print_written
+    from trunnion.cli.report import overview_json, print_answer, print_overview
     from trunnion.reporting.answer import answer
 
     check_report(to)
-    out = output.console()
     with output.compile_notice():
         given = answer(line, speed=at, unit=unit)
     if not as_json:
-        print_answer(out, given)
+        print_answer(given)
     seen, written = _reported(given, file, to, size)
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
-    print_overview(out, seen)
-    print_written(out, written)
+    print_overview(seen)
+    output.written(written)
 
 
 def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) -> tuple[Overview, list[Path]]:
@@ -94,16 +92,17 @@ def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) 
 
 
 def _written(page: Report, to: Path, file: str) -> list[Path]:
-    from trunnion.cli.files import REPORTS, chart_files
+    from trunnion.cli.files import REPORTS
     from trunnion.writing import folder_written_whole
 
     if to.suffix.lower() in REPORTS:
         return [page.save(to)]
-    seen, stem = page.contents.overview, file_stem(file)
+    chart, stem = page.contents.overview.chart, file_stem(file)
     with folder_written_whole(to) as temporary:
         written = [page.save(temporary / f"{stem}-report.html")]
-        if seen.chart is not None:
-            written += chart_files(seen.chart, temporary, stem, seen.unit, page.pictures["chart"].figure)
+        if chart is not None:
+            names = [temporary / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
+            written += [write_result(name, chart, lambda: page.pictures["chart"]) for name in names]
     return [to / path.name for path in written]
 
 
@@ -115,21 +114,17 @@ def stability(
     as_json: Json = False,
 ) -> None:
     """Floquet stability at one speed, with the linear forced response."""
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit, load_case)
     at = read_speed(speed, unit)
-    from trunnion.analyses.linear.stability import stability as judge
-    from trunnion.cli.report import stability_json
-
     with output.compile_notice():
-        result = judge(line, at)
+        result = tn.stability(line, at)
     if as_json:
+        from trunnion.cli.report import stability_json
+
         output.write_json("stability", stability_json(result, unit))
         return
-    out = output.console()
-    out.print(result.describe(unit))
-    output.heading(out, "Findings")
-    output.findings(out, result.findings_in(unit))
+    output.say(result.describe(unit), wrap=True)
+    output.findings(result.findings_in(unit))
 
 
 def stability_chart(
@@ -150,56 +145,37 @@ def stability_chart(
 
     Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
     """
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
+    line, unit = read_case(file, unit, load_case)
     nx, ny = read_points(points)
     at = read_speed(speed, unit)
-    from trunnion.analyses.charts.stability_chart import stability_chart as compute
-    from trunnion.cli.files import chart_files, check_folder, check_outputs, write_chart
-    from trunnion.cli.report import chart_json, chart_text, print_written
-    from trunnion.equations.coefficients import assemble
-    from trunnion.writing import folder_written_whole
+    from trunnion.cli.report import chart_json, chart_text
 
-    assembly = assemble(line)
-    across = read_axis(x, assembly, unit, nx, "--x")
-    up = read_axis(y, assembly, unit, ny, "--y")
-    if to:
-        check_outputs(to)
-    else:
-        check_folder(DEFAULT_FOLDER)
+    across = read_axis(x, line, unit, nx, "--x")
+    up = read_axis(y, line, unit, ny, "--y")
+    check_places(to)
     with output.progress("stability chart") as advance:
-        chart = compute(assembly, across, up, speed=at, progress=advance)
-    if to:
-        written = [write_chart(chart, path, unit) for path in to]
-    else:
-        with folder_written_whole(DEFAULT_FOLDER) as temporary:
-            written = chart_files(chart, temporary, file_stem(file), unit)
-        written = [DEFAULT_FOLDER / path.name for path in written]
-    if as_json:
-        output.write_json("stability-chart", chart_json(chart, unit, written))
-        return
-    out = output.console()
-    out.print(chart_text(chart, unit))
-    print_written(out, written)
+        chart = tn.stability_chart(line, across, up, speed=at, progress=advance)
+    deliver(
+        "stability-chart", file, chart, to, as_json, draw=lambda: chart.plot(unit=unit),
+        content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True,
+    )  # fmt: skip
 
 
 def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) -> None:
     """Natural frequencies and damping ratios with all joints straight."""
     line = read_line(file)
-    from trunnion.analyses.linear.natural_frequencies import natural_frequencies as find
     from trunnion.cli.report import modes_json
     from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit
+    from trunnion.results.speeds import frequency_unit, speed_factor
 
-    unit = read_unit(line, unit or frequency_unit(speed_unit(line)))
-
-    modes = find(line)
+    unit = unit or frequency_unit(speed_unit(line))
+    speed_factor(unit)
+    modes = tn.natural_frequencies(line)
     if as_json:
         output.write_json("natural-frequencies", modes_json(modes, unit))
         return
-    out = output.console()
-    out.print(f"{len(modes.frequency)} natural frequencies, all joints straight")
-    output.table(out, modes.table(unit))
+    output.say(f"{len(modes.frequency)} natural frequencies, all joints straight", wrap=True)
+    output.table(modes.table(unit))
 
 
 def resonance_speeds(
@@ -210,11 +186,8 @@ def resonance_speeds(
     as_json: Json = False,
 ) -> None:
     """Named parametric resonance speeds in the operating range, and which of them can open."""
-    line = read_line(file)
-    unit = read_unit(line, unit)
-    from trunnion.analyses.linear.resonance_speeds import resonance_speeds as find
-
-    found = find(line, orders)
+    line, unit = read_case(file, unit)
+    found = tn.resonance_speeds(line, orders)
     limits = line.operation.speed_range if line.operation else None
     shown = found if everywhere or limits is None else found.within(*limits)
     if as_json:
@@ -222,9 +195,8 @@ def resonance_speeds(
 
         output.write_json("resonance-speeds", resonances_json(shown, unit))
         return
-    out = output.console()
-    rows: list[dict[str, Any]] = shown.table(unit)
+    rows = shown.table(unit)
     where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
-    out.print(f"{len(rows)} resonance speeds up to order {orders}{where}")
+    output.say(f"{len(rows)} resonance speeds up to order {orders}{where}", wrap=True)
     if rows:
-        output.table(out, rows)
+        output.table(rows)

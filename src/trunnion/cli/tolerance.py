@@ -7,10 +7,20 @@ from typing import Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.limits import read_speed_range
-from trunnion.cli.options import File, Json, LoadCase, Output, Unit, file_stem, read_line, read_speed, read_unit
-from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, write_results
+from trunnion.cli.options import (
+    File,
+    Json,
+    LoadCase,
+    Output,
+    SpeedRange,
+    Unit,
+    read_case,
+    read_speed,
+    read_speed_range,
+)
+from trunnion.cli.places import PICTURES_AND_DATA, check_places, deliver
 from trunnion.errors import InputError
 
 EXAMPLE = '--tolerance "Shaft 1.stiffness=10%", or "=normal 3%"'
@@ -44,21 +54,21 @@ def tolerance_study(
 
     Example: trunnion tolerance-study truck.toml -t "Shaft *.stiffness=10%" -t "HookeJoint 1.angle=5%" --speed 1500rpm
     """
-    from trunnion.analyses.tolerance.study import tolerance_study as study
     from trunnion.driveline.operating_speed import operating_speed
 
-    line = read_line(file, load_case)
-    unit = read_unit(line, unit)
-    given = dict(_tolerance(text) for text in tolerance) if tolerance else None
+    line, unit = read_case(file, unit, load_case)
+    given = _tolerances(tolerance)
     asked = [read_speed(text, unit) for text in speeds] if speeds else [None]
     at = [operating_speed(line, one) for one in asked]
     check_places(to)
     with output.progress("tolerance study") as advance:
         counted = True if checks < 0 else checks
-        found = study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
-    found = replace(found, unit=unit)
-    written = write_results(to, file_stem(file), "tolerance-study", found.data, lambda: found.plot())
-    answer("tolerance-study", found.to_dict, found.__str__, written, as_json)
+        found = tn.tolerance_study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
+    deliver("tolerance-study", file, replace(found, unit=unit), to, as_json)
+
+
+def _tolerances(texts: list[str] | None) -> dict[str, object] | None:
+    return dict(map(_tolerance, texts)) if texts else None
 
 
 def _tolerance(text: str) -> tuple[str, object]:
@@ -85,7 +95,7 @@ def certify_stability(
             help='As "Shaft 1.stiffness=1%"; default those of the file.',
         ),
     ] = None,
-    speeds: Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")] = None,
+    speeds: SpeedRange = None,
     boxes: Annotated[int, typer.Option("--boxes", help="Boxes judged before the rest is left undecided.")] = 20_000,
     unit: Unit = None,
     to: Output = None,
@@ -95,17 +105,9 @@ def certify_stability(
 
     Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
     """
-    from trunnion.analyses.tolerance.certify import certify_stability as certify
-    from trunnion.equations.coefficients import assemble
-
-    line = read_line(file)
-    unit = read_unit(line, unit)
-    given = dict(_tolerance(text) for text in tolerance) if tolerance else None
-    assembly = assemble(line)
-    span = read_speed_range(speeds, assembly, unit)
+    line, unit = read_case(file, unit)
+    given, span = _tolerances(tolerance), read_speed_range(speeds, line, unit)
     check_places(to, PICTURES_AND_DATA)
     with output.progress("certificate") as advance:
-        found = certify(assembly, given, span, most_boxes=boxes, progress=advance)
-    found = replace(found, unit=unit)
-    written = write_results(to, file_stem(file), "certificate", found.data, lambda: found.plot())
-    answer("certify-stability", found.to_dict, found.__str__, written, as_json)
+        found = tn.certify_stability(line, given, span, most_boxes=boxes, progress=advance)
+    deliver("certify-stability", file, replace(found, unit=unit), to, as_json, what="certificate")

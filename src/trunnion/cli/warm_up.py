@@ -9,10 +9,11 @@ import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+import trunnion as tn
 from trunnion.cli import output
 from trunnion.errors import ComputationError, InputError
 
@@ -37,7 +38,7 @@ def warm_up(
     begin = time.monotonic()
     output.note(f"compiling into {folder}")
     _side_by_side(list(PARTS), processes or os.cpu_count() or 1)
-    output.console().print(f"ready after {time.monotonic() - begin:.0f} s: {folder}", soft_wrap=True)
+    output.say(f"ready after {time.monotonic() - begin:.0f} s: {folder}")
 
 
 def _folder() -> Path:
@@ -91,41 +92,30 @@ def _side_by_side(names: list[str], processes: int) -> None:
 
 
 def _charts_of_plain_lines() -> None:
-    from trunnion.analyses.charts.stability_chart import stability_chart
-    from trunnion.studies.entries import catalogue
-
-    line = catalogue("two-shaft-cardan")
-    stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint 1.angle", 0.0, 1.2, 120), tolerance=1e-8)
+    line = tn.catalogue("two-shaft-cardan")
+    tn.stability_chart(line, ("speed", 0.02, 2.0, 200), ("HookeJoint 1.angle", 0.0, 1.2, 120), tolerance=1e-8)
 
 
 def _charts_of_loaded_lines() -> None:
-    from trunnion.analyses.charts.stability_chart import stability_chart
-    from trunnion.driveline import ConstantSpeed, Disk, Driveline, Element, HookeJoint, Shaft
-
-    elements: list[Element] = [ConstantSpeed()]
+    elements: list[Any] = [tn.ConstantSpeed()]
     for i in range(4):
-        elements += [HookeJoint(angle=0.2)] if i else []
-        elements += [Shaft(stiffness=1.0, damping=0.01), Disk(inertia=1.0, load_torque=0.01)]
-    stability_chart(Driveline(elements), ("speed", 0.5, 2.0, 24), ("HookeJoint *.angle", 0.0, 0.3, 16))
+        elements += [tn.HookeJoint(angle=0.2)] if i else []
+        elements += [tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0, load_torque=0.01)]
+    tn.stability_chart(tn.Driveline(elements), ("speed", 0.5, 2.0, 24), ("HookeJoint *.angle", 0.0, 0.3, 16))
 
 
 def _reports() -> None:
-    from trunnion.driveline import loads
     from trunnion.driveline.starter import starter
-    from trunnion.reporting.report import report
 
-    report(loads(starter("two-shaft")))
+    tn.report(tn.loads(starter("two-shaft")))
 
 
 def _motions_with_stages() -> None:
-    from trunnion.analyses.motion.simulate import simulate
-    from trunnion.driveline import ConstantSpeed, Disk, Driveline, Element, HookeJoint, PiecewiseShaft, Shaft
-
-    elements: list[Element] = [
-        ConstantSpeed(), Shaft(stiffness=1.0, damping=0.1), Disk(inertia=1.0), HookeJoint(angle=0.2),
-        PiecewiseShaft(breakpoints=(-0.01, 0.01), stiffnesses=(1.0, 0.1, 1.0), damping=0.1), Disk(inertia=1.0),
+    elements = [
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.1), tn.Disk(inertia=1.0), tn.HookeJoint(angle=0.2),
+        tn.PiecewiseShaft(breakpoints=(-0.01, 0.01), stiffnesses=(1.0, 0.1, 1.0), damping=0.1), tn.Disk(inertia=1.0),
     ]  # fmt: skip
-    simulate(Driveline(elements), turns=1, speed=1.0)
+    tn.simulate(tn.Driveline(elements), turns=1, speed=1.0)
 
 
 PARTS: dict[str, Callable[[], None]] = {

@@ -79,7 +79,7 @@ def answer(line: Driveline, *, speed: float | None = None, unit: str | None = No
     if speed is not None or (line.operation and line.operation.speed):
         speed = operating_speed(line, speed)
         require_steady_base(assembly, assembly.table(1, speed))
-    low, high = speed_range(assembly)
+    low, high = speed_range(line)
     subject = replace(subject_of(line, (low, high), None, unit), speed=speed)
     assessment = judgement(subject, checks_of(subject))
     every = resonance_speeds(assembly)

@@ -7,20 +7,19 @@ import numpy as np
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operation import Operation
-from trunnion.equations.coefficients import Assembly
 
 MODES_IN_RANGE = 4
 """Modes that a speed range guessed from the line itself reaches up to."""
 
 
-def speed_range(assembly: Assembly) -> tuple[float, float]:
+def speed_range(line: Driveline) -> tuple[float, float]:
     """The range of the description [rad/s]; else about the operating speed; else about the lowest modes."""
-    operation = assembly.line.operation or Operation()
+    operation = line.operation or Operation()
     if operation.speed_range:
         return operation.speed_range
     if operation.speed:
         return 0.25 * operation.speed, 2.0 * operation.speed
-    elastic = natural_frequencies(assembly).elastic
+    elastic = natural_frequencies(line).elastic
     if not len(elastic):
         return 1.0, 100.0
     low, high = 0.3 * float(elastic[0]), 1.25 * float(elastic[:MODES_IN_RANGE].max())

@@ -273,10 +273,9 @@ def unit_of(line: Driveline) -> tuple[str, float]:
 
 def speed_range(line: Driveline) -> tuple[float, float]:
     """Lowest and highest speed [rad/s] that the line's pictures cover."""
-    from trunnion.equations.coefficients import assemble
-    from trunnion.reporting.ranges import speed_range as of_assembly
+    from trunnion.reporting.ranges import speed_range as of_line
 
-    low, high = of_assembly(assemble(line))
+    low, high = of_line(line)
     return max(low, high / 1000), high
 
 
