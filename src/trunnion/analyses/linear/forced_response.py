@@ -17,7 +17,7 @@ from trunnion.analyses.orders.totals import common_turns, extremes, wave
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remark
 
 LINEAR_RANGE = 0.1
 """Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the
@@ -71,8 +71,7 @@ class LinearResponse(Result):
         yield axis("shaft", self.shafts)
         yield axis("joint", self.joints)
         yield axis("coordinate", self.names)
-        yield over("input_angle shaft", "twist", self.twist, "rad")
-        yield over("input_angle shaft", "torque", self.torque, "N*m")
+        yield from fields_over("input_angle shaft", self, twist="rad", torque="N*m")
         yield over("input_angle coordinate", "rotation", self.rotation, "rad")
         yield over("joint", "joint_rotation", self.joint_rotation, "rad")
         yield remark("linear_range", LINEAR_RANGE)

@@ -15,7 +15,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import AlignedMatrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.results.declared import Held, Result, axis, over
+from trunnion.results.declared import Held, Result, axis, fields_over, over
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
@@ -81,8 +81,7 @@ class NaturalFrequencies(Result):
         """Frequency and damping ratio over the modes, mode shapes over (rotation, mode)."""
         yield axis("mode", np.arange(1, len(self.frequency) + 1))
         yield axis("rotation", self.names)
-        yield over("mode", "frequency", self.frequency, "rad/s")
-        yield over("mode", "damping_ratio", self.damping_ratio, "1")
+        yield from fields_over("mode", self, frequency="rad/s", damping_ratio="1")
         yield over("rotation mode", "shape", self.shape, "1", "mode shape")
 
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:

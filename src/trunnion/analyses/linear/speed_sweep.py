@@ -20,7 +20,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import exciters
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
-from trunnion.results.declared import Described, Held, axis, over, remark
+from trunnion.results.declared import Described, Held, axis, fields_over, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
@@ -79,9 +79,7 @@ class SpeedSweep(Described):
         """Amplitudes over (speed, shaft)."""
         yield axis("speed", self.speed, "rad/s")
         yield axis("shaft", list(self.shafts))
-        yield over("speed shaft", "twist_amplitude", self.twist_amplitude, "rad")
-        yield over("speed shaft", "torque_amplitude", self.torque_amplitude, "N*m")
-        yield over("speed shaft", "torque_mean", self.torque_mean, "N*m")
+        yield from fields_over("speed shaft", self, twist_amplitude="rad", torque_amplitude="N*m", torque_mean="N*m")
         yield over("speed", "joint_rotation", self.joint_rotation, "rad")
         yield over("speed", "linear", self.linear.astype(np.int8))
         yield over("speed", "cut_off", self.cut_off, "1")

@@ -8,10 +8,10 @@ ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,11 +19,7 @@ import numpy as np
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.carried_modes import carried_mode, judged_multipliers, propagated
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearResponse, linear_response
-from trunnion.analyses.linear.mode_content import (
-    FARTHEST,
-    mode_content,
-    named_resonance,
-)
+from trunnion.analyses.linear.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
 from trunnion.analyses.orbits.orbit_result import speed_in_words
@@ -37,7 +33,7 @@ from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.declared import Held, Judged, over, remark
+from trunnion.results.declared import Held, Judged, fields_over, over, remark
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
@@ -58,30 +54,6 @@ SET_ASIDE = {
 }
 
 
-@dataclass(frozen=True)
-class Forced:
-    """The linear forced response of a line at a rate [rad/s], which takes as long as its stability does."""
-
-    assembly: Assembly
-    rate: float
-    statically_twisted: bool
-
-    def response(self) -> LinearResponse:
-        """The response."""
-        return linear_response(self.assembly, self.rate, statically_twisted=self.statically_twisted)
-
-
-@dataclass(frozen=True)
-class Found:
-    """A response that is known already."""
-
-    known: LinearResponse | None
-
-    def response(self) -> LinearResponse | None:
-        """The response."""
-        return self.known
-
-
 @dataclass(frozen=True, repr=False)
 class Stability(Judged):
     """Floquet stability at one speed.
@@ -91,8 +63,8 @@ class Stability(Judged):
     line, and its speed where no torque depends on it; period [rad of input angle]; speed [rad/s]
     (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
     floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
-    resonance: the one the critical multiplier names; forced: where ``response`` comes from; extra_torque: of a bent
-    line that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
+    resonance: the one the critical multiplier names; forced: computes the ``response``; extra_torque: of a bent line
+    that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
     beyond the balance of the loads (None elsewhere); speed_sentence: of such a line none of whose torques depends on
     the speed, what becomes of a change of its mean speed; left_out: findings about what the line has and this does
     not count.
@@ -107,7 +79,7 @@ class Stability(Judged):
     period: float
     speed: float
     resonance: Resonance | None
-    forced: Forced | Found
+    forced: Callable[[], LinearResponse] | None
     liouville_defect: float
     names: tuple[str, ...]
     set_aside: int
@@ -130,7 +102,7 @@ class Stability(Judged):
     @cached_property
     def _asked(self) -> tuple[LinearResponse | None, str]:
         try:
-            return self.forced.response(), ""
+            return self.forced and self.forced(), ""
         except (InputError, ComputationError) as error:  # the verdict stands without it
             return None, str(error)
 
@@ -177,9 +149,7 @@ class Stability(Judged):
         """Multipliers, growth and verdict, and what the forced response holds."""
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield over("", "spectral_radius", self.spectral_radius, "1")
-        yield over("", "error_estimate", self.error_estimate, "1")
-        yield over("", "growth_rate", self.growth_rate, "1/s")
+        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s")
         yield over("", "period", self.period, "rad", "period in input angle")
         yield over("", "speed", self.speed, "rad/s")
         yield remark("verdict", str(self.verdict))
@@ -244,26 +214,43 @@ def stability(
     if isinstance(line, PeriodicLinearSystem):
         if speed is not None:
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
-        scaled = np.array(line.frequencies) * line.period / np.pi
+        scaled, nothing = np.array(line.frequencies) * line.period / np.pi, np.zeros((2 * line.size, 0))
         run = propagated(line, tolerance)
-        return _judge(
-            line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, Found(None), np.zeros((2 * line.size, 0))
-        )
+        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
     assembly = line if isinstance(line, Assembly) else assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
-        return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
+    else:
+        found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
+    return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
+
+
+def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     run = propagated(system, tolerance)
-    topo = assembly.topology
-    forced = Forced(assembly, system.rate, statically_twisted)
-    turns, frequency = require_period(assembly.line, topo), np.array(system.frequencies)
-    aside = np.zeros((2 * topo.size, 0))
-    if topo.free:
-        aside = rigid_motions(topo, assembly.coefficients(table, statically_twisted=statically_twisted))
-    found = _judge(system, run, sources(assembly), turns, frequency, forced, aside)
-    return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
+    forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
+    turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
+    coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+    aside = rigid_motions(assembly.topology, coefficients)
+    return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
+
+
+def _named(
+    motion: ModeMotion | None,
+    verdict: Verdict,
+    rate: float,
+    frequency: Array,
+    excited: tuple[Source, ...],
+    turns: Fraction,
+) -> Resonance | None:
+    """The resonance that a critical mode belongs to; frequencies over the ``rate`` [rad/s]."""
+    if motion is None:
+        return None
+    # Tongues are wide at large angles: named from far away.
+    farthest = FARTHEST if verdict is Verdict.UNSTABLE else NEAR
+    named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
+    return named and replace(named, speed=named.speed * rate)
 
 
 def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability:
@@ -282,11 +269,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
     if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
         moving = motion.mode_motion(complex(values[critical]))
         frequency = natural_frequencies(assembly).frequency / speed
-        farthest = FARTHEST if orbit.verdict is Verdict.UNSTABLE else NEAR
-        if moving is not None:
-            named = named_resonance(mode_content(moving, turns), frequency, sources(assembly), turns, farthest)
-    if named is not None:
-        named = replace(named, speed=named.speed * speed)
+        named = _named(moving, orbit.verdict, speed, frequency, sources(assembly), turns)
     shapes = vectors[:, by_modulus] * scale[:, None]
     return Stability(
         multipliers=orbit.multipliers,
@@ -298,7 +281,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
         period=2 * np.pi * float(turns),
         speed=speed,
         resonance=named,
-        forced=Forced(assembly, speed, statically_twisted=True),
+        forced=partial(linear_response, assembly, speed),
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
         set_aside=1,
@@ -313,7 +296,7 @@ def _judge(
     excited: tuple[Source, ...],
     turns: Fraction,
     frequency: Array,
-    forced: Forced | Found,
+    forced: Callable[[], LinearResponse] | None,
     aside: Array,
 ) -> Stability:
     matrix = run.scaled_monodromy
@@ -328,14 +311,10 @@ def _judge(
     verdict = Verdict(int(verdicts(radius, error, undamped)))
     named = None
     if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
-        # Only what grows belongs to a resonance. Tongues are wide at large angles: named from far away.
-        farthest = FARTHEST if verdict is Verdict.UNSTABLE else NEAR
+        # Only what grows belongs to a resonance.
         critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
         motion = carried_mode(system, run, complex(values[critical]))
-        if motion is not None:
-            named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
-    if named is not None:
-        named = replace(named, speed=named.speed * system.rate)
+        named = _named(motion, verdict, system.rate, frequency, excited, turns)
     sign, log_det = np.linalg.slogdet(matrix)
     return Stability(
         multipliers=values,

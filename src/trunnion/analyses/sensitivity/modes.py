@@ -9,37 +9,25 @@ smooth functions of the description's numbers: their own derivatives by differen
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from trunnion.analyses.linear.natural_frequencies import damped_modes, natural_frequencies
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
+from trunnion.analyses.sensitivity.result import EXACT, Quantity, Rows
 from trunnion.arrays import Array, Complex
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices
 
+ROUNDING = 1e-11
+"""Share of a slope that rounding may change."""
 COINCIDE = 1e-7
 """Relative distance below which two modes count as one frequency, which has no derivative of its own."""
 
 
-@dataclass(frozen=True)
-class ModeSlopes:
-    """value (mode,), slope and error (mode, direction) of frequency [rad/s] and damping ratio [1]; refused: by mode,
-    why there is none ("" where there is); numbers: of the modes, from 1."""
-
-    numbers: tuple[int, ...]
-    frequency: Array
-    ratio: Array
-    frequency_slope: Array
-    ratio_slope: Array
-    refused: tuple[str, ...]
-    ratio_refused: tuple[str, ...]
-
-
-def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> ModeSlopes:
-    """Of every elastic mode of the aligned line along every direction."""
+def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterator[Rows]:
+    """Frequencies [rad/s] and damping ratios [1] of every elastic mode of the aligned line along every direction."""
     assembly = near.assembly
     topo = assembly.topology
     found = natural_frequencies(assembly)
@@ -73,16 +61,24 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> ModeSlo
             top = value**2 * (x * dm) @ x + value * (x @ dc @ x) + x @ (dk + 1j * dh) @ x
             bottom = 2 * value * (x * mass) @ x + x @ damping @ x
             ratio_slope[m, d] = _ratio_slope(value, -top / bottom)
-    refused = tuple(_coincides(omega, m, first) for m in range(len(omega)))
+    names = [f"mode {m}" for m in range(first + 1, first + 1 + len(omega))]
+    refused = [_coincides(omega, m, first) for m in range(len(omega))]
     words = "it does not oscillate: a damping ratio near 1 has no derivative here"
-    unmatched = tuple(refused[m] or ("" if place >= 0 else words) for m, place in enumerate(matched))
-    for m in range(len(omega)):
-        frequency_slope[m] = np.nan if refused[m] else frequency_slope[m]
-        ratio_slope[m] = np.nan if unmatched[m] else ratio_slope[m]
-    numbers = tuple(range(first + 1, first + 1 + len(omega)))
-    return ModeSlopes(
-        numbers, omega, found.damping_ratio[first:], frequency_slope, ratio_slope, refused, unmatched
-    )  # fmt: skip
+    unmatched = [why or ("" if place >= 0 else words) for why, place in zip(refused, matched, strict=True)]
+    frequency_slope[np.array(refused) != ""] = np.nan
+    ratio_slope[np.array(unmatched) != ""] = np.nan
+    frequencies = [
+        Quantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
+        for name, w, why in zip(names, omega, refused, strict=True)
+    ]
+    yield Rows(frequencies, frequency_slope, ROUNDING * np.abs(frequency_slope))
+    ratio = found.damping_ratio[first:]
+    damped = np.flatnonzero(ratio != 0) if np.any(ratio_slope) else np.zeros(0, dtype=int)
+    ratios = [
+        Quantity(f"damping ratio of {names[m]}", "damping ratio", float(ratio[m]), "1", EXACT, refused=unmatched[m])
+        for m in damped
+    ]
+    yield Rows(ratios, ratio_slope[damped], ROUNDING * np.abs(ratio_slope[damped]))
 
 
 def _matched(values: Complex, ratio: Array) -> list[int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, log10, nan
 from typing import TYPE_CHECKING
@@ -51,6 +51,15 @@ class Quantity:
     method: str
     speed: float = nan
     refused: str = ""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Quantities, their derivatives and errors (quantity, direction)."""
+
+    quantities: Sequence[Quantity]
+    slope: Array
+    error: Array
 
 
 @dataclass(frozen=True)

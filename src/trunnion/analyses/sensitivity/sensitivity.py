@@ -22,8 +22,8 @@ from trunnion.analyses.sensitivity.responses import solved_exactly
 from trunnion.analyses.sensitivity.result import (
     DIFFERENCES,
     EXACT,
-    IMPLICIT,
     Quantity,
+    Rows,
     Sensitivities,
     directions_shown,
 )
@@ -100,13 +100,13 @@ def sensitivity(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
         load_case=load_case, unit=unit or speed_unit(line),
     )  # fmt: skip
-    parts: dict[str, Callable[[], Iterator[_Rows]]] = {
-        "frequencies": partial(_frequencies, question),
+    parts: dict[str, Callable[[], Iterator[Rows]]] = {
+        "frequencies": partial(mode_slopes, question.near, question.directions),
         "growth": partial(_growth, question),
         "torques": partial(_torques, question),
         "checks": partial(_checks, question, line, checks),
     }
-    rows: list[_Rows] = []
+    rows: list[Rows] = []
     refusals: list[TrunnionProblem] = []
     for k, kind in enumerate(kinds):
         question.progress = partial(_tell_part, progress, k, len(kinds))
@@ -119,7 +119,7 @@ def sensitivity(
     if tips is not None:
         if not isinstance(tips, Tongues):
             raise InputError("are no tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
-        rows += _tips(question, tips)
+        rows += tip_slopes(question.near, tips, question.directions)
     if not rows and refusals:
         raise refusals[0]
     said = [Finding(Gravity.CAUTION, str(error).splitlines()[0]) for error in refusals]
@@ -128,15 +128,6 @@ def sensitivity(
 
 TrunnionProblem = InputError | ComputationError
 ANALYSES = {"frequencies": "natural_frequencies", "growth": "stability", "torques": "order_response"}
-
-
-@dataclass(frozen=True)
-class _Rows:
-    """Quantities, their derivatives and errors (quantity, direction)."""
-
-    quantities: Sequence[Quantity]
-    slope: Array
-    error: Array
 
 
 @dataclass
@@ -182,73 +173,41 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
     return np.array([operating_speed(line, float(one)) for one in at])
 
 
-def _frequencies(question: _Question) -> Iterator[_Rows]:
-    found = mode_slopes(question.near, question.directions)
-    names = [f"mode {m}" for m in found.numbers]
-    yield _Rows(
-        [
-            Quantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
-            for name, w, why in zip(names, found.frequency, found.refused, strict=True)
-        ],
-        found.frequency_slope,
-        1e-11 * np.abs(found.frequency_slope),
-    )
-    damped = np.flatnonzero(found.ratio != 0) if np.any(found.ratio_slope) else np.zeros(0, dtype=int)
-    yield _Rows(
-        [
-            Quantity(
-                f"damping ratio of {names[m]}", "damping ratio", float(found.ratio[m]), "1", EXACT,
-                refused=found.ratio_refused[m],
-            )
-            for m in damped
-        ],
-        found.ratio_slope[damped],
-        1e-11 * np.abs(found.ratio_slope[damped]),
-    )  # fmt: skip
-
-
-def _growth(question: _Question) -> Iterator[_Rows]:
+def _growth(question: _Question) -> Iterator[Rows]:
     if question.assembly.topology.free and bent(question.assembly):
-        yield from _own_growth(question)
+        # Its own motion follows every parameter, so lines beside it are judged.
+        if len(question.at):
+            here, slope, error = _by_differences(question, own_growth)
+            for k, speed in enumerate(question.at.tolist()):
+                yield _stability_rows(question, speed, DIFFERENCES, "", here[:, k], slope[:, k], error[:, k])
         return
     for speed in question.at.tolist():
         found = radius_slope(question.near, question.near.row(speed), question.directions)
-        rate = speed / found.period
+        by = np.array([speed / found.period, found.radius])
         yield _stability_rows(
-            question, speed, EXACT, found.refused, (found.growth_rate(speed), found.radius),
-            np.stack([found.slope * rate, found.slope * found.radius]),
-            np.stack([found.error * rate, found.error * found.radius]),
+            question, speed, EXACT, found.refused, np.array([found.growth_rate(speed), found.radius]),
+            by[:, None] * found.slope, by[:, None] * found.error,
         )  # fmt: skip
 
 
-def _own_growth(question: _Question) -> Iterator[_Rows]:
-    """Of a bent line that starts free: its own motion follows every parameter, so lines beside it are judged."""
-    if not len(question.at):
-        return
-    values = partial(own_growth, question.at)
-    here = values(question.line)
-    slope, error = slopes(values, question.lines, question.directions, question.progress)
-    for k, speed in enumerate(question.at.tolist()):
-        here_k = (float(here[0, k]), float(here[1, k]))
-        yield _stability_rows(question, speed, DIFFERENCES, "", here_k, slope[:, k], error[:, k])
+def _by_differences(question: _Question, look: Callable[[Array, Driveline], Array]) -> tuple[Array, Array, Array]:
+    """What ``look`` sees of the line at the speeds, its derivatives and errors."""
+    values = partial(look, question.at)
+    return values(question.line), *slopes(values, question.lines, question.directions, question.progress)
 
 
 def _stability_rows(
-    question: _Question, speed: float, method: str, refused: str, value: tuple[float, float], slope: Array, error: Array
-) -> _Rows:
+    question: _Question, speed: float, method: str, refused: str, value: Array, slope: Array, error: Array
+) -> Rows:
     at = f"at {question.shown(speed)}"
-    kinds = (("growth rate", "1/s"), ("spectral radius", "1"))
-    return _Rows(
-        [
-            Quantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
-            for (kind, unit), v in zip(kinds, value, strict=True)
-        ],
-        slope,
-        error,
-    )
+    both = [
+        Quantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
+        for kind, unit, v in zip(("growth rate", "spectral radius"), ("1/s", "1"), value.tolist(), strict=True)
+    ]
+    return Rows(both, slope, error)
 
 
-def _torques(question: _Question) -> Iterator[_Rows]:
+def _torques(question: _Question) -> Iterator[Rows]:
     if not len(question.at):
         return
     exact = solved_exactly(question.assembly)
@@ -257,34 +216,17 @@ def _torques(question: _Question) -> Iterator[_Rows]:
             question.near, question.lines, question.at, question.directions, question.progress
         )
     else:
-        values = partial(torques, question.at)
-        here = values(question.line)
-        slope, error = slopes(values, question.lines, question.directions, question.progress)
+        here, slope, error = _by_differences(question, torques)
     springs, words = shaft_names(question.assembly), ("peak torque", "vibratory torque")
     for w, v, s in np.ndindex(here.shape):
         speed, value = float(question.at[v]), float(here[w, v, s])
         name = f"{words[w]} of {springs[s]} at {question.shown(speed)}"
         why = "" if np.isfinite(value) else "there is no steady state"
         one = Quantity(name, "torque", value, "N*m", EXACT if exact else DIFFERENCES, speed, why)
-        yield _Rows([one], slope[w, v, s], error[w, v, s])
+        yield Rows([one], slope[w, v, s], error[w, v, s])
 
 
-def _tips(question: _Question, tips: Tongues) -> Iterator[_Rows]:
-    for found in tip_slopes(question.near, tips, question.directions):
-        name = f"the tip of tongue {found.tongue.number}, {found.tongue.name}"
-        labels, units = (tips.x_label, tips.y_label), (tips.x_unit, tips.y_unit)
-        speed = found.place[labels.index("speed")]
-        yield _Rows(
-            [
-                Quantity(f"{label} at {name}", "tip", value, unit, IMPLICIT, speed, found.refused)
-                for label, value, unit in zip(labels, found.place, units, strict=True)
-            ],
-            found.slope,
-            found.error,
-        )
-
-
-def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[_Rows]:
+def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[Rows]:
     operation = line.operation
     span = None
     if operation is None or not (operation.speed_range or operation.speed is not None):
@@ -300,7 +242,7 @@ def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -
         both = [Quantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
         if check.name != GROWTH or not found.exact[c]:  # its margin follows another speed's straight line besides
             both.append(Quantity(f"margin of {check.name}", "margin", margin, "1", method, at))
-        yield _Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
+        yield Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
 
 
 def _chosen(every: tuple[Check, ...], names: Iterable[str] | None) -> list[Check]:
@@ -322,7 +264,7 @@ def _left_out(line: Driveline, kinds: Sequence[str]) -> list[Finding]:
     return [finding for kind in kinds if kind in ANALYSES for finding in left_out(ANALYSES[kind], line)]
 
 
-def _result(question: _Question, rows: Sequence[_Rows], findings: Sequence[Finding]) -> Sensitivities:
+def _result(question: _Question, rows: Sequence[Rows], findings: Sequence[Finding]) -> Sensitivities:
     width = len(question.directions)
     once = {finding.sentence: finding for finding in findings}
     labels, values, units = directions_shown(question.directions)

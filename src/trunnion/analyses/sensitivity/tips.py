@@ -9,19 +9,20 @@ First derivatives are exact (``growth``), those along x once more differences of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from trunnion.analyses.sensitivity.differences import CENTRAL, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, direction
 from trunnion.analyses.sensitivity.growth import RadiusSlope, radius_slope
-from trunnion.analyses.tongues.result import Tongue, Tongues
+from trunnion.analyses.sensitivity.result import IMPLICIT, Quantity, Rows
+from trunnion.analyses.tongues.result import Tongues
 from trunnion.arrays import Array
 from trunnion.driveline.parameters import SPEED, Columns
 from trunnion.errors import ComputationError, InputError
 
+Place = tuple[float, float]
 STEP = 1e-5
 """Share of x between the places where the gradient is compared."""
 ROUNDS = 6
@@ -29,19 +30,8 @@ CLOSED = 1e-11
 """|ln ρ| at which a tip is found."""
 
 
-@dataclass(frozen=True)
-class TipSlopes:
-    """Tip of one tongue: x and y, their slopes and errors (2, direction), x first; refused: why there are none."""
-
-    tongue: Tongue
-    place: tuple[float, float]
-    slope: Array
-    error: Array
-    refused: str = ""
-
-
-def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direction]) -> list[TipSlopes]:
-    """Of every tongue that has a tip.
+def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direction]) -> Iterator[Rows]:
+    """Where every tongue that has a tip closes.
 
     Raises
     ------
@@ -55,17 +45,29 @@ def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direc
     columns = [near.assembly.packed.resolve(label) for label in (tongues.x_label, tongues.y_label)]
     taken = {int(i) for one in columns for i in one.index}
     own = [one.but(taken) for one in directions]
-    return [_tip(near, tongue, columns, own) for tongue in tongues if tongue.tip is not None]
+    labels, units = (tongues.x_label, tongues.y_label), (tongues.x_unit, tongues.y_unit)
+    for tongue in tongues:
+        if tongue.tip is None:
+            continue
+        name = f"the tip of tongue {tongue.number}, {tongue.name}"
+        place, slope, error, refused = _tip(near, tongue.tip, columns, own)
+        both = [
+            Quantity(f"{label} at {name}", "tip", value, unit, IMPLICIT, place[labels.index(SPEED)], refused)
+            for label, value, unit in zip(labels, place, units, strict=True)
+        ]
+        yield Rows(both, slope, error)
 
 
-def _tip(near: Neighbourhood, tongue: Tongue, columns: list[Columns], own: Sequence[Direction]) -> TipSlopes:
-    assert tongue.tip is not None
-    x, y = tongue.tip
+def _tip(
+    near: Neighbourhood, tip: Place, columns: list[Columns], own: Sequence[Direction]
+) -> tuple[Place, Array, Array, str]:
+    """The tip made exact, its slopes and errors (2, direction), x first, and why there are none."""
+    (x, y), nothing = tip, np.full((2, len(own)), np.nan)
     try:
         for _ in range(ROUNDS):
             here, second = _gradients(near, (x, y), columns, own)
             if here.refused:
-                return _none(tongue, own, here.refused)
+                return tip, nothing, nothing, here.refused
             level = float(np.log(here.radius))
             slope_x, slope_y = here.slope[-2:]
             jacobian = np.array([[slope_x, slope_y], [second[-2], second[-1]]])
@@ -74,24 +76,18 @@ def _tip(near: Neighbourhood, tongue: Tongue, columns: list[Columns], own: Seque
             step = np.linalg.solve(jacobian, [level, slope_x])
             x, y = x - float(step[0]), y - float(step[1])
         else:
-            return _none(tongue, own, "its tip was not found again")
+            return tip, nothing, nothing, "its tip was not found again"
     except (InputError, ComputationError, np.linalg.LinAlgError) as error:
-        return _none(tongue, own, str(error).splitlines()[0])
+        return tip, nothing, nothing, str(error).splitlines()[0]
     by = here.slope[:-2]
     up = -by / slope_y
     across = -(second[:-2] + second[-1] * up) / second[-2]
     share = here.error[:-2] / abs(slope_y)
-    return TipSlopes(tongue, (x, y), np.stack([across, up]), np.stack([np.abs(across) * 1e-6 + share, share]))
-
-
-def _none(tongue: Tongue, own: Sequence[Direction], why: str) -> TipSlopes:
-    nothing = np.full((2, len(own)), np.nan)
-    assert tongue.tip is not None
-    return TipSlopes(tongue, tongue.tip, nothing, nothing, why)
+    return (x, y), np.stack([across, up]), np.stack([np.abs(across) * 1e-6 + share, share]), ""
 
 
 def _gradients(
-    near: Neighbourhood, place: tuple[float, float], columns: list[Columns], own: Sequence[Direction]
+    near: Neighbourhood, place: Place, columns: list[Columns], own: Sequence[Direction]
 ) -> tuple[RadiusSlope, Array]:
     """The gradient of ln ρ along ``own``, x and y; and its derivative by x."""
     axes = [direction(near.assembly, one, value) for one, value in zip(columns, place, strict=True)]
