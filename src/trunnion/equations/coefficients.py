@@ -35,18 +35,6 @@ MOST_KNOWN = 8
 
 
 @dataclass(frozen=True)
-class PlainSprings:
-    """The compliances of one spring each that states its stiffness and, of damping, a coefficient: what is most of a
-    line, taken all at once. ``compliances``, the ``stations`` behind them, and the columns of their numbers."""
-
-    compliances: dict[int, None]
-    stations: list[int]
-    stiffness: list[int]
-    damping: list[int]
-    forks: list[int]
-
-
-@dataclass(frozen=True)
 class Assembly:
     """A line with its topology and packed numbers: what every analysis starts from."""
 
@@ -114,27 +102,6 @@ class Assembly:
         return np.asarray(2 * table[:, column(-1, "damping_ratio")] * stiffness / reference)
 
     @cached_property
-    def plain_springs(self) -> PlainSprings:
-        """Those that need no law of their own."""
-        column, elements = self.packed.column, self.line.elements
-        springs = PlainSprings({}, [], [], [], [])
-        if self.line.damping_ratio is not None:
-            return springs
-        for e, compliance in enumerate(self.topology.compliances):
-            i = compliance.shafts[0]
-            stiffness = column(i, "stiffness")
-            if len(compliance.shafts) > 1 or stiffness < 0 or has_stages(elements[i]):
-                continue
-            if column(i, "loss_factor") >= 0 or column(i, "relative_damping") >= 0:
-                continue
-            springs.compliances[e] = None
-            springs.stations.append(self.topology.behind[i])
-            springs.stiffness.append(stiffness)
-            springs.damping.append(column(i, "damping"))
-            springs.forks.append(column(i, "fork_offset"))
-        return springs
-
-    @cached_property
     def aligned(self) -> AlignedMatrices:
         """The line with all joint angles zero, at the first row of its numbers, without a speed."""
         return aligned_matrices(self.topology, self.coefficients(self.table(1), any_frequency=True))
@@ -150,11 +117,15 @@ class Assembly:
 _RECENT: deque[Assembly] = deque(maxlen=8)
 
 
-def assemble(line: Driveline) -> Assembly:
-    """Pack ``line`` and sort it into stations and compliances.
+def assemble(line: Driveline | Assembly, load_case: str | None = None) -> Assembly:
+    """Pack ``line``, under a load case of that name, and sort it into stations and compliances.
 
     Lines do not change, so the last few are kept: what is asked of a line is mostly asked of it again.
     """
+    if load_case is not None:
+        line = (line.line if isinstance(line, Assembly) else line).with_load(load_case)
+    if isinstance(line, Assembly):
+        return line
     if not isinstance(line, Driveline):
         raise InputError("is no driveline", key="line", value=line, remedy='tn.load("line.toml"), say')
     for known in tuple(_RECENT):
@@ -300,17 +271,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))
     shift = np.zeros((len(table), len(topo.stations)))
-    plain = assembly.plain_springs
-    of_plain = list(plain.compliances)
-    stiffness[:, of_plain] = table[:, plain.stiffness]
-    if damped:
-        damping[:, of_plain] = table[:, plain.damping]
-    by_spring = torque[:, of_plain] / stiffness[:, of_plain]
-    twist[:, of_plain] = np.where(stiffness[:, of_plain] > 0, by_spring, 0.0)
-    shift[:, plain.stations] = by_spring + table[:, plain.forks]
     for e, compliance in enumerate(topo.compliances):
-        if e in plain.compliances:
-            continue
         shafts = compliance.shafts
         each = [shaft_stiffness(assembly, table, i) for i in shafts]
         stiffness[:, e] = _stiffness(each)

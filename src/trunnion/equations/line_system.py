@@ -387,7 +387,7 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     refuse_second_speed(assembly)
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")

@@ -38,8 +38,7 @@ from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 class LineMatrices:
     """Matrices in time (not divided by Ω), shapes (case, time, n, n) and (case, time, n).
 
-    ``ratio`` and ``ratio_slope`` (case, time, compliance) are r and dr/dτ of each compliance's near end, ``wave`` its
-    stiffness over the mean.
+    ``ratio`` (case, time, compliance) is r of each compliance's near end, ``wave`` its stiffness over the mean.
     """
 
     mass: Array
@@ -47,7 +46,6 @@ class LineMatrices:
     stiffness: Array
     forcing: Array
     ratio: Array
-    ratio_slope: Array
     wave: Array
 
 
@@ -67,8 +65,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     # Each entry lies in one piece over time, which is how it is filled.
     mass, damping, stiffness = (np.zeros((n, n, cases, times)).transpose(2, 3, 0, 1) for _ in range(3))
     forcing = np.zeros((cases, times, n))
-    slope_seen = np.zeros((cases, times, len(topo.compliances)))
-    ratio_seen, wave = np.zeros_like(slope_seen), stiffness_waves(topo, coefficients, tau)
+    ratio_seen, wave = np.zeros((cases, times, len(topo.compliances))), stiffness_waves(topo, coefficients, tau)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
     loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
     for s in np.flatnonzero(acting[0].any(axis=0) | loaded).tolist():
@@ -107,7 +104,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         if compliance.near != ref:
             r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
             r_dot = r1 * motion.speed[..., ref] * speed
-        ratio_seen[..., e], slope_seen[..., e] = r, r_dot / speed
+        ratio_seen[..., e] = r
         if far >= 0:
             damping[..., far, far] += c
             stiffness[..., far, far] += k
@@ -121,7 +118,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
             damping[..., near, far] -= c * r
             stiffness[..., far, near] -= k * r + c * r_dot
             stiffness[..., near, far] -= k * r
-    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, slope_seen, wave)
+    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, wave)
 
 
 def periodic_linear_system(

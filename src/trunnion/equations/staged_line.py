@@ -233,7 +233,7 @@ def staged_line(line: Driveline | Assembly, speed: float | None = None) -> Stage
         raise InputError(
             f"is a {type(line).__name__}, which has no exact motion by stages", key="line", remedy="give a Driveline"
         )
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     refuse_second_speed(assembly)
     _refuse_inexact(assembly)
     return _Builder(assembly, Turning(assembly.line, speed)).build()

@@ -41,7 +41,7 @@ class Crossing:
 
 def crossings(line: Driveline | Assembly, low: float, high: float) -> tuple[Crossing, ...]:
     """Crossings of the 2Ω and 4Ω lines of every shaft with the modes between two input speeds [rad/s]."""
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     excited, rates = shaft_ratios(assembly)
     modes = natural_frequencies(assembly)
     found = [
@@ -78,7 +78,7 @@ def draw(
     unit, frequency_unit : of the two axes.
     operating : its speed is marked.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     axes = axes or new_axes(7.2, 4.3)
     modes = natural_frequencies(assembly)
     excited, rates = shaft_ratios(assembly)

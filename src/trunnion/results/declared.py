@@ -68,6 +68,12 @@ def remark(name: str, value: object) -> Held:
     return Held(name, value, None, {})
 
 
+def remarks_of(result: object, *names: str) -> Iterator[Held]:
+    """Attributes of a result as remarks, under their own names."""
+    for name in names:
+        yield remark(name, getattr(result, name))
+
+
 def ending(outcome: Outcome) -> Iterator[Held]:
     """How the computation ended."""
     yield remark("outcome", outcome.kind)

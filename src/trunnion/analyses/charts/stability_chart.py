@@ -180,7 +180,7 @@ def line_task(
     ------
     InputError : see ``stability_chart``.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
     across, said_x = axis(assembly, x, "x")
     up, said_y = axis(assembly, y, "y")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.analyses.tongues.windows import StableWindows
 from trunnion.arrays import Array, Codes, Integers
-from trunnion.results.declared import Described, Held, axis, over, remark
+from trunnion.results.declared import Described, Held, axis, over, remark, remarks_of
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
@@ -163,12 +163,12 @@ class StableLimit(Described):
     def sentence_at(self, speed: float, unit: str | None = None) -> str:
         """The answer at the speed of the result that is nearest to ``speed`` [rad/s], in a sentence."""
         i, unit = int(np.abs(self.speed - speed).argmin()), unit or self.speed_unit
-        one = StableLimit(
-            self.parameter, self.unit, self.speed[i : i + 1], self.limit[i : i + 1], self.kind[i : i + 1],
-            self.unstable[i : i + 1], self.low, self.high, self.complete, self.search,
-            tuple(OtherLimit(o.name, o.allowed, o.unit, o.reached[i : i + 1]) for o in self.others),
-        )  # fmt: skip
-        return one.sentence_in(unit)
+        others = tuple(replace(other, reached=other.reached[i : i + 1]) for other in self.others)
+        ranges = self.unstable[i : i + 1]
+        return replace(
+            self, speed=self.speed[i : i + 1], limit=self.limit[i : i + 1], kind=self.kind[i : i + 1],
+            unstable=ranges, others=others, whole=None,
+        ).sentence_in(unit)  # fmt: skip
 
     def _other_in_words(self, shown: QuantityAxis, unit: str) -> str:
         """ "; above 28° the vibratory torque of Shaft 2 binds, at 1850 rpm", where another limit ends before."""
@@ -215,9 +215,7 @@ class StableLimit(Described):
                    f"{self.parameter} at which a limit is reached first; NaN: not in the range")  # fmt: skip
         yield over("other_limit", "allowed", np.array([o.allowed for o in self.others], dtype=float))
         yield over("other_limit", "allowed_unit", [o.unit for o in self.others])
-        yield remark("parameter", self.parameter)
-        yield remark("low", self.low)
-        yield remark("high", self.high)
+        yield from remarks_of(self, "parameter", "low", "high")
         yield remark("complete", int(self.complete))
         yield remark("search", self.search)
         yield remark("others_search", self.others_search or None)

@@ -89,7 +89,7 @@ def stable_limit(
     if isinstance(scan, bool) or not isinstance(scan, int | np.integer) or scan < 2:
         raise InputError("must be a whole number of steps, 2 or more", key="scan", value=scan)
     require_pixels(len(speed), int(scan) + 1)
-    assembly, tell = line if isinstance(line, Assembly) else assemble(line), progress or (lambda share: None)
+    assembly, tell = assemble(line), progress or (lambda share: None)
     ends = float(speed.min()), float(speed.max())
     if ends[0] == ends[1]:
         ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)

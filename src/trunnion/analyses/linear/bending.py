@@ -48,7 +48,7 @@ def tube_critical_speed(outer: float, inner: float, length: float, young_modulus
 
 def bending_speeds(line: Driveline | Assembly) -> tuple[BendingSpeed, ...]:
     """Critical speed of every shaft of ``line`` described as a tube with a density, in order."""
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     described, topo = assembly.line, assembly.topology
     ratio = {e: abs(float(topo.speed_ratio[c.near])) for c in topo.compliances for e in c.shafts}
     found = []

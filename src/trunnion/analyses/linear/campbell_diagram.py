@@ -235,9 +235,7 @@ def campbell_diagram(
     >>> print(crossing.line.name, crossing.mode, round(crossing.speed, 2), round(crossing.amplification, 1))
     order 2 2 124.96 20.0
     """
-    if load_case is not None:
-        line = (line.line if isinstance(line, Assembly) else line).with_load(load_case)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line, load_case)
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 101)"
     speed = numbers(speeds, "speeds", remedy)
     if len(speed) < 2 or not np.all(np.isfinite(speed)) or not np.all(np.diff(speed) > 0):

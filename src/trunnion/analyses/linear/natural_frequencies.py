@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.analyses.features import left_out
-from trunnion.arrays import Array, Complex, Places
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import AlignedMatrices, frequencies
@@ -121,7 +121,7 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order; resonance
     speeds are named after them.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     topo = assembly.topology
     found = frequencies(assembly.aligned, free=topo.free)[0]
     return NaturalFrequencies(found, topo.names, topo.free, assembly)
@@ -142,31 +142,21 @@ def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Arra
     if np.any(np.abs(ratio) >= 0.9):
         return ratio
     whole = stiffness + 1j * loss if loss.any() else stiffness
-    values = np.asarray(np.linalg.eigvals(_companion(damping, whole)), dtype=complex)
-    values = values[_oscillating(values, float(frequency[frequency > 0].min(initial=np.inf)))]
     oscillating = frequency > 0
+    values, _ = damped_modes(damping, whole, float(frequency[oscillating].min(initial=np.inf)))
     if len(values) == oscillating.sum():
         ratio[oscillating] = -values.real / np.abs(values)
     return ratio
 
 
-def damped_modes(damping: Array, stiffness: Complex, lowest: float) -> tuple[Complex, Complex]:
+def damped_modes(damping: Array, stiffness: Array | Complex, lowest: float) -> tuple[Complex, Complex]:
     """Eigenvalues with positive imaginary part of λ² + λC + K, by modulus, and their shapes (n, values).
 
     C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
     own size, is no oscillation: far below ``lowest``, the lowest elastic frequency [rad/s].
     """
-    values, vectors = np.linalg.eig(_companion(damping, stiffness))
-    above = _oscillating(values, lowest)
-    return values[above], vectors[: len(damping), above]
-
-
-def _companion(damping: Array, stiffness: Array | Complex) -> Array | Complex:
     n = len(damping)
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
-
-
-def _oscillating(values: Complex, lowest: float) -> Places:
-    """Places of eigenvalues with positive imaginary part, by modulus."""
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
     above = np.flatnonzero(values.imag > NO_OSCILLATION * lowest)
-    return np.asarray(above[np.argsort(np.abs(values[above]))])
+    above = above[np.argsort(np.abs(values[above]))]
+    return values[above], vectors[:n, above]

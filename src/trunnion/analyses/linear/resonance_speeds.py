@@ -26,6 +26,7 @@ import numpy as np
 
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -155,7 +156,7 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     """
     if isinstance(orders, bool) or not isinstance(orders, int) or orders < 1:
         raise InputError("must be a whole number, 1 or more", key="orders", value=orders)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     modes = natural_frequencies(assembly).frequency
     found = [r for source in sources(assembly) for r in _excited(modes, orders, source)]
     said = left_out("resonance_speeds", assembly.line)
@@ -179,19 +180,18 @@ def sources(assembly: Assembly) -> tuple[Source, ...]:
     return (*joints, *meshes)
 
 
-def _excited(modes: np.ndarray, orders: int, source: Source) -> list[Resonance]:
-    return [replace(r, mesh=source.mesh) for r in _at_rate(modes, orders, source.rate)]
-
-
-def _at_rate(modes: np.ndarray, orders: int, rate: Fraction) -> list[Resonance]:
+def _excited(modes: Array, orders: int, source: Source) -> Iterator[Resonance]:
     elastic = [(i, w) for i, w in enumerate(map(float, modes), start=1) if w > 0]
-    found = []
+    rate = float(source.rate)
+
+    def named(frequency: float, kind: str, among: tuple[int, ...], below: int) -> Resonance:
+        return Resonance(frequency / (below * rate), kind, among, (below + 1) // 2, source.rate, source.mesh)
+
     for k in range(1, orders + 1):
         for i, w in elastic:
-            found.append(Resonance(w / (2 * k * float(rate)), "harmonic", (i,), k, rate))
-            found.append(Resonance(w / ((2 * k - 1) * float(rate)), "subharmonic", (i,), k, rate))
+            yield named(w, "harmonic", (i,), 2 * k)
+            yield named(w, "subharmonic", (i,), 2 * k - 1)
         for (i, low), (j, high) in combinations(elastic, 2):
-            found.append(Resonance((high + low) / (2 * k * float(rate)), "sum", (i, j), k, rate))
+            yield named(high + low, "sum", (i, j), 2 * k)
             if high > low * (1 + 1e-12):
-                found.append(Resonance((high - low) / (2 * k * float(rate)), "difference", (i, j), k, rate))
-    return found
+                yield named(high - low, "difference", (i, j), 2 * k)

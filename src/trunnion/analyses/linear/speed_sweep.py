@@ -143,7 +143,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
 
     An even grid alone would step over the peaks of lightly damped modes.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")
     modes = natural_frequencies(assembly)
     topo = assembly.topology

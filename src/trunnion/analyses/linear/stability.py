@@ -217,7 +217,7 @@ def stability(
         scaled, nothing = np.array(line.frequencies) * line.period / np.pi, np.zeros((2 * line.size, 0))
         run = propagated(line, tolerance)
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
     if assembly.topology.free and bent(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)

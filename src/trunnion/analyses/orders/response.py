@@ -80,7 +80,7 @@ def order_response(
     >>> print(r.order, round(float(r.vibratory_torque[0, 0]), 3))
     [2.] 106.781
     """
-    assembly = _assembled(line, load_case)
+    assembly = assemble(line, load_case)
     speed = _checked_speeds(speeds)
     wanted = None if orders is None else _checked_orders(orders)
     twisted, motions = statically_twisted, own_motions_of(assembly)
@@ -130,13 +130,6 @@ def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderRe
     """The response that holds a ``spectrum``; its verdicts are not judged."""
     failed = np.full(len(spectrum.speed), Verdict.FAILED, dtype=np.int8)
     return _result(assembly, spectrum, lambda: failed, None)
-
-
-def _assembled(line: Driveline | Assembly, load_case: str | None) -> Assembly:
-    if load_case is not None:
-        description = line.line if isinstance(line, Assembly) else line
-        return assemble(description.with_load(load_case))
-    return line if isinstance(line, Assembly) else assemble(line)
 
 
 def _checked_speeds(speeds: ArrayLike) -> Array:

@@ -14,6 +14,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.totals import Range, adds_exactly, common_turns, extremes, extremes_at, wave
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.arrays import Array, Codes, Complex, Flags
+from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -268,9 +269,7 @@ class OrderResponse(Judged):
     @property
     def headline(self) -> str:
         """What was computed."""
-        count = f"{len(self.order)} order{'' if len(self.order) == 1 else 's'}"
-        many = "1 speed" if len(self.speed) == 1 else f"{len(self.speed)} speeds"
-        return f"linear steady response at {many} to {count}"
+        return f"linear steady response at {counted(len(self.speed), 'speed')} to {counted(len(self.order), 'order')}"
 
     def table(self, unit: str | None = None) -> list[dict[str, object]]:
         """One row per spring: its largest torques [N m] and its largest order, each at its speed in ``unit``."""

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.analyses.linear.along import stability_along
 from trunnion.arrays import Array, Codes
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.first_order import first_order, scales
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import bent
@@ -51,11 +52,6 @@ def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:
     if co.loss.any():
         return np.full_like(stable, Verdict.FAILED)
     m = line_matrices(assembly.topology, co, np.zeros(1))
-    mass, damping, stiffness = m.mass[:, 0], m.damping[:, 0], m.stiffness[:, 0]
-    n = mass.shape[-1]
-    system = np.zeros((len(stable), 2 * n, 2 * n))
-    system[:, :n, n:] = np.eye(n)
-    system[:, n:, :n], system[:, n:, n:] = -np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)
-    values = np.linalg.eigvals(system)
+    values = np.linalg.eigvals(first_order(m, co.speed, *scales(m, co.speed))[:, 0])
     grows = values.real.max(axis=1) > GROWS * np.abs(values).max(axis=1)
     return np.where(grows, Verdict.UNSTABLE, stable).astype(np.int8)

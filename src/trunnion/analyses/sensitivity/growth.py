@@ -34,10 +34,9 @@ EQUAL = 1e-9
 
 @dataclass(frozen=True)
 class RadiusSlope:
-    """Largest multiplier and its radius ρ; ∂ ln ρ/∂p along every direction (direction,) per unit of each, and its
+    """Radius ρ of the largest multiplier; ∂ ln ρ/∂p along every direction (direction,) per unit of each, and its
     error; period [rad of input angle]; refused: why there is none, "" where there is."""
 
-    multiplier: complex
     radius: float
     period: float
     slope: Array
@@ -69,12 +68,12 @@ def radius_slope(
     every = [(one, True) for one in directions] + [(one, False) for one in axes]
     none = np.full(len(every), np.nan)
     if not len(values):
-        return RadiusSlope(1.0, 1.0, system.period, none, none, "the line can only turn as a whole")
+        return RadiusSlope(1.0, system.period, none, none, "the line can only turn as a whole")
     radius = float(spectral_radius(values, bounds)[0])
     critical = complex(values[int(np.argmax(np.abs(values)))])
 
     def without(why: str) -> RadiusSlope:
-        return RadiusSlope(critical, radius, system.period, none, none, why)
+        return RadiusSlope(radius, system.period, none, none, why)
 
     others = np.abs(values - critical) > 0
     others &= np.abs(values - critical.conjugate()) > 1e-12 * radius
@@ -102,7 +101,7 @@ def radius_slope(
         change -= np.einsum("ti,tij,tj->t", adjoint, central(damping, SMOOTH_STEP * one.size), rate)
         whole, half = (float((part.mean() * system.period).real) for part in (change, change[::2]))
         slope[d], error[d] = whole, abs(whole - half) + relative * float(np.abs(change).mean() * system.period)
-    return RadiusSlope(critical, radius, system.period, slope, error)
+    return RadiusSlope(radius, system.period, slope, error)
 
 
 def _per_mass(near: Neighbourhood, table: Array, tau: Array) -> tuple[Array, Array]:

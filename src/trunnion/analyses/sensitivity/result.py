@@ -11,7 +11,6 @@ import numpy as np
 
 from trunnion.analyses.assessment.remedies.result import STEPS
 from trunnion.analyses.assessment.remedies.variables import Scale, scale_of
-from trunnion.analyses.sensitivity.directions import Direction
 from trunnion.arrays import Array
 from trunnion.driveline.quantities import KINDS, SPEED, shown
 from trunnion.driveline.refusals import nearest
@@ -284,12 +283,3 @@ def _step(path: str, value: float) -> tuple[float, str]:
     if scale is not Scale.FACTOR:
         return size, words
     return (size * abs(value) if value else nan), words
-
-
-def directions_shown(directions: tuple[Direction, ...]) -> tuple[tuple[str, ...], Array, tuple[str, ...]]:
-    """Labels, values and units of directions."""
-    return (
-        tuple(one.label for one in directions),
-        np.array([one.value for one in directions]),
-        tuple(one.unit for one in directions),
-    )

@@ -25,7 +25,6 @@ from trunnion.analyses.sensitivity.result import (
     Quantity,
     Rows,
     Sensitivities,
-    directions_shown,
 )
 from trunnion.analyses.sensitivity.tips import tip_slopes
 from trunnion.analyses.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
@@ -267,12 +266,11 @@ def _left_out(line: Driveline, kinds: Sequence[str]) -> list[Finding]:
 def _result(question: _Question, rows: Sequence[Rows], findings: Sequence[Finding]) -> Sensitivities:
     width = len(question.directions)
     once = {finding.sentence: finding for finding in findings}
-    labels, values, units = directions_shown(question.directions)
     return Sensitivities(
         quantities=tuple(q for part in rows for q in part.quantities),
-        parameters=labels,
-        parameter_value=values,
-        parameter_unit=units,
+        parameters=tuple(one.label for one in question.directions),
+        parameter_value=np.array([one.value for one in question.directions]),
+        parameter_unit=tuple(one.unit for one in question.directions),
         derivative=np.concatenate([part.slope.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
         error=np.concatenate([part.error.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
         unit=question.unit,

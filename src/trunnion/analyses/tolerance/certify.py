@@ -143,7 +143,7 @@ def certify_stability(
         raise InputError("must be two rising positive speeds", key="speeds", value=speeds, remedy="(100.0, 200.0)")
     if isinstance(most_boxes, bool) or not isinstance(most_boxes, int) or most_boxes < 1:
         raise InputError("must be a whole number, 1 or more", key="most_boxes", value=most_boxes)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     _require_provable(assembly)
     require_steady_base(assembly, assembly.table(1, 1.0))
     spreads = read_tolerances(assembly, tolerances)

@@ -183,7 +183,7 @@ def tolerance_study(
         raise InputError("must be True, False or a number of lines", key="checks", value=checks)
     if not 0.5 <= one_number(confidence, "confidence", "0.95, say") < 1:
         raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     spreads = read_tolerances(assembly, tolerances)
     each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
     require_pixels(each * SCRAMBLES, len(at))

@@ -184,7 +184,7 @@ def _search(
 ) -> tuple[Search, Callable[[list[Strand]], str]]:
     """How rows are searched, and what there is to say of it when tongues are known."""
     if not region.by_coefficients and not isinstance(line, PeriodicLinearFamily):
-        assembly = line if isinstance(line, Assembly) else assemble(line)
+        assembly = assemble(line)
         found = followed(task, assembly, region, twisted)
         if found is not None:
             return found.rows, lambda strands: "; " + in_words(found, [s.by for s in strands])
@@ -308,7 +308,7 @@ def _names(
     """The resonance of each tongue, at its tip where it has one."""
     if isinstance(line, PeriodicLinearFamily):
         return [None] * len(shapes)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     begins = np.array([s.below or s.above or (s.strand.inside[0], s.strand.v[0]) for s in shapes]).reshape(-1, 2)
     kinds = np.array([s.strand.kind[0 if s.below or not s.above else -1] for s in shapes])
     return resonances(task, assembly, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, twisted, region.threads)

@@ -155,7 +155,7 @@ def stable_windows(
     if not 0 <= one_number(margin, "margin", "0.1 for 10 %") < 0.9:
         raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
     _require_speeds(speeds)
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     span = (speeds[0] * (1 - margin), speeds[1] * (1 + margin))
     found = tongues(
         assembly, ("speed", *span), (parameter, low, high),
@@ -190,7 +190,7 @@ def minimum_damping(
     ------
     InputError : see ``stable_windows``; a parameter that is no damping, or a line without any to multiply.
     """
-    assembly = line if isinstance(line, Assembly) else assemble(line)
+    assembly = assemble(line)
     chosen = all_damping(assembly) if damping is None else damping
     if isinstance(chosen, str) and not any(word in chosen for word in DAMPING):
         raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')
