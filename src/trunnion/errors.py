@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
 
+Made = TypeVar("Made")
 MOST_LINES = 20
 """Most complaints that the text of one error lists."""
 LONGEST = 80
@@ -61,7 +63,7 @@ class InputError(TrunnionError, ValueError):
         first = single[0]
         if len(single) == 1:
             return first
-        whole = InputError(first.problem, element=first.element, key=first.key, value=first.value, remedy=first.remedy)
+        whole = first.but()
         whole.problems = single
         lines = list(dict.fromkeys(map(str, single)))
         more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
@@ -71,6 +73,11 @@ class InputError(TrunnionError, ValueError):
     def each(self, change: Callable[[InputError], InputError]) -> InputError:
         """The same error with every single complaint changed."""
         return InputError.together([change(one) for one in self.problems])
+
+    def but(self, **changes: Any) -> InputError:
+        """This complaint with its ``element``, ``key``, ``value``, ``problem`` or ``remedy`` changed."""
+        stated = {"element": self.element, "key": self.key, "value": self.value, "remedy": self.remedy}
+        return InputError(changes.pop("problem", self.problem), **{**stated, **changes})
 
     def sentence(self) -> str:
         """The whole message on one line."""
@@ -94,6 +101,25 @@ class InputRemark(UserWarning):
 def short(text: str, limit: int = LONGEST) -> str:
     """``text``, cut where it is longer than a line wants."""
     return text if len(text) <= limit else text[: limit - 1] + "…"
+
+
+def all_made(makers: Iterable[Callable[[], Made]]) -> list[Made]:
+    """What each of ``makers`` gives.
+
+    Raises
+    ------
+    InputError : the complaints of all that raise.
+    """
+    made: list[Made] = []
+    wrong: list[InputError] = []
+    for make in makers:
+        try:
+            made.append(make())
+        except InputError as error:
+            wrong.append(error)
+    if wrong:
+        raise InputError.together(wrong)
+    return made
 
 
 def problems_of(checks: Iterable[Callable[[], object]]) -> list[InputError]:

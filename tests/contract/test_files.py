@@ -33,8 +33,8 @@ from trunnion.driveline import (
     loads,
     starter,
 )
-from trunnion.driveline.elements import is_name
 from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.record import is_name
 from trunnion.errors import ComputationError, InputRemark
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))

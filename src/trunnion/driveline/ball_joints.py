@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.joints import Joint
-from trunnion.driveline.quantities import ANGLE, DEGREE, RATIO, Angle, Dimensionless
-from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless
+from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,11 +17,9 @@ if TYPE_CHECKING:
 
 HIGHEST_ORDER = 100
 STEEPEST_GROWTH = 6
-RIPPLE_KINDS = {"ripple": {"order": RATIO, "amplitude": ANGLE, "phase": ANGLE, "growth": RATIO}}
-"""Physical kinds of the numbers of a ripple."""
 
 
-class Ripple(BaseModel):
+class Ripple(Record):
     """One harmonic by which the output of a joint runs ahead of its input: A sin(order · χ + phase).
 
     χ is the angle of the input's first ball from the joint plane.
@@ -35,19 +32,13 @@ class Ripple(BaseModel):
     growth : power of tan β with which A grows from none at β = 0; with a reference_angle only.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "ripple"
+    example: ClassVar[str] = 'order = 6 and amplitude = "0.01 deg"'
 
     order: Dimensionless = Field(description="cycles per turn of the joint's shaft")
     amplitude: Angle = Field(description="by which the output runs ahead")
     phase: Angle = Field(default=0.0, description="where the joint's first ball stands in the joint plane")
     growth: Dimensionless = Field(default=1.0, description="power of tan(angle) with which the amplitude grows")
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            example = 'order = 6 and amplitude = "0.01 deg"'
-            raise refuse(error, type(self), data, element="ripple", example=example) from None
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -57,28 +48,6 @@ class Ripple(BaseModel):
                 problem = f"must be a whole number from {least} to {most}"
                 raise InputError(problem, key=key, value=value, remedy=f"write {key} = {least}, say")
         return self
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The fields that differ from their defaults."""
-        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
-
-
-def _ripples(value: object) -> tuple[Ripple, ...]:
-    remedy = 'write ripple = [{ order = 6, amplitude = "0.01 deg" }]'
-    if isinstance(value, str | dict | Ripple) or not isinstance(value, Iterable):
-        raise InputError("is not a list of harmonics", value=value, remedy=remedy)
-    made, wrong = [], []
-    for place, item in enumerate(value, start=1):
-        try:
-            if not isinstance(item, Ripple | dict):
-                raise InputError("is not a harmonic", value=item, remedy=remedy)
-            made.append(item if isinstance(item, Ripple) else Ripple(**item))
-        except InputError as error:
-            wrong.append(numbered(error, "ripple", place))
-    if wrong:
-        raise InputError.together(wrong)
-    return tuple(made)
 
 
 class RzeppaJoint(Joint):
@@ -99,7 +68,7 @@ class RzeppaJoint(Joint):
 
     angle: Angle = Field(default=0.0, description="bend angle between the two shafts")
     plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
-    ripple: Annotated[tuple[Ripple, ...], BeforeValidator(_ripples)] = Field(
+    ripple: Annotated[tuple[Ripple, ...], BeforeValidator(listed(Ripple, "harmonic"))] = Field(
         default=(), description="harmonics of the output over a turn"
     )
     reference_angle: Angle | None = Field(default=None, description="bend angle at which the amplitudes hold")

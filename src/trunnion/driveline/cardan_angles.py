@@ -81,4 +81,4 @@ def _numbers(values: Any, key: str, kind: Kind = ANGLE) -> list[float]:
     try:
         return [parse(value, kind) for value in values]
     except InputError as error:
-        raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+        raise error.but(key=key) from None

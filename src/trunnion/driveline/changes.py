@@ -11,7 +11,7 @@ from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.files import dumps
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS
-from trunnion.driveline.quantities import ANGLE, SPEED
+from trunnion.driveline.operation import Operation
 
 NOTHING = "none"
 WHOLE = ""
@@ -80,7 +80,7 @@ def _tables(line: Driveline) -> dict[str, dict[str, str]]:
 
 def _running(key: str, value: Any) -> str:
     """A value of the operation; numbers without a unit get theirs."""
-    kind = {"speed": SPEED, "speed_range": SPEED, "angle_range": ANGLE}.get(key)
+    kind = Operation.quantity_of(key) if key in Operation.model_fields else None
     numbers = isinstance(value, list) and not any(isinstance(end, str) for end in value)
     return f"{text_of(value, None)} {kind.unit}" if kind and numbers else text_of(value, kind)
 

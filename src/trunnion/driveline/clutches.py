@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import positive
 from trunnion.driveline.quantities import (
     ANGLE,
     FREQUENCY,
-    STIFFNESS,
     TORQUE,
     Angle,
     Frequency,
@@ -20,17 +18,15 @@ from trunnion.driveline.quantities import (
     Torque,
     parse,
 )
-from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.record import Record, listed
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft, quantities
 from trunnion.errors import InputError
 
-SLIDER_KINDS = {"friction": {"torque": TORQUE, "stiffness": STIFFNESS}}
-"""Physical kinds of the numbers of a slider."""
 MOST_SLIDERS = 8
 
 
-class Slider(BaseModel):
+class Slider(Record):
     """A Jenkins element: a spring in series with a slider that slips where it would carry more than its torque.
 
     Parameters
@@ -39,17 +35,11 @@ class Slider(BaseModel):
     stiffness : k of its spring [N m/rad].
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "friction"
+    example: ClassVar[str] = 'torque = "15 N*m" and stiffness = "5 kN*m/rad"'
 
     torque: Torque = Field(description="friction torque, at which it slips")
     stiffness: Stiffness = Field(description="of the spring in series with the slider")
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            example = 'torque = "15 N*m" and stiffness = "5 kN*m/rad"'
-            raise refuse(error, type(self), data, element="friction", example=example) from None
 
     @model_validator(mode="after")
     def _positive(self) -> Self:
@@ -60,29 +50,16 @@ class Slider(BaseModel):
                 )
         return self
 
-    @property
-    def stated(self) -> dict[str, Any]:
-        """Both numbers."""
-        return {"torque": self.torque, "stiffness": self.stiffness}
+
+_READ = listed(Slider, "slider")
 
 
 def _sliders(value: object) -> tuple[Slider, ...]:
-    remedy = 'write friction = [{ torque = "15 N*m", stiffness = "5 kN*m/rad" }]'
-    if isinstance(value, str | dict | Slider) or not isinstance(value, Iterable):
-        raise InputError("is not a list of sliders", value=value, remedy=remedy)
-    made, wrong = [], []
-    for place, item in enumerate(value, start=1):
-        try:
-            if not isinstance(item, Slider | dict):
-                raise InputError("is not a slider", value=item, remedy=remedy)
-            made.append(item if isinstance(item, Slider) else Slider(**item))
-        except InputError as error:
-            wrong.append(numbered(error, "friction", place))
-    if wrong:
-        raise InputError.together(wrong)
+    made = _READ(value)
     if not 1 <= len(made) <= MOST_SLIDERS:
+        remedy = 'write friction = [{ torque = "15 N*m", stiffness = "5 kN*m/rad" }]'
         raise InputError(f"must be from 1 to {MOST_SLIDERS} sliders", value=len(made), remedy=remedy)
-    return tuple(made)
+    return made
 
 
 class Clutch(PiecewiseShaft):

@@ -9,18 +9,11 @@ from it (a tube's stiffness, a tooth ratio) is a property.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    model_validator,
-)
+from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.excitation import Excitations
 from trunnion.driveline.geometry import disk_inertia
@@ -32,40 +25,19 @@ from trunnion.driveline.quantities import (
     Density,
     Dimensionless,
     Inertia,
-    Kind,
     Length,
     Mass,
     QuadraticLoad,
-    Quantity,
     Torque,
 )
-from trunnion.driveline.refusals import refuse
+from trunnion.driveline.record import Name, Record, as_tuple, is_name
 from trunnion.errors import InputError, InputRemark
-
-LONGEST_NAME = 80
 
 Doubt = tuple[str, str, str]
 """(key, what is odd, what to do about it)."""
 
 
-def is_name(value: object) -> bool:
-    """Whether `value` can be a name: one line of text; no *, which stands for "all" in parameter paths."""
-    if not isinstance(value, str) or len(value) > LONGEST_NAME:
-        return False
-    return value == value.strip() != "" and value.isprintable() and "*" not in value
-
-
-def _name(value: object) -> object:
-    if not is_name(value):
-        remedy = f"write one line of text without * or outer blanks, of at most {LONGEST_NAME} characters"
-        raise InputError("is not a name", value=value, remedy=remedy)
-    return value
-
-
-Name = Annotated[str, BeforeValidator(_name)]
-
-
-class Element(BaseModel):
+class Element(Record):
     """Base of all elements.
 
     Parameters
@@ -75,31 +47,25 @@ class Element(BaseModel):
         element.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-    example: ClassVar[str] = ""
-
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
     after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
 
     def __init__(self, **data: Any) -> None:
-        label = data["name"] if is_name(data.get("name")) else type(self).__name__
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise refuse(error, type(self), data, element=label, example=self.example) from None
+        super().__init__(**data)
         for key, problem, remedy in self.doubts():
+            label = self.name or self.kind
             remark = InputError(problem, element=label, key=key, value=getattr(self, key), remedy=remedy)
             warnings.warn(InputRemark(str(remark)), stacklevel=2)
+
+    @classmethod
+    def called(cls, data: dict[str, Any]) -> str:
+        """Its name where it has one, else its kind."""
+        return data["name"] if is_name(data.get("name")) else cls.__name__
 
     @property
     def kind(self) -> str:
         """The class name: what ``type`` says in a file."""
         return type(self).__name__
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The fields that differ from their defaults: ``type(e)(**e.stated) == e``."""
-        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
 
     def doubts(self) -> Iterator[Doubt]:
         """What is accepted with a remark."""
@@ -109,15 +75,6 @@ class Element(BaseModel):
         """What earns a remark when it comes from a file, where nobody explores on purpose."""
         yield from ()
 
-    @classmethod
-    def quantity_of(cls, key: str) -> Kind | None:
-        """The physical kind of field `key`, or None where it is not a quantity."""
-        field = cls.model_fields[key]
-        marks = [*field.metadata]
-        for part in getattr(field.annotation, "__args__", ()):  # Optional[Annotated[...]]
-            marks += getattr(part, "__metadata__", ())
-        return next((mark.kind for mark in marks if isinstance(mark, Quantity)), None)
-
 
 class ConstantSpeed(Element):
     """A prescribed rotation: the drive, and at the far end of a line a clamp that turns with it.
@@ -126,11 +83,7 @@ class ConstantSpeed(Element):
     """
 
 
-def _angles(value: object) -> object:
-    if isinstance(value, str | dict) or not isinstance(value, Iterable):
-        remedy = 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say'
-        raise InputError("is not a list of angles", value=value, remedy=remedy)
-    return tuple(value)
+_ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
 
 
 class Disk(Element):
@@ -175,7 +128,7 @@ class Disk(Element):
         default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
     )
     excitation: Excitations = Field(default=(), description="harmonic torques, in time or in the disk's rotation")
-    firing_angles: Annotated[tuple[Angle, ...], BeforeValidator(_angles)] = Field(
+    firing_angles: Annotated[tuple[Angle, ...], BeforeValidator(_ANGLES)] = Field(
         default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
     )
     misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire, from 1")
@@ -319,11 +272,11 @@ def positive(element: Element, *keys: str) -> None:
             raise InputError("must be positive", key=key, value=value, remedy=_advice(element, key))
 
 
-def not_negative(element: Element, *keys: str) -> None:
+def not_negative(element: Element, *keys: str, remedy: str = "") -> None:
     for key in keys:
         value = getattr(element, key)
         if value is not None and value < 0:
-            raise InputError("must not be negative", key=key, value=value, remedy=_advice(element, key))
+            raise InputError("must not be negative", key=key, value=value, remedy=remedy or _advice(element, key))
 
 
 def _advice(element: Element, key: str) -> str:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cached_property
-from typing import Annotated, Any, Self
+from typing import Annotated, ClassVar, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.quantities import (
-    ANGLE,
-    FREQUENCY,
-    QUADRATIC,
     SPEED,
     TORQUE,
     Angle,
@@ -22,18 +18,13 @@ from trunnion.driveline.quantities import (
     Torque,
     shown,
 )
-from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.record import Record, as_tuple, listed
 from trunnion.errors import InputError
 
-
-def _list(value: object) -> object:
-    if isinstance(value, str | dict) or not isinstance(value, Iterable):
-        remedy = 'write speeds = ["600 rpm", "1800 rpm"], amplitudes = ["40 N*m", "90 N*m"], say'
-        raise InputError("is not a list of quantities", value=value, remedy=remedy)
-    return tuple(value)
+_LISTS = as_tuple("quantities", 'write speeds = ["600 rpm", "1800 rpm"], amplitudes = ["40 N*m", "90 N*m"], say')
 
 
-class Excitation(BaseModel):
+class Excitation(Record):
     """One harmonic torque, positive in the sense of rotation: A cos(order · rotation + phase), or A cos(ωt + phase).
 
     Several orders together are an engine-order table. A is one ``amplitude``; or grows with the square of the disk's
@@ -53,7 +44,8 @@ class Excitation(BaseModel):
     phases : at these points [rad], added to ``phase``; 0 by default.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "excitation"
+    example: ClassVar[str] = 'order = 2 and amplitude = "40 N*m"'
 
     amplitude: Torque | None = Field(default=None, description="of the torque; positive drives")
     order: Dimensionless | None = Field(default=None, description="cycles per turn of the disk")
@@ -62,25 +54,18 @@ class Excitation(BaseModel):
     quadratic_amplitude: QuadraticLoad | None = Field(
         default=None, description="amplitude over the square of the disk's speed, instead"
     )
-    speeds: Annotated[tuple[Speed, ...], BeforeValidator(_list)] = Field(
+    speeds: Annotated[tuple[Speed, ...], BeforeValidator(_LISTS)] = Field(
         default=(), description="of the disk, where a table of amplitudes has its points"
     )
-    torques: Annotated[tuple[Torque, ...], BeforeValidator(_list)] = Field(
+    torques: Annotated[tuple[Torque, ...], BeforeValidator(_LISTS)] = Field(
         default=(), description="mean torques that the disk drives with, instead of speeds"
     )
-    amplitudes: Annotated[tuple[Torque, ...], BeforeValidator(_list)] = Field(
+    amplitudes: Annotated[tuple[Torque, ...], BeforeValidator(_LISTS)] = Field(
         default=(), description="at the points of the table"
     )
-    phases: Annotated[tuple[Angle, ...], BeforeValidator(_list)] = Field(
+    phases: Annotated[tuple[Angle, ...], BeforeValidator(_LISTS)] = Field(
         default=(), description="at the points of the table"
     )
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            example = 'order = 2 and amplitude = "40 N*m"'
-            raise refuse(error, type(self), data, element="excitation", example=example) from None
 
     @model_validator(mode="after")
     def _one_clock(self) -> Self:
@@ -154,43 +139,15 @@ class Excitation(BaseModel):
         kind, unit = (SPEED, "rpm") if self.speeds else (TORQUE, None)
         return f"{shown(self.points[0], kind, unit)} to {shown(self.points[-1], kind, unit)}"
 
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The fields that differ from their defaults."""
-        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
 
-
-EXCITATION_KINDS = {
-    "amplitude": TORQUE,
-    "frequency": FREQUENCY,
-    "phase": ANGLE,
-    "quadratic_amplitude": QUADRATIC,
-    "speeds": SPEED,
-    "torques": TORQUE,
-    "amplitudes": TORQUE,
-    "phases": ANGLE,
-}
-"""Physical kinds of its quantities; an order is a plain number."""
+_READ = listed(Excitation, "harmonic torque")
 
 
 def _tables(value: object) -> tuple[Excitation, ...]:
-    remedy = 'write excitation = [{ order = 2, amplitude = "40 N*m" }]'
     if isinstance(value, str) and value.lower().endswith(".csv"):
         remedy = "use tn.load for a file beside the description, or excitation=tn.read_excitation(path)"
         raise InputError("names a file that is not known here", value=value, remedy=remedy)
-    if isinstance(value, str | dict | Excitation) or not isinstance(value, Iterable):
-        raise InputError("is not a list of harmonic torques", value=value, remedy=remedy)
-    made, wrong = [], []
-    for place, item in enumerate(value, start=1):
-        try:
-            if not isinstance(item, Excitation | dict):
-                raise InputError("is not a harmonic torque", value=item, remedy=remedy)
-            made.append(item if isinstance(item, Excitation) else Excitation(**item))
-        except InputError as error:
-            wrong.append(numbered(error, "excitation", place))
-    if wrong:
-        raise InputError.together(wrong)
-    return tuple(made)
+    return _READ(value)
 
 
 Excitations = Annotated[tuple[Excitation, ...], BeforeValidator(_tables)]

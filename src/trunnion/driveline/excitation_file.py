@@ -131,12 +131,10 @@ def _harmonic(source: str, order: float, rows: list[dict[str, float]], over: str
         raise InputError(f"has two rows for one {over}", **where, remedy="leave one of them out")
     if len(points) < 2:
         raise InputError(f"has one {over} only", **where, remedy="give two at least: the ends of the range")
+    table: dict[str, Any] = {f"{over}s": points, "amplitudes": tuple(row["amplitude"] for row in rows)}
+    if "phase" in rows[0]:
+        table["phases"] = tuple(row["phase"] for row in rows)
     try:
-        return Excitation(
-            order=order,
-            amplitudes=tuple(row["amplitude"] for row in rows),
-            phases=tuple(row["phase"] for row in rows) if "phase" in rows[0] else (),
-            **{f"{over}s": points},
-        )
+        return Excitation(order=order, **table)
     except InputError as error:
-        raise error.each(lambda one: InputError(one.problem, **where, value=one.value, remedy=one.remedy)) from None
+        raise error.each(lambda one: one.but(**where)) from None

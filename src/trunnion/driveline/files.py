@@ -24,24 +24,23 @@ import tomllib
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from trunnion.driveline.ball_joints import RIPPLE_KINDS
-from trunnion.driveline.clutches import SLIDER_KINDS
-from trunnion.driveline.driveline import Driveline, refuse_too_many
-from trunnion.driveline.elements import Disk, Element, is_name
-from trunnion.driveline.excitation import EXCITATION_KINDS
+from trunnion.driveline.chain import refuse_too_many
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.excitation_file import read_excitation
-from trunnion.driveline.gears import MESH_KINDS
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
-from trunnion.driveline.quantities import ANGLE, SPEED, Kind, written
+from trunnion.driveline.quantities import SPEED, Kind, written
+from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.tolerances import Tolerance
-from trunnion.errors import InputError, InputRemark, problems_of, short
+from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.writing import written_whole
 
 Made = TypeVar("Made")
@@ -54,8 +53,6 @@ _QUOTED = re.compile(
 )
 _DEEP_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{DEEPEST_KEY}}}")
 _DAMPING = ("damping_ratio", "damping_ratio_frequency")
-HARMONICS = {"excitation": EXCITATION_KINDS, **MESH_KINDS, **RIPPLE_KINDS, **SLIDER_KINDS}
-"""Keys that hold tables of harmonics, and the physical kinds of their quantities."""
 TOP_KEYS = (
     "format",
     "name",
@@ -94,15 +91,13 @@ def _loads(text: str, source: str, folder: Path | None) -> Driveline:
 def dumps(line: Driveline) -> str:
     """`line` as TOML text that reads back as an equal driveline."""
     top: dict[str, Any] = {"format": FORMAT}
-    for key in ("name", "description", "damping_ratio"):
-        if getattr(line, key) is not None:
-            top[key] = getattr(line, key)
-    if line.damping_ratio_frequency is not None:
-        top["damping_ratio_frequency"] = written(line.damping_ratio_frequency, SPEED, "Hz")
+    for key in ("name", "description", *_DAMPING):
+        if (value := getattr(line, key)) is not None:
+            top[key] = _written(value, line.quantity_of(key))
     blocks = [_block("", top)]
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
-    blocks += [_block("[[limit]]", _written_limit(limit)) for limit in line.limits]
+    blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
     for tolerance in line.tolerances:
         blocks += _tolerance_blocks(tolerance)
     for element in line.elements:
@@ -234,16 +229,7 @@ def _elements(tables: Any, source: str, folder: Path | None) -> list[Element]:
         raise InputError("has no elements", key="element", remedy=remedy)
     refuse_too_many(len(tables))
     seen: Counter[str] = Counter()
-    made: list[Element] = []
-    wrong: list[InputError] = []
-    for place, table in enumerate(tables, start=1):
-        try:
-            made.append(_element(table, place, seen, source, folder))
-        except InputError as error:
-            wrong += error.problems
-    if wrong:
-        raise InputError.together(wrong)
-    return made
+    return all_made(partial(_element, table, i, seen, source, folder) for i, table in enumerate(tables, start=1))
 
 
 def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Path | None) -> Element:
@@ -284,8 +270,7 @@ def _limit_elsewhere(error: InputError, name: str | None) -> InputError:
     if error.key not in LIMIT_KINDS:
         return error
     of = f'of = "{name}" and ' if name else "of and "
-    remedy = f"limits stand in tables of their own: write [[limit]] with {of}{error.key}"
-    return InputError(error.problem, element=error.element, key=error.key, value=error.value, remedy=remedy)
+    return error.but(remedy=f"limits stand in tables of their own: write [[limit]] with {of}{error.key}")
 
 
 def _operation(table: Any) -> Operation:
@@ -293,7 +278,7 @@ def _operation(table: Any) -> Operation:
         raise InputError("is not a table", key="operation", value=table, remedy="write [operation] on its own line")
     data = dict(table)
     wrong: list[InputError] = []
-    made: dict[str, list[Any]] = {}
+    made: dict[str, Any] = {}
     for key, make in (("load_case", LoadCase), ("schedule", Schedule)):
         many = f"{key}s"
         if many in data:  # the name in Python; a file repeats [[operation.load_case]]
@@ -331,24 +316,17 @@ def _each(tables: Any, what: str, make: Callable[..., Made]) -> list[Made]:
     if not isinstance(tables, list):
         remedy = f"write [[{what}]] with double brackets"
         raise InputError("is a single table", key=what, remedy=remedy)
-    made: list[Made] = []
-    wrong: list[InputError] = []
-    for place, table in enumerate(tables, start=1):
+
+    def one(place: int, table: Any) -> Made:
         label = f"{what} {place}"
         if not isinstance(table, dict):
-            wrong.append(InputError("is not a table", element=label, value=table, remedy=f"write [[{what}]]"))
-            continue
+            raise InputError("is not a table", element=label, value=table, remedy=f"write [[{what}]]")
         try:
-            made.append(make(**table))
+            return make(**table)
         except InputError as error:
-            wrong += (error if isinstance(table.get("of"), str) else about(error, label)).problems
-    if wrong:
-        raise InputError.together(wrong)
-    return made
+            raise (error if isinstance(table.get("of"), str) else about(error, label)) from None
 
-
-def _written_limit(limit: Limit) -> dict[str, Any]:
-    return {k: written(v, LIMIT_KINDS[k]) if k in LIMIT_KINDS else v for k, v in limit.stated.items()}
+    return all_made(partial(one, place, table) for place, table in enumerate(tables, start=1))
 
 
 def _located(error: InputError, source: str) -> InputError:
@@ -359,24 +337,23 @@ def _located(error: InputError, source: str) -> InputError:
 def _located_one(error: InputError, source: str) -> InputError:
     element = f"{source}: {error.element}" if error.element else ""
     key = error.key if error.element else f"{source}: {error.key}" if error.key else source
-    return InputError(error.problem, element=element, key=key, value=error.value, remedy=error.remedy)
+    return error.but(element=element, key=key)
 
 
 def _element_blocks(element: Element) -> list[str]:
-    table: dict[str, Any] = {"type": element.kind}
-    blocks = []
-    for key, value in element.stated.items():
-        kind = element.quantity_of(key)
-        if key in HARMONICS:
-            kinds = HARMONICS[key]
-            for harmonic in value:
-                stated = {k: _written(v, kinds.get(k)) for k, v in harmonic.stated.items()}
-                blocks.append(_block(f"[[element.{key}]]", stated))
-        elif isinstance(value, tuple):
-            table[key] = [v if kind is None else written(v, kind) for v in value]
-        else:
-            table[key] = value if kind is None else written(value, kind)
-    return [_block("[[element]]", table), *blocks]
+    stated = element.stated
+    nested = {key: v for key, v in stated.items() if isinstance(v, tuple) and isinstance(v[0], Record)}
+    table = {"type": element.kind, **_table(element, *nested)}
+    return [
+        _block("[[element]]", table),
+        *(_block(f"[[element.{key}]]", _table(one)) for key, several in nested.items() for one in several),
+    ]
+
+
+def _table(record: Record, *without: str, speed_unit: str | None = None) -> dict[str, Any]:
+    """What it states, as a file does; speeds in their own unit."""
+    stated = {key: value for key, value in record.stated.items() if key not in without}
+    return {key: _written(value, record.quantity_of(key), speed_unit) for key, value in stated.items()}
 
 
 def _tolerance_blocks(tolerance: Tolerance) -> list[str]:
@@ -386,35 +363,24 @@ def _tolerance_blocks(tolerance: Tolerance) -> list[str]:
     return [_block("[[tolerance]]", plain), *(_block(f"[tolerance.{key}]", value) for key, value in normal.items())]
 
 
-def _written(value: Any, kind: Kind | None) -> Any:
+def _written(value: Any, kind: Kind | None, speed_unit: str | None = None) -> Any:
     if isinstance(value, tuple):
-        return [_written(v, kind) for v in value]
-    return value if kind is None else written(value, kind)
+        return [_written(v, kind, speed_unit) for v in value]
+    return value if kind is None else written(value, kind, speed_unit if kind is SPEED else None)
 
 
 def _operation_blocks(operation: Operation) -> list[str]:
-    def ends(values: tuple[float, float], kind: Kind, unit: str | None) -> list[float | str]:
-        return [written(value, kind, unit) for value in values]
-
-    table: dict[str, Any] = {}
-    if operation.speed is not None:
-        table["speed"] = written(operation.speed, SPEED, operation.speed_unit)
-    if operation.speed_range is not None:
-        table["speed_range"] = ends(operation.speed_range, SPEED, operation.speed_unit)
-    if operation.angle_range is not None:
-        table["angle_range"] = ends(operation.angle_range, ANGLE, None)
-    if operation.speed_unit != "rpm":
-        table["speed_unit"] = operation.speed_unit
+    unit = operation.speed_unit
+    table = _table(operation, "load_cases", "schedules", speed_unit=unit)
     blocks = [_block("[operation]", table)]
     for case in operation.load_cases:
         blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
         blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
     for one in operation.schedules:
-        unit = operation.speed_unit if one.over == "speed" else None
-        points = [written(value, OVER[one.over], unit) for value in one.points]
+        points = _written(one.points, OVER[one.over], unit)
         blocks.append(_block("[[operation.schedule]]", {"name": one.name, one.over: points}))
         for key, kind in FOLLOWING.items():
-            columns = {n: [written(v, kind) for v in numbers] for n, numbers in getattr(one, key).items()}
+            columns = {n: _written(numbers, kind) for n, numbers in getattr(one, key).items()}
             if columns:
                 blocks.append(_block(f"[operation.schedule.{key}]", columns))
     return blocks

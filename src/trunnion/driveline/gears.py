@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from math import cos
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Element, Teeth
+from trunnion.driveline.elements import Doubt, Element, Teeth, not_negative, positive
 from trunnion.driveline.quantities import (
-    ANGLE,
     DEGREE,
-    LENGTH,
-    RATIO,
     Angle,
     Dimensionless,
-    Kind,
     Length,
     MeshDamping,
     MeshStiffness,
 )
-from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
 
 DampingLaw = Literal["always", "in contact", "never pulling"]
@@ -33,20 +29,11 @@ STEEPEST = 45 * DEGREE
 """Pressure angles are less than this."""
 
 
-class _MeshHarmonic(BaseModel):
+class _MeshHarmonic(Record):
     """A harmonic of the mesh: amplitude · cos(order · mesh phase + phase); the phase grows by a turn per tooth."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-    what: ClassVar[str] = ""
-    example: ClassVar[str] = ""
     order: Dimensionless = Field(default=1.0, description="cycles per tooth")
     phase: Angle = Field(default=0.0, description="at zero rotation")
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise refuse(error, type(self), data, element=self.what, example=self.example) from None
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -54,11 +41,6 @@ class _MeshHarmonic(BaseModel):
             remedy = "1 is once per tooth"
             raise InputError("must be a whole number from 1", key="order", value=self.order, remedy=remedy)
         return self
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The fields that differ from their defaults."""
-        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
 
 
 class TransmissionError(_MeshHarmonic):
@@ -89,33 +71,6 @@ class StiffnessVariation(_MeshHarmonic):
     what: ClassVar[str] = "stiffness_variation"
     example: ClassVar[str] = "share = 0.1"
     share: Dimensionless = Field(description="amplitude over the mean stiffness")
-
-
-MESH_KINDS: dict[str, dict[str, Kind]] = {
-    "transmission_error": {"amplitude": LENGTH, "order": RATIO, "phase": ANGLE},
-    "stiffness_variation": {"share": RATIO, "order": RATIO, "phase": ANGLE},
-}
-"""Physical kinds of what varies with the mesh phase."""
-
-
-def _listed(made: type[_MeshHarmonic]) -> Callable[[object], tuple[_MeshHarmonic, ...]]:
-    def check(value: object) -> tuple[_MeshHarmonic, ...]:
-        remedy = f"write {made.what} = [{{ {made.example} }}]"
-        if isinstance(value, str | dict | _MeshHarmonic) or not isinstance(value, Iterable):
-            raise InputError("is not a list of harmonics", value=value, remedy=remedy)
-        found, wrong = [], []
-        for place, item in enumerate(value, start=1):
-            try:
-                if not isinstance(item, made | dict):
-                    raise InputError("is not a harmonic", value=item, remedy=remedy)
-                found.append(made(**item) if isinstance(item, dict) else item)
-            except InputError as error:
-                wrong.append(numbered(error, made.what, place))
-        if wrong:
-            raise InputError.together(wrong)
-        return tuple(found)
-
-    return check
 
 
 class GearPair(Element):
@@ -163,12 +118,12 @@ class GearPair(Element):
     stiffness_ratio: Dimensionless = Field(
         default=0.0, description="slope inside the backlash over that outside; 0: free play, as by default"
     )
-    transmission_error: Annotated[tuple[TransmissionError, ...], BeforeValidator(_listed(TransmissionError))] = Field(
-        default=(), description="harmonics of the transmission error in the mesh phase"
-    )
-    stiffness_variation: Annotated[tuple[StiffnessVariation, ...], BeforeValidator(_listed(StiffnessVariation))] = (
-        Field(default=(), description="harmonics of the mesh stiffness over its mean")
-    )
+    transmission_error: Annotated[
+        tuple[TransmissionError, ...], BeforeValidator(listed(TransmissionError, "harmonic"))
+    ] = Field(default=(), description="harmonics of the transmission error in the mesh phase")
+    stiffness_variation: Annotated[
+        tuple[StiffnessVariation, ...], BeforeValidator(listed(StiffnessVariation, "harmonic"))
+    ] = Field(default=(), description="harmonics of the mesh stiffness over its mean")
 
     @model_validator(mode="before")
     @classmethod
@@ -204,10 +159,7 @@ class GearPair(Element):
         if missing is not None:
             missing = missing if given else "teeth_in"
             raise InputError("is missing", key=missing, remedy=f"write {self.example}")
-        for key in ("module", *plain, "mesh_stiffness"):
-            value = getattr(self, key)
-            if value is not None and not value > 0:
-                raise InputError("must be positive", key=key, value=value, remedy=self._advice(key))
+        positive(self, "module", *plain, "mesh_stiffness")
         if not 0 <= self.pressure_angle < STEEPEST:
             remedy = 'write "20 deg", say'
             raise InputError(
@@ -215,10 +167,7 @@ class GearPair(Element):
             )
 
     def _check_law(self) -> None:
-        for key in ("backlash", "angular_backlash", "mesh_damping"):
-            value = getattr(self, key)
-            if value < 0:
-                raise InputError("must not be negative", key=key, value=value, remedy="write 0 for none")
+        not_negative(self, "backlash", "angular_backlash", "mesh_damping", remedy="write 0 for none")
         if self.backlash and self.angular_backlash:
             raise InputError(
                 "stands beside backlash", key="angular_backlash", value=self.angular_backlash, remedy="leave out one"
@@ -236,10 +185,6 @@ class GearPair(Element):
             raise InputError(
                 "needs a backlash", key="damping_law", value=self.damping_law, remedy='give one, or write "always"'
             )
-
-    def _advice(self, key: str) -> str:
-        kind = self.quantity_of(key)
-        return f'write for example "{kind.example}"' if kind else ""
 
     def doubts(self) -> Iterator[Doubt]:
         if self.stiffness_ratio and not self.total_backlash:

@@ -103,7 +103,7 @@ class Layout:
             elements.append(HookeJoint(angle=float(self.angles[j]), plane=float(self.planes[j])))
             shaft = given[j + 1]
             if j < n - 1:
-                shaft = Shaft(**{**shaft.stated, "fork_offset": float(offsets[j])})
+                shaft = shaft.but(fork_offset=float(offsets[j]))
             elements.append(shaft)
         return Driveline([*elements, Disk(inertia=inertia, load_torque=load_torque)])
 
@@ -233,7 +233,7 @@ def _coordinate(value: Any, kind: Kind, key: str) -> float:
     try:
         return parse(value, kind)
     except InputError as error:
-        raise InputError(error.problem, element="layout", key=key, value=error.value, remedy=error.remedy) from None
+        raise error.but(element="layout", key=key) from None
 
 
 def combined_angle(vertical: float | str, horizontal: float | str) -> tuple[float, float]:

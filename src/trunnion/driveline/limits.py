@@ -13,33 +13,28 @@ A limit changes no motion; ``assess`` compares with it. What an element states o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.quantities import (
-    ACCELERATION,
-    ANGLE,
-    PRESSURE,
     RATIO,
-    SPEED,
-    TORQUE,
     Acceleration,
     Angle,
     Dimensionless,
-    Kind,
     Pressure,
     Speed,
     Torque,
     shown,
 )
-from trunnion.driveline.refusals import nearest, numbered, refuse
+from trunnion.driveline.record import listed
+from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
@@ -55,20 +50,6 @@ SHIP_SHAFTS = {
     "propeller shaft forward": 0.80,
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
-
-LIMIT_KINDS: dict[str, Kind] = {
-    "max_torque": TORQUE,
-    "vibratory_torque": TORQUE,
-    "transient_vibratory_torque": TORQUE,
-    "max_stress": PRESSURE,
-    "max_twist": ANGLE,
-    "max_speed_fluctuation": SPEED,
-    "max_acceleration": ACCELERATION,
-    "margin": RATIO,
-    "temperature_factor": RATIO,
-    "starting_factor": RATIO,
-}
-"""Physical kinds of its quantities."""
 
 _SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
@@ -94,7 +75,7 @@ def _ship_shaft(value: object) -> object:
     raise InputError("is not a design feature of a ship's shaft", value=value, remedy=remedy)
 
 
-class Limit(BaseModel):
+class Limit(Addressed):
     """Limits of one element or of all elements of a kind.
 
     Parameters
@@ -117,9 +98,9 @@ class Limit(BaseModel):
     InputError : nothing limited, or a number that is not positive.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "limit"
+    example: ClassVar[str] = 'of = "Shaft 1"'
 
-    of: str = Field(description='name of the element, or "Shaft *" for all of a kind')
     max_torque: Torque | None = Field(default=None, description="largest torque, mean and vibratory together")
     vibratory_torque: Torque | None = Field(default=None, description="half of peak-to-peak, continuously")
     transient_vibratory_torque: Torque | None = Field(
@@ -138,22 +119,14 @@ class Limit(BaseModel):
         description="judge the shaft by IACS UR M68, as one with this design feature",
     )
 
-    def __init__(self, **data: Any) -> None:
-        label = f"limit of {data['of']}" if isinstance(data.get("of"), str) else "limit"
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise refuse(error, type(self), data, element=label, example='of = "Shaft 1"') from None
-
     @model_validator(mode="after")
     def _sensible(self) -> Self:
-        stated = [key for key in self.stated if key not in ("of", "margin")]
-        if not stated:
+        if not self.limited:
             raise InputError("limits nothing", key="of", value=self.of, remedy='write max_torque = "4 kN*m", say')
-        for key in stated:
-            if key in LIMIT_KINDS and not getattr(self, key) > 0:
-                example = LIMIT_KINDS[key].example
-                raise InputError("must be positive", key=key, value=getattr(self, key), remedy=f'write "{example}"')
+        for key, value in self.limited.items():
+            kind = self.quantity_of(key)
+            if kind is not None and not value > 0:
+                raise InputError("must be positive", key=key, value=value, remedy=f'write "{kind.example}"')
         if not 0 <= self.margin < 1:
             remedy = 'write "10 %", say: the share that must stay free'
             raise InputError("must be at least 0 and below 1", key="margin", value=self.margin, remedy=remedy)
@@ -171,35 +144,28 @@ class Limit(BaseModel):
         return self
 
     @property
-    def stated(self) -> dict[str, Any]:
-        """The fields that differ from their defaults."""
-        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
+    def limited(self) -> dict[str, Any]:
+        """What it limits, by key."""
+        return {key: value for key, value in self.stated.items() if key not in ("of", "margin")}
 
     @property
-    def kind(self) -> str | None:
-        """The kind of element it holds for; None where ``of`` names one element."""
-        owner, star = self.of[:-2], self.of[-2:]
-        return owner if star == " *" else None
+    def shown(self) -> dict[str, object]:
+        """What it limits as an engineer writes it: it is kept in SI, in which nobody would know it again."""
+        return {key: _with_unit(key, value) for key, value in self.limited.items()}
+
+    def wrong_for(self, key: str, concerned: Elements, where: Where) -> Iterator[InputError]:
+        """That none of the elements ``concerned`` can have a limit."""
+        lacking = [_lacks(element, key) for _, element in concerned]
+        if all(lacking):
+            yield InputError(lacking[0] or "", **where, remedy=_remedy(concerned[0][1], key))
 
 
-def _tables(value: object) -> tuple[Limit, ...]:
-    remedy = 'write limits=[tn.Limit(of="Shaft 1", max_torque="4 kN*m")]'
-    if isinstance(value, str | dict | Limit) or not isinstance(value, Iterable):
-        raise InputError("is not a list of limits", value=value, remedy=remedy)
-    made, wrong = [], []
-    for place, item in enumerate(value, start=1):
-        try:
-            if not isinstance(item, Limit | dict):
-                raise InputError("is not a limit", value=item, remedy=remedy)
-            made.append(item if isinstance(item, Limit) else Limit(**item))
-        except InputError as error:
-            wrong.append(error if isinstance(item, dict) and "of" in item else numbered(error, "limit", place))
-    if wrong:
-        raise InputError.together(wrong)
-    return tuple(made)
-
-
-Limits = Annotated[tuple[Limit, ...], BeforeValidator(_tables)]
+LIMIT_KINDS = {key: kind for key in Limit.model_fields if (kind := Limit.quantity_of(key)) is not None}
+"""Physical kinds of its quantities."""
+Limits = Annotated[
+    tuple[Limit, ...],
+    BeforeValidator(listed(Limit, "limit", 'write limits=[tn.Limit(of="Shaft 1", max_torque="4 kN*m")]', owner="of")),
+]
 
 
 @dataclass(frozen=True)
@@ -212,45 +178,18 @@ class OneLimit:
     margin: float
 
 
-def limits_of(limits: Sequence[Limit], names: Sequence[str], elements: Sequence[Element]) -> tuple[OneLimit, ...]:
+def limits_of(limits: Sequence[Limit], parts: Elements) -> tuple[OneLimit, ...]:
     """Every limit that holds, by element; one stated for an element goes before that of its kind."""
     found: dict[tuple[str, str], OneLimit] = {}
-    for limit in sorted(limits, key=lambda one: one.kind is None):  # the element's own last, so that it stays
-        for name, element in zip(names, elements, strict=True):
-            if name != limit.of and element.kind != limit.kind:
-                continue
-            for key, value in limit.stated.items():
-                if key not in ("of", "margin") and _lacks(element, key) is None:
-                    found[name, key] = OneLimit(name, key, value, limit.margin)
-    place = {name: i for i, name in enumerate(names)}
+    for limit, name, element in in_turn(limits, parts):
+        for key, value in limit.limited.items():
+            if _lacks(element, key) is None:
+                found[name, key] = OneLimit(name, key, value, limit.margin)
+    place = {name: i for i, (name, _) in enumerate(parts)}
     return tuple(sorted(found.values(), key=lambda one: place[one.element]))
 
 
-def wrong_limits(limits: Sequence[Limit], names: Sequence[str], elements: Sequence[Element]) -> Iterator[InputError]:
-    """Limits of no element, of elements that cannot have them, or stated twice."""
-    seen: set[tuple[str, str]] = set()
-    for limit in limits:
-        label = f"limit of {limit.of}"
-        concerned = [e for n, e in zip(names, elements, strict=True) if limit.of == n or limit.kind == e.kind]
-        if not concerned:
-            known = [*names, *(f"{kind} *" for kind in dict.fromkeys(e.kind for e in elements))]
-            problem = "has no element in this driveline" if limit.kind in KINDS else "is not an element"
-            yield InputError(problem, element="limit", key="of", value=limit.of, remedy=nearest(limit.of, known))
-            continue
-        for key, value in limit.stated.items():
-            if key in ("of", "margin"):
-                continue
-            where: dict[str, Any] = {"element": label, "key": key, "value": _with_unit(key, value)}
-            lacking = [_lacks(element, key) for element in concerned]
-            if all(lacking):
-                yield InputError(lacking[0] or "", **where, remedy=_remedy(concerned[0], key))
-            if (limit.of, key) in seen:
-                yield InputError("is stated twice", **where, remedy="leave one of the two out")
-            seen.add((limit.of, key))
-
-
 def _with_unit(key: str, value: object) -> object:
-    """A limit as an engineer writes it: it is kept in SI, in which nobody would know it again."""
     return shown(value, LIMIT_KINDS[key]) if isinstance(value, float) and LIMIT_KINDS[key] is not RATIO else value
 
 

@@ -34,7 +34,7 @@ def operating_speed(line: Driveline, speed: float | None) -> float:
     try:
         return parse(read, SPEED)
     except InputError as error:
-        raise InputError(error.problem, key="speed", value=read, remedy=error.remedy) from None
+        raise error.but(key="speed", value=read) from None
 
 
 def _float(number: float) -> float:

@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Annotated, Any, Literal, Self
+from functools import partial
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    WithJsonSchema,
-    field_validator,
-    model_validator,
-)
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
-from trunnion.driveline.elements import Name, is_name
 from trunnion.driveline.quantities import (
     ANGLE,
     DEGREE,
     SPEED,
     TORQUE,
+    Angle,
     Kind,
     Speed,
     Torque,
     json_schema_of,
     parse,
 )
-from trunnion.driveline.refusals import nearest, refuse
+from trunnion.driveline.record import Name, Named, Record, by_name
+from trunnion.driveline.refusals import nearest
 from trunnion.driveline.schedules import Schedule
 from trunnion.errors import InputError
 
@@ -55,8 +48,8 @@ def _range_of(kind: Kind, example: str) -> tuple[BeforeValidator, WithJsonSchema
 
 _READ_SPEEDS, _SPEEDS_SCHEMA = _range_of(SPEED, '["300 rpm", "2400 rpm"]')
 _READ_ANGLES, _ANGLES_SCHEMA = _range_of(ANGLE, '["0 deg", "15 deg"]')
-SpeedRange = Annotated[tuple[float, float], _READ_SPEEDS, _SPEEDS_SCHEMA]
-AngleRange = Annotated[tuple[float, float], _READ_ANGLES, _ANGLES_SCHEMA]
+SpeedRange = Annotated[tuple[Speed, Speed], _READ_SPEEDS, _SPEEDS_SCHEMA]
+AngleRange = Annotated[tuple[Angle, Angle], _READ_ANGLES, _ANGLES_SCHEMA]
 
 
 def _speed_unit(value: object) -> object:
@@ -66,22 +59,10 @@ def _speed_unit(value: object) -> object:
     return value
 
 
-def _torques(value: object) -> dict[str, float]:
-    if not isinstance(value, dict):
-        remedy = 'write loads = { "Disk 2" = "250 N*m" }'
-        raise InputError("is not a table of torques", value=value, remedy=remedy)
-    torques, wrong = {}, []
-    for name, torque in value.items():
-        try:
-            torques[str(name)] = parse(torque, TORQUE)
-        except InputError as error:
-            wrong.append(InputError(error.problem, key=str(name), value=torque, remedy=error.remedy))
-    if wrong:
-        raise InputError.together(wrong)
-    return torques
+_TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }')
 
 
-class LoadCase(BaseModel):
+class LoadCase(Named):
     """A named set of load torques.
 
     Parameters
@@ -91,26 +72,16 @@ class LoadCase(BaseModel):
         not named keep their own.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "load case"
+    example: ClassVar[str] = 'name = "full load" and loads = { "Disk 2" = "250 N*m" }'
 
     name: Name = Field(description="what the load case is called")
-    loads: Annotated[dict[str, Torque], BeforeValidator(_torques)] = Field(
+    loads: Annotated[dict[str, Torque], BeforeValidator(_TORQUES)] = Field(
         description="load torque by the name of the Disk; positive resists rotation"
     )
 
-    def __init__(self, **data: Any) -> None:
-        label = f"load case {data['name']}" if is_name(data.get("name")) else "load case"
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            example = 'name = "full load" and loads = { "Disk 2" = "250 N*m" }'
-            raise refuse(error, type(self), data, element=label, example=example) from None
 
-    def __hash__(self) -> int:
-        return hash((self.name, frozenset(self.loads.items())))
-
-
-class Operation(BaseModel):
+class Operation(Record):
     """Where a driveline runs.
 
     Parameters
@@ -123,7 +94,7 @@ class Operation(BaseModel):
     schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "operation"
 
     speed: Speed | None = Field(default=None, description="input speed")
     speed_range: SpeedRange | None = Field(default=None, description="lowest and highest input speed")
@@ -133,12 +104,6 @@ class Operation(BaseModel):
     )
     load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = Field(default=(), description="angles over travel and torques over speed")
-
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise refuse(error, type(self), data, element="operation") from None
 
     @field_validator("speed")
     @classmethod
@@ -169,16 +134,19 @@ class Operation(BaseModel):
 
     def load_case(self, name: str) -> LoadCase:
         """The load case called `name`; InputError with the nearest name where there is none."""
-        for case in self.load_cases:
-            if case.name == name:
-                return case
-        remedy = nearest(name, [case.name for case in self.load_cases])
-        raise InputError("is not a load case of this driveline", key="load_case", value=name, remedy=remedy)
+        return _one_called(name, LoadCase, self.load_cases)
 
     def schedule(self, name: str) -> Schedule:
         """The schedule called `name`; InputError with the nearest name where there is none."""
-        for one in self.schedules:
-            if one.name == name:
-                return one
-        remedy = nearest(name, [one.name for one in self.schedules])
-        raise InputError("is not a schedule of this driveline", key="schedule", value=name, remedy=remedy)
+        return _one_called(name, Schedule, self.schedules)
+
+
+One = TypeVar("One", LoadCase, Schedule)
+
+
+def _one_called(name: str, kind: type[One], known: tuple[One, ...]) -> One:
+    for one in known:
+        if one.name == name:
+            return one
+    key, remedy = kind.what.replace(" ", "_"), nearest(name, [one.name for one in known])
+    raise InputError(f"is not a {kind.what} of this driveline", key=key, value=name, remedy=remedy)

@@ -174,7 +174,7 @@ def _parse_text(text: str, kind: Kind) -> float:
     try:
         return _scaled(number, _factor(unit, kind))
     except InputError as error:
-        raise InputError(error.problem, value=text, remedy=error.remedy) from None
+        raise error.but(value=text) from None
 
 
 @cache

@@ -27,16 +27,12 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 def about(error: InputError, element: str) -> InputError:
     """The same complaints about an element by a better name."""
-    return error.each(
-        lambda one: InputError(one.problem, element=element, key=one.key, value=one.value, remedy=one.remedy)
-    )
+    return error.each(lambda one: one.but(element=element))
 
 
 def numbered(error: InputError, what: str, place: int) -> InputError:
     """The same complaints about the entry at ``place`` of a list of ``what``."""
-    return error.each(
-        lambda one: InputError(one.problem, key=f"{what} {place} {one.key}".strip(), value=one.value, remedy=one.remedy)
-    )
+    return error.each(lambda one: one.but(element="", key=f"{what} {place} {one.key}".strip()))
 
 
 def refuse(
@@ -82,13 +78,7 @@ def _complaint(
 def _placed(cause: InputError, key: str, given: dict[str, Any], element: str) -> InputError:
     key = cause.key or key
     value = None if cause.element else given.get(key)  # as it was written, "95 deg" rather than 1.658
-    return InputError(
-        cause.problem,
-        element=cause.element or element,
-        key=key,
-        value=cause.value if value is None else value,
-        remedy=cause.remedy,
-    )
+    return cause.but(element=cause.element or element, key=key, value=cause.value if value is None else value)
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}

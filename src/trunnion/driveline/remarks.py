@@ -8,22 +8,19 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from math import inf, isfinite
-from typing import TYPE_CHECKING
 
+from trunnion.driveline.chain import Chain
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.driveline.stages import PiecewiseShaft
-
-if TYPE_CHECKING:
-    from trunnion.driveline.driveline import Driveline
 
 HELD, SERIES = "excitation of a held disk", "unlike damping in series"
 ALIKE = 1e-9
 """Relative difference of two c/k that counts as none."""
 
 
-def held_excitations(line: Driveline) -> tuple[str, ...]:
+def held_excitations(line: Chain) -> tuple[str, ...]:
     """Disks with an excitation whose rotation a ConstantSpeed holds: no shaft stands between."""
     group = _groups(line)
     fixed = {g for g, element in zip(group, line.elements, strict=True) if isinstance(element, ConstantSpeed)}
@@ -34,7 +31,7 @@ def held_excitations(line: Driveline) -> tuple[str, ...]:
     )
 
 
-def unlike_in_series(line: Driveline) -> tuple[tuple[tuple[str, ...], float], ...]:
+def unlike_in_series(line: Chain) -> tuple[tuple[tuple[str, ...], float], ...]:
     """Springs in series without inertia between them whose c/k or loss factors differ.
 
     Names, and the lowest k/c [rad/s] (infinite without c) of each row.
@@ -65,7 +62,7 @@ def unlike_in_series(line: Driveline) -> tuple[tuple[tuple[str, ...], float], ..
     return tuple(found)
 
 
-def remarks(line: Driveline) -> Iterator[tuple[str, str]]:
+def remarks(line: Chain) -> Iterator[tuple[str, str]]:
     """The feature (see ``trunnion.driveline.features``) and one sentence with its remedy."""
     for name in held_excitations(line):
         yield (
@@ -82,7 +79,7 @@ def remarks(line: Driveline) -> Iterator[tuple[str, str]]:
         )
 
 
-def _groups(line: Driveline) -> list[int]:
+def _groups(line: Chain) -> list[int]:
     """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
     group: list[int] = []
     for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
@@ -91,13 +88,13 @@ def _groups(line: Driveline) -> list[int]:
     return group
 
 
-def _near(line: Driveline, group: list[int], spring: int) -> int:
+def _near(line: Chain, group: list[int], spring: int) -> int:
     """The group in front of a spring; -1, which holds nothing, where the line begins with the spring."""
     parent = line.parents[spring]
     return -1 if parent is None else group[parent]
 
 
-def _damping(line: Driveline, spring: int) -> tuple[float, float]:
+def _damping(line: Chain, spring: int) -> tuple[float, float]:
     """c/k [s], and the loss factor that holds at all frequencies; one of them is 0."""
     element = line.elements[spring]
     assert isinstance(element, Spring)

@@ -18,14 +18,14 @@ motion by itself; ``envelope`` goes by it, and ``Driveline.at_schedule`` gives t
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from trunnion.driveline.elements import Name, is_name
 from trunnion.driveline.quantities import ANGLE, LENGTH, SPEED, TORQUE, Kind, json_schema_of, parse
-from trunnion.driveline.refusals import refuse
+from trunnion.driveline.record import Name, Named, by_name
 from trunnion.errors import InputError
 
 OVER = {"travel": LENGTH, "speed": SPEED}
@@ -56,20 +56,8 @@ def _rising(kind: Kind) -> tuple[BeforeValidator, WithJsonSchema]:
 def _columns(kind: Kind, key: str, owner: str) -> tuple[BeforeValidator, WithJsonSchema]:
     example = f'write {key} = {{ "{owner}" = ["{kind.example}", …] }}'
 
-    def read(value: Any) -> dict[str, tuple[float, ...]]:
-        if not isinstance(value, dict):
-            raise InputError("is not a table of lists", value=value, remedy=example)
-        found, wrong = {}, []
-        for name, numbers in value.items():
-            try:
-                found[str(name)] = _list_of(kind, numbers)
-            except InputError as error:
-                wrong.append(InputError(error.problem, key=str(name), value=numbers, remedy=error.remedy))
-        if wrong:
-            raise InputError.together(wrong)
-        return found
-
     items = {"type": "array", "items": json_schema_of(kind), "minItems": 2}
+    read = by_name(partial(_list_of, kind), "is not a table of lists", example)
     return BeforeValidator(read), WithJsonSchema({"type": "object", "additionalProperties": items})
 
 
@@ -79,7 +67,7 @@ _READ_ANGLES, _ANGLES = _columns(ANGLE, "angles", "HookeJoint 1")
 _READ_LOADS, _LOADS = _columns(TORQUE, "loads", "Disk 2")
 
 
-class Schedule(BaseModel):
+class Schedule(Named):
     """Numbers of elements over suspension travel or over speed.
 
     Parameters
@@ -94,7 +82,8 @@ class Schedule(BaseModel):
     InputError : neither or both of travel and speed; nothing that follows; lists of another length.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "schedule"
+    example: ClassVar[str] = 'name = "axle travel", travel = ["-60 mm", "90 mm"] and angles'
 
     name: Name = Field(description="what the schedule is called")
     travel: Annotated[tuple[float, ...] | None, _READ_TRAVEL, _TRAVEL] = Field(
@@ -109,14 +98,6 @@ class Schedule(BaseModel):
     loads: Annotated[dict[str, tuple[float, ...]], _READ_LOADS, _LOADS] = Field(
         default={}, description="load torques at the points, by the name of the Disk; positive resists rotation"
     )
-
-    def __init__(self, **data: Any) -> None:
-        label = f"schedule {data['name']}" if is_name(data.get("name")) else "schedule"
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            example = 'name = "axle travel", travel = ["-60 mm", "90 mm"] and angles'
-            raise refuse(error, type(self), data, element=label, example=example) from None
 
     @model_validator(mode="after")
     def _whole(self) -> Schedule:
@@ -139,9 +120,6 @@ class Schedule(BaseModel):
         if wrong:
             raise InputError.together(wrong)
         return self
-
-    def __hash__(self) -> int:
-        return hash((self.name, self.travel, self.speed, frozenset(self.angles.items()), frozenset(self.loads.items())))
 
     @property
     def over(self) -> str:

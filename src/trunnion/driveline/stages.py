@@ -8,24 +8,17 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Element
+from trunnion.driveline.elements import Doubt, Element, not_negative
 from trunnion.driveline.quantities import ANGLE, Angle, Damping, Stiffness, parse
+from trunnion.driveline.record import as_tuple
 from trunnion.errors import InputError
 
 LAWS = ("always", "in contact")
 
 
-def quantities(value: object) -> object:
-    """A list as a tuple.
-
-    Raises
-    ------
-    InputError : no list.
-    """
-    if isinstance(value, str | dict) or not isinstance(value, Iterable):
-        remedy = 'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say'
-        raise InputError("is not a list of quantities", value=value, remedy=remedy)
-    return tuple(value)
+quantities = as_tuple(
+    "quantities", 'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say'
+)
 
 
 class PiecewiseShaft(Element):
@@ -105,6 +98,5 @@ class PiecewiseShaft(Element):
             raise InputError("must not be negative", key="stiffnesses", value=min(self.stiffnesses))
         if not (max(self.stiffnesses) > 0 or self.slack):
             raise InputError("are all zero", key="stiffnesses", remedy="leave the shaft out, or give a stage stiffness")
-        if self.damping < 0:
-            raise InputError("must not be negative", key="damping", value=self.damping, remedy="write 0 for none")
+        not_negative(self, "damping", remedy="write 0 for none")
         return self

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from trunnion.driveline.chain import Chain
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
 from trunnion.driveline.shafts import Shaft
 
-if TYPE_CHECKING:
-    from trunnion.driveline.driveline import Driveline
 
-
-def summary(line: Driveline) -> str:
+def summary(line: Chain) -> str:
     """Title line, then name and numbers of each element."""
     width = max(len(name) for name in line.names)
     title = f"Driveline{f' {line.name!r}' if line.name else ''} of {len(line.elements)} elements"

@@ -18,37 +18,37 @@ from __future__ import annotations
 import difflib
 import math
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, Any, Literal
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, WithJsonSchema
+from pydantic import BeforeValidator, WithJsonSchema
 
+from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.elements import Element
-from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.packed_numbers import UNITS
-from trunnion.driveline.quantities import KINDS as QUANTITIES
-from trunnion.driveline.quantities import RATIO, Kind, parse, written
-from trunnion.driveline.refusals import nearest, numbered, refuse
+from trunnion.driveline.quantities import KINDS, RATIO, Kind, parse, written
+from trunnion.driveline.record import listed
+from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError, InputRemark
 
 FARTHEST = 3.0
 """Standard deviations that stand for the ends of a normal distribution, which has none."""
 LINES_OWN = ("speed", "damping_ratio", "damping_ratio_frequency")
 SCATTERING: dict[str, Kind] = {
-    key: next(kind for kind in QUANTITIES if kind.unit == unit) for key, unit in UNITS.items() if key not in LINES_OWN
+    key: next(kind for kind in KINDS if kind.unit == unit) for key, unit in UNITS.items() if key not in LINES_OWN
 }
 """Numbers of elements that can scatter, and their physical kinds."""
 _HOW = 'write "5 %", "0.5 deg", ["1 kN*m/rad", "2 kN*m/rad"] or { deviation = "2 %" }'
 
 
-class Scatter(BaseModel):
+@dataclass(frozen=True)
+class Scatter:
     """How one number scatters.
 
     form: "share" (± ``numbers[0]`` of the nominal value), "within" (± in SI), "range" (from, to, in SI), and the normal
     distributions "normal" and "deviation", whose standard deviation is a share, or in SI.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     key: str
     form: Literal["share", "within", "range", "normal", "deviation"]
@@ -83,7 +83,7 @@ class Scatter(BaseModel):
         return size if self.form in ("share", "within") else {"deviation": size}
 
 
-class Tolerance(BaseModel):
+class Tolerance(Addressed):
     """Tolerances of one element or of all elements of a kind, each of which scatters by itself.
 
     Parameters
@@ -98,14 +98,15 @@ class Tolerance(BaseModel):
     InputError : nothing scatters; what is no tolerance.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = "tolerance"
 
     of: str
     scatters: tuple[Scatter, ...]
 
     def __init__(self, of: object = None, **numbers: Any) -> None:
-        label = f"tolerance of {of}" if isinstance(of, str) else "tolerance"
-        wrong, made = [], []
+        label = self.called({"of": of})
+        wrong: list[InputError] = []
+        made: list[Scatter] = []
         if not isinstance(of, str):
             what = "is missing" if of is None else "is no name"
             wrong.append(InputError(what, element=label, key="of", value=of, remedy='write of = "Shaft 1", say'))
@@ -113,27 +114,35 @@ class Tolerance(BaseModel):
             try:
                 made.append(_scatter(key, value))
             except InputError as error:
-                wrong.append(InputError(error.problem, element=label, key=key, value=value, remedy=error.remedy))
+                wrong.append(error.but(element=label, key=key, value=value))
         if not numbers and not wrong:
             remedy = 'write stiffness = "5 %", say'
             wrong.append(InputError("lets nothing scatter", element=label, key="of", value=of, remedy=remedy))
         if wrong:
             raise InputError.together(wrong)
-        try:
-            super().__init__(of=of, scatters=tuple(sorted(made, key=lambda one: list(SCATTERING).index(one.key))))
-        except ValidationError as error:
-            raise refuse(error, type(self), {"of": of}, element=label) from None
-
-    @property
-    def kind(self) -> str | None:
-        """The kind of element it holds for; None where ``of`` names one element."""
-        owner, star = self.of[:-2], self.of[-2:]
-        return owner if star == " *" else None
+        stated: dict[str, Any] = {"of": of, "scatters": sorted(made, key=lambda one: list(SCATTERING).index(one.key))}
+        super().__init__(**stated)
 
     @property
     def written(self) -> dict[str, object]:
         """As a file states it."""
-        return {"of": self.of, **{one.key: one.written for one in self.scatters}}
+        return {"of": self.of, **self.shown}
+
+    @property
+    def shown(self) -> dict[str, object]:
+        """How each number scatters, as a file states it."""
+        return {one.key: one.written for one in self.scatters}
+
+    def wrong_for(self, key: str, concerned: Elements, where: Where) -> Iterator[InputError]:
+        """That none of the elements ``concerned`` states a number, or what it reaches and cannot be."""
+        scatter = next(one for one in self.scatters if one.key == key)
+        having = [(n, e, v) for n, e in concerned if (v := _nominal(e, key)) is not None]
+        if not having:
+            known = [one for one in SCATTERING if _nominal(concerned[0][1], one) is not None]
+            problem = f"is no number that {concerned[0][0]} states"
+            yield InputError(problem, **where, remedy=nearest(key, known))
+        for name, element, nominal in having:
+            yield from _impossible(where, name, element, scatter, nominal)
 
 
 def _scatter(key: str, value: object) -> Scatter:
@@ -171,77 +180,27 @@ def _size(value: object, kind: Kind) -> tuple[Literal["share", "within"], float]
     return "within" if absolute else "share", size
 
 
-def _tables(value: object) -> tuple[Tolerance, ...]:
-    remedy = 'write tolerances=[tn.Tolerance("Shaft 1", stiffness="5 %")]'
-    if isinstance(value, str | dict | Tolerance) or not isinstance(value, Iterable):
-        raise InputError("is not a list of tolerances", value=value, remedy=remedy)
-    made, wrong = [], []
-    for place, item in enumerate(value, start=1):
-        try:
-            if not isinstance(item, Tolerance | dict):
-                raise InputError("is not a tolerance", value=item, remedy=remedy)
-            made.append(item if isinstance(item, Tolerance) else Tolerance(**item))
-        except InputError as error:
-            wrong.append(error if isinstance(item, dict) and "of" in item else numbered(error, "tolerance", place))
-    if wrong:
-        raise InputError.together(wrong)
-    return tuple(made)
+Tolerances = Annotated[
+    tuple[Tolerance, ...],
+    BeforeValidator(
+        listed(Tolerance, "tolerance", 'write tolerances=[tn.Tolerance("Shaft 1", stiffness="5 %")]', owner="of")
+    ),
+    WithJsonSchema({"type": "array"}),
+]
 
 
-Tolerances = Annotated[tuple[Tolerance, ...], BeforeValidator(_tables), WithJsonSchema({"type": "array"})]
-
-
-def tolerances_of(
-    tolerances: Sequence[Tolerance], names: Sequence[str], elements: Sequence[Element]
-) -> dict[str, tuple[object, ...]]:
+def tolerances_of(tolerances: Sequence[Tolerance], parts: Elements) -> dict[str, tuple[object, ...]]:
     """What every number that scatters does so by, by path ("Shaft 1.stiffness"), as ``tolerance_study`` takes it."""
     found: dict[str, tuple[object, ...]] = {}
-    for one in sorted(tolerances, key=lambda t: t.kind is None):  # the element's own last, so that it stays
-        for name, element in zip(names, elements, strict=True):
-            if name != one.of and element.kind != one.kind:
-                continue
-            for scatter in one.scatters:
-                nominal = _nominal(element, scatter.key)
-                if nominal is not None:
-                    found[f"{name}.{scatter.key}"] = scatter.given(nominal)
+    for one, name, element in in_turn(tolerances, parts):
+        for scatter in one.scatters:
+            nominal = _nominal(element, scatter.key)
+            if nominal is not None:
+                found[f"{name}.{scatter.key}"] = scatter.given(nominal)
     return found
 
 
-def wrong_tolerances(
-    tolerances: Sequence[Tolerance], names: Sequence[str], elements: Sequence[Element]
-) -> Iterator[InputError]:
-    """Tolerances of no element, of numbers it does not state, stated twice, or beyond what it can have."""
-    seen: set[tuple[str, str]] = set()
-    for one in tolerances:
-        label = f"tolerance of {one.of}"
-        concerned = [
-            (n, e) for n, e in zip(names, elements, strict=True) if one.of == n or one.kind == e.kind
-        ]  # fmt: skip
-        if not concerned:
-            known = [*names, *(f"{kind} *" for kind in dict.fromkeys(e.kind for e in elements))]
-            problem = "has no element in this driveline" if one.kind in KINDS else "is not an element"
-            yield InputError(problem, element="tolerance", key="of", value=one.of, remedy=nearest(one.of, known))
-            continue
-        for scatter in one.scatters:
-            if (one.of, scatter.key) in seen:
-                yield InputError(
-                    "is stated twice", element=label, key=scatter.key, value=scatter.written,
-                    remedy="leave one of the two out",
-                )  # fmt: skip
-            seen.add((one.of, scatter.key))
-            having = [(n, e, v) for n, e in concerned if (v := _nominal(e, scatter.key)) is not None]
-            if not having:
-                known = [key for key in SCATTERING if _nominal(concerned[0][1], key) is not None]
-                yield InputError(
-                    f"is no number that {concerned[0][0]} states", element=label, key=scatter.key,
-                    value=scatter.written, remedy=nearest(scatter.key, known),
-                )  # fmt: skip
-            for name, element, nominal in having:
-                yield from _impossible(label, name, element, scatter, nominal)
-
-
-def _impossible(label: str, name: str, element: Element, scatter: Scatter, nominal: float) -> Iterator[InputError]:
-    where: dict[str, Any] = {"element": label, "key": scatter.key, "value": scatter.written}
+def _impossible(where: Where, name: str, element: Element, scatter: Scatter, nominal: float) -> Iterator[InputError]:
     if nominal == 0 and scatter.form in ("share", "normal"):
         example = f'a value with its unit, as "{SCATTERING[scatter.key].example}"'
         yield InputError(f"is a share of nothing: {name} states zero", **where, remedy=f"write {example}")
@@ -250,7 +209,7 @@ def _impossible(label: str, name: str, element: Element, scatter: Scatter, nomin
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", InputRemark)
-                type(element)(**{**element.stated, scatter.key: end})
+                element.but(**{scatter.key: end})
         except InputError as error:
             said = error.problems[0].problem
             yield InputError(

@@ -1,0 +1,140 @@
+"""Elements in order, each hanging on the one before it or on the one it names; what they are called."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cached_property, partial
+from typing import Any
+
+from pydantic import SerializeAsAny
+
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.quantities import Dimensionless, Frequency
+from trunnion.driveline.record import Name, Record
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError, problems_of
+
+MOST_ELEMENTS = 2000
+"""Ten times the longest line of practice; its matrices fit into a gigabyte."""
+
+
+class Chain(Record):
+    """What the elements of a driveline are without where it runs and what it bears: see ``Driveline``."""
+
+    elements: tuple[SerializeAsAny[Element], ...]
+    name: Name | None = None
+    description: str | None = None
+    damping_ratio: Dimensionless | None = None
+    damping_ratio_frequency: Frequency | None = None
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Name of every element: as given, or its kind and its ordinal among all of that kind ("Shaft 2")."""
+        seen: Counter[str] = Counter()
+        names = []
+        for element in self.elements:
+            seen[element.kind] += 1
+            names.append(element.name or f"{element.kind} {seen[element.kind]}")
+        return tuple(names)
+
+    @cached_property
+    def parents(self) -> tuple[int | None, ...]:
+        """Index of the element each one follows: the one named in ``after``, or the previous; first None."""
+        return tuple(_parent(self, i) for i in range(len(self.elements)))
+
+    def index(self, name: str) -> int:
+        """Place of the element called `name`; InputError with the nearest name where there is none."""
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise InputError(
+                "is not an element of this driveline", key=str(name), remedy=nearest(str(name), self.names)
+            ) from None
+
+    @cached_property
+    def parts(self) -> tuple[tuple[str, Element], ...]:
+        """Name and element, in order."""
+        return tuple(zip(self.names, self.elements, strict=True))
+
+
+def refuse_too_many(elements: int) -> None:
+    """Refuse what would fill the memory and the day before it is looked at.
+
+    Raises
+    ------
+    InputError : more than ``MOST_ELEMENTS``.
+    """
+    if elements > MOST_ELEMENTS:
+        # Of a chain of disks and shafts, with about twenty matrices of its states at a time.
+        memory = 20 * 8 * elements**2 / 1e9
+        raise InputError(
+            f"has {elements} elements, at most {MOST_ELEMENTS} are taken; stability would need {memory:.3g} GB",
+            element="driveline",
+            remedy="join neighbouring parts",
+        )
+
+
+def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
+    """The elements of a line.
+
+    Raises
+    ------
+    InputError : no list, none, too many, or something else among them.
+    """
+    remedy = "write tn.Driveline([tn.ConstantSpeed(), tn.Shaft(...), tn.Disk(...)])"
+    if isinstance(elements, Element) or not isinstance(elements, Iterable):
+        raise InputError(f"must be a list, not a {type(elements).__name__}", key="elements", remedy=remedy)
+    found = tuple(elements)
+    if not found:
+        raise InputError("has no elements", element="driveline", remedy=remedy)
+    refuse_too_many(len(found))
+    wrong = [
+        InputError("is not an element", element=f"element {i}", value=element, remedy=remedy)
+        for i, element in enumerate(found, start=1)
+        if not isinstance(element, Element)
+    ]
+    if wrong:
+        raise InputError.together(wrong)
+    return found
+
+
+def wrong_places(line: Chain) -> Iterator[InputError]:
+    """Names twice, branches from nowhere, drives in mid-line."""
+    wrong = [*_wrong_names(line.names), *problems_of(partial(_parent, line, i) for i in range(len(line.elements)))]
+    yield from wrong
+    if not wrong:
+        yield from _wrong_ends(line)
+
+
+def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
+    for name, count in Counter(names).items():
+        if count > 1:
+            places = [str(i) for i, n in enumerate(names, start=1) if n == name]
+            some = f"{', '.join(places[:3])} and {count - 3} more" if count > 4 else " and ".join(places)
+            yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
+
+
+def _parent(line: Chain, place: int) -> int | None:
+    after, name = line.elements[place].after, line.names[place]
+    if after is None:
+        return place - 1 if place else None
+    where: dict[str, Any] = {"element": name, "key": "after", "value": after}
+    if after not in line.names[:place]:
+        if after in line.names:
+            raise InputError("does not come earlier", **where, remedy=f"move {name} behind {after}")
+        raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
+    parent = line.names.index(after)
+    if not isinstance(line.elements[parent], Disk | ConstantSpeed | Ratio):
+        remedy = "branches leave from a Disk, a ConstantSpeed or a Ratio; put a Disk there"
+        raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
+    return parent
+
+
+def _wrong_ends(line: Chain) -> Iterator[InputError]:
+    """A prescribed rotation in mid-line would cut it into two independent ones."""
+    for i, element in enumerate(line.elements):
+        if isinstance(element, ConstantSpeed) and i > 0 and i in line.parents:
+            follower = line.names[line.parents.index(i)]
+            remedy = f"make it the first or the last of its branch, or hang {follower} elsewhere with after"
+            yield InputError("stands in the middle of the line", element=line.names[i], remedy=remedy)

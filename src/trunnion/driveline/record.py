@@ -1,0 +1,155 @@
+"""What all that a description states has in common: frozen values that refuse in sentences of ours, and lists of them.
+
+Numbers are quantities (``quantities.Quantity``), from which files, text and schema take their units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
+
+from trunnion.driveline.quantities import Kind, Quantity
+from trunnion.driveline.refusals import numbered, refuse
+from trunnion.errors import InputError, all_made
+
+LONGEST_NAME = 80
+
+
+def is_name(value: object) -> bool:
+    """Whether `value` can be a name: one line of text; no *, which stands for "all" in parameter paths."""
+    if not isinstance(value, str) or len(value) > LONGEST_NAME:
+        return False
+    return value == value.strip() != "" and value.isprintable() and "*" not in value
+
+
+def _name(value: object) -> object:
+    if not is_name(value):
+        remedy = f"write one line of text without * or outer blanks, of at most {LONGEST_NAME} characters"
+        raise InputError("is not a name", value=value, remedy=remedy)
+    return value
+
+
+Name = Annotated[str, BeforeValidator(_name)]
+
+
+class Record(BaseModel):
+    """Base of all that is stated: checks itself when it is made, with an InputError for all that is wrong.
+
+    ``what`` is how complaints call it, ``example`` what they offer where a key is missing.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    what: ClassVar[str] = ""
+    example: ClassVar[str] = ""
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise refuse(error, type(self), data, element=self.called(data), example=self.example) from None
+
+    @classmethod
+    def called(cls, data: dict[str, Any]) -> str:
+        """What complaints call the one that states ``data``."""
+        return cls.what
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The fields that differ from their defaults: ``type(e)(**e.stated) == e``."""
+        return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
+
+    def but(self, **changes: Any) -> Self:
+        """The same with fields changed; None takes a field away."""
+        fields = {**self.stated, **changes}
+        return type(self)(**{key: value for key, value in fields.items() if value is not None})
+
+    @classmethod
+    def quantity_of(cls, key: str) -> Kind | None:
+        """The physical kind of field `key`, or of the members of its list; None where it is no quantity."""
+        return _kind_in(cls.model_fields[key])
+
+
+def _kind_in(part: Any) -> Kind | None:
+    """The kind that a field, or what its annotation is made of, is marked with."""
+    inner = (part.annotation,) if isinstance(part, FieldInfo) else get_args(part)
+    for mark in (*getattr(part, "metadata", ()), *getattr(part, "__metadata__", ())):
+        if isinstance(mark, Quantity):
+            return mark.kind
+    return next((kind for one in inner if (kind := _kind_in(one)) is not None), None)
+
+
+class Named(Record):
+    """What has a ``name`` by which it is asked for, and tables by the names of elements."""
+
+    @classmethod
+    def called(cls, data: dict[str, Any]) -> str:
+        """What it is, and its name."""
+        return f"{cls.what} {data['name']}" if is_name(data.get("name")) else cls.what
+
+    def __hash__(self) -> int:
+        values = (getattr(self, key) for key in type(self).model_fields)
+        return hash(tuple(frozenset(one.items()) if isinstance(one, dict) else one for one in values))
+
+
+Made = TypeVar("Made", bound=Record)
+
+
+def listed(kind: type[Made], word: str, remedy: str = "", owner: str = "") -> Callable[[object], tuple[Made, ...]]:
+    """Reads a list of ``kind``, each made or as a table.
+
+    Parameters
+    ----------
+    word : one of them in messages.
+    remedy : how to write the list; by default as tables of a file.
+    owner : key by which complaints about one already say which; the others get their number.
+    """
+    remedy = remedy or f"write {kind.what} = [{{ {kind.example.replace(' and ', ', ')} }}]"
+
+    def one(place: int, item: object) -> Made:
+        try:
+            if not isinstance(item, kind | dict):
+                raise InputError(f"is not a {word}", value=item, remedy=remedy)
+            return kind(**item) if isinstance(item, dict) else item
+        except InputError as error:
+            if owner and isinstance(item, dict) and owner in item:
+                raise
+            raise numbered(error, kind.what, place) from None
+
+    def read(value: object) -> tuple[Made, ...]:
+        if isinstance(value, str | dict | Record) or not isinstance(value, Iterable):
+            raise InputError(f"is not a list of {word}s", value=value, remedy=remedy)
+        return tuple(all_made(partial(one, place, item) for place, item in enumerate(value, start=1)))
+
+    return read
+
+
+def as_tuple(members: str, remedy: str) -> Callable[[object], object]:
+    """Reads a list as a tuple, whose ``members`` a message names."""
+
+    def read(value: object) -> object:
+        if isinstance(value, str | dict) or not isinstance(value, Iterable):
+            raise InputError(f"is not a list of {members}", value=value, remedy=remedy)
+        return tuple(value)
+
+    return read
+
+
+def by_name(read: Callable[[object], Any], problem: str, remedy: str) -> Callable[[object], dict[str, Any]]:
+    """Reads a table of values by the names of elements, each with ``read``; ``problem``: what is no table."""
+
+    def one(name: object, value: object) -> tuple[str, Any]:
+        try:
+            return str(name), read(value)
+        except InputError as error:
+            raise error.but(key=str(name), value=value) from None
+
+    def table(value: object) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            raise InputError(problem, value=value, remedy=remedy)
+        return dict(all_made(partial(one, name, item) for name, item in value.items()))
+
+    return table
