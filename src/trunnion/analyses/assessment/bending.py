@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import guideline
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.linear.bending import SAFE_SHARE, bending_speeds
 from trunnion.equations.coefficients import Assembly
@@ -23,12 +24,8 @@ def bending(subject: Subject, assembly: Assembly) -> Iterator[Check]:
         yield Check("bending critical speed", Status.NOT_APPLICABLE, RULE, because)
     for row in found:
         limit = SAFE_SHARE * row.input_speed
-        margin = below(subject.high, limit)
-        because = (
-            f"{subject.shown(subject.high)} against 75 % of {subject.shown(row.input_speed)} at the input, "
-            f"{percent(margin)}"
-        )
-        yield Check(
-            f"bending critical speed of {row.shaft}", judged(margin), RULE, because, margin, 0.0, subject.high, limit,
-            "rad/s", subject.high, f"E = {row.young_modulus / 1e9:.4g} GPa", guideline=True, element=row.shaft,
+        numbers = f"{subject.shown(subject.high)} against 75 % of {subject.shown(row.input_speed)} at the input"
+        yield guideline(
+            f"bending critical speed of {row.shaft}", RULE, (subject.high, limit, "rad/s"), numbers,
+            speed=subject.high, inputs=f"E = {row.young_modulus / 1e9:.4g} GPa", element=row.shaft,
         )  # fmt: skip

@@ -17,10 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import at_worst, unanswered, worst_of
 from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.own_limits import spring_of
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
+from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.quantities import POWER, TORQUE, against, shown
 from trunnion.driveline.shafts import Coupling
@@ -60,7 +61,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
             if rating is None:
                 yield Check(f"rating: {title}", Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):
-                yield Check(f"rating: {title}", Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
+                yield unanswered(case, f"rating: {title}", rule)
             else:
                 yield _rated(subject, case, name, key, rating, rule)
 
@@ -70,28 +71,23 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
     assert response is not None
     found = rated_values(case.assembly, response, name, key)
     values, by_order, unit = found.values, found.by_order, found.unit
-    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
+    at, value = worst_of(values)
     said = found.said + (f", S_f = {found.frequency_factor[at]:.4g}" if key == "vibratory_torque" else "")
-    value = float(values[at]) if np.isfinite(values[at]) else np.inf
-    margin, required = below(value, rating), subject.required(name)
-    why = cause(case, at, by_order[at]) if key != "nominal_torque" else None
     kind, words = TORQUE if unit == "N*m" else POWER, key.replace("_", " ")
     numbers = (
         against(value, rating, kind)
         if np.isfinite(value)
         else f"no steady state (undamped resonance) against {rating:.4g} {unit}"
     )
-    because = f"{numbers} at {subject.shown(case.speeds[at])}, {percent(margin)}"
     seen = course(
         response, f"{words.removesuffix(' rating')} of {name}", kind, TAKEN[key], values,
         {f"{words} {shown(rating, kind, digits=4)}": rating},
         by_order if key in ("maximum_torque", "vibratory_torque") else None,
     )  # fmt: skip
-    return Check(
-        f"rating: {words} of {name}", judged(margin, required), rule,
-        because + (f", {why}" if why else "") + case.suffix, margin, required, value, rating, unit,
-        float(case.speeds[at]), said, case.name, element=name,
-        cause=why, course=seen,
+    return at_worst(
+        subject, case, f"rating: {words} of {name}", rule, at, (value, rating, unit), numbers,
+        required=subject.required(name), inputs=said, element=name,
+        cause=cause(case, at, by_order[at]) if key != "nominal_torque" else None, course=seen,
     )  # fmt: skip
 
 

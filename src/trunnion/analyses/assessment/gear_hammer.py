@@ -11,10 +11,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import at_worst, unanswered
 from trunnion.analyses.assessment.course import SWING, course
 from trunnion.analyses.assessment.own_limits import bands, spring_of
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
+from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import TORQUE
 
@@ -31,7 +32,7 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
     for name in pairs:
         title = f"gear hammer in {name}"
         if isinstance(case.answer, str):
-            yield Check(title, Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
+            yield unanswered(case, title, RULE)
             continue
         c = spring_of(case.assembly, name)
         swing, mean = case.answer.vibratory_torque[:, c], np.abs(case.answer.mean_torque[:, c])
@@ -41,18 +42,13 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
             continue
         with np.errstate(divide="ignore", invalid="ignore"):
             at = int(np.argmax(np.where(mean > 0, swing / mean, np.inf)))
-        margin, required = below(float(swing[at]), float(mean[at])), subject.required(name)
-        said = cause(case, at, np.abs(case.answer.torque[at, :, c]))
-        because = f"±{swing[at]:.4g} N*m about a mean of {mean[at]:.4g} N*m at {subject.shown(case.speeds[at])}, "
-        because += percent(margin) + (f", {said}" if said else "") + case.suffix
-        seen = course(
-            case.answer, f"torque of {name}", TORQUE, SWING, swing, {"mean torque": mean},
-            np.abs(case.answer.torque[:, :, c]),
-        )  # fmt: skip
-        yield Check(
-            title, judged(margin, required), RULE, because, margin, required, float(swing[at]), float(mean[at]), "N*m",
-            float(case.speeds[at]), "", case.name, bands(case.speeds, swing, mean * (1 - required)), element=name,
-            cause=said, course=seen,
+        required = subject.required(name)
+        numbers = f"±{swing[at]:.4g} N*m about a mean of {mean[at]:.4g} N*m"
+        by_order = np.abs(case.answer.torque[:, :, c])
+        yield at_worst(
+            subject, case, title, RULE, at, (float(swing[at]), float(mean[at]), "N*m"), numbers, required=required,
+            element=name, barred=bands(case.speeds, swing, mean * (1 - required)), cause=cause(case, at, by_order[at]),
+            course=course(case.answer, f"torque of {name}", TORQUE, SWING, swing, {"mean torque": mean}, by_order),
         )  # fmt: skip
 
 

@@ -15,7 +15,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, above, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status, above, judged
+from trunnion.analyses.assessment.compared import guideline
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.kinetostatics import Kinetostatics
 from trunnion.analyses.kinetostatics.measures import ROUNDING, largest
@@ -55,10 +56,8 @@ def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | Non
         yield from _one(subject, name, abs(angle), ratio * subject.high)
     if len(joints) == 2:
         apart = abs(abs(joints[0][1]) - abs(joints[1][1]))
-        margin = below(apart, APART)
-        because = f"{abs(joints[0][1]) / DEGREE:.4g} and {abs(joints[1][1]) / DEGREE:.4g} deg, {percent(margin)}"
-        yield Check("equal joint angles", judged(margin), EQUAL, because, margin, 0.0, apart, APART, "rad",
-                    guideline=True)  # fmt: skip
+        said = f"{abs(joints[0][1]) / DEGREE:.4g} and {abs(joints[1][1]) / DEGREE:.4g} deg"
+        yield guideline("equal joint angles", EQUAL, (apart, APART, "rad"), said)
     else:
         because = "the rule is for two joints; uniformity judges the line"
         yield Check("equal joint angles", Status.NOT_APPLICABLE, EQUAL, because)
@@ -78,10 +77,8 @@ def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Ch
         yield Check(title, Status.NOT_APPLICABLE, MOST, because)
         return
     limit = EASY if limit is None else limit
-    margin = below(angle, limit)
-    because = f"{said} against {limit / DEGREE:.3g} deg {at}, {percent(margin)}"
-    yield Check(title, judged(margin), MOST, because, margin, 0.0, angle, limit, "rad", subject.high, guideline=True,
-                element=name)  # fmt: skip
+    numbers = f"{said} against {limit / DEGREE:.3g} deg {at}"
+    yield guideline(title, MOST, (angle, limit, "rad"), numbers, speed=subject.high, element=name)
 
 
 def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
@@ -105,7 +102,5 @@ def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) ->
 
 def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit: float) -> Check:
     value = value if value > ROUNDING * subject.high**2 else 0.0
-    margin = below(value, limit)
-    because = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}, {percent(margin)}"
-    return Check(title, judged(margin), rule, because, margin, 0.0, value, limit, "rad/s^2", subject.high,
-                 "rigid shafts", guideline=True)  # fmt: skip
+    numbers = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}"
+    return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")

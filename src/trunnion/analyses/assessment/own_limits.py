@@ -13,9 +13,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import at_worst, unanswered, worst_of
 from trunnion.analyses.assessment.course import SWING, WHOLE, course
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
+from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import against, shown
@@ -81,39 +82,37 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
     name = name_of(limit)
     rule = JUDGED[limit.key]
     if isinstance(case.answer, str):
-        return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
+        return unanswered(case, name, rule)
     found = limited_values(case.assembly, case.answer, limit, case.assembly.table(1))
     if isinstance(found, str):
         return Check(name, Status.NOT_APPLICABLE, rule, found)
     values, by_order = found
     kind = LIMIT_KINDS[limit.key]
-    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
-    value = float(values[at]) if np.isfinite(values[at]) else np.inf
-    margin = below(value, limit.value)
-    said = cause(case, at, by_order[at])
+    at, value = worst_of(values)
     how = (
         against(value, limit.value, kind)
         if np.isfinite(value)
         else f"no steady state (undamped resonance) against {shown(limit.value, kind, digits=4)}"
     )
-    because = f"{how} at {subject.shown(case.speeds[at])}, {percent(margin)}"
-    because += (f", {said}" if said else "") + case.suffix
     allowed = limit.value * (1 - limit.margin)
     barred = bands(case.speeds, values, np.full(len(values), allowed)) if limit.key == "vibratory_torque" else ()
-    if limit.margin:
-        because += f"; {100 * limit.margin:.3g} % must stay free"
+    more = f"; {100 * limit.margin:.3g} % must stay free" if limit.margin else ""
     if barred:
-        because += f"; beyond it {_listed(subject, barred)}"
+        more += f"; beyond it {_listed(subject, barred)}"
     seen = course(
         case.answer, name.removeprefix("max "), kind, WHOLE if rule is OF_ALL else SWING, values,
         {f"{limit.key.replace('_', ' ')} {shown(limit.value, kind, digits=4)}": limit.value}, by_order,
     )  # fmt: skip
-    return Check(
-        name, judged(margin, limit.margin), rule, because, margin, limit.margin, value, limit.value, kind.unit,
-        float(case.speeds[at]), f"{counted(len(values), 'speed')}, {subject.shown(case.speeds[0])} to "
-        f"{subject.shown(case.speeds[-1])}", case.name, barred, element=limit.element,
-        cause=said, course=seen,
+    return at_worst(
+        subject, case, name, rule, at, (value, limit.value, kind.unit), how, required=limit.margin,
+        inputs=judged_at(subject, case.speeds), more=more, element=limit.element, barred=barred,
+        cause=cause(case, at, by_order[at]), course=seen,
     )  # fmt: skip
+
+
+def judged_at(subject: Subject, speeds: Array) -> str:
+    """ "201 speeds, 300 rpm to 2400 rpm"."""
+    return f"{counted(len(speeds), 'speed')}, {subject.shown(speeds[0])} to {subject.shown(speeds[-1])}"
 
 
 def _listed(subject: Subject, ranges: tuple[tuple[float, float], ...]) -> str:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
-from trunnion.analyses.assessment.own_limits import bands
+from trunnion.analyses.assessment.own_limits import bands, judged_at
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, straight_decay
 from trunnion.analyses.orders.stable_speeds import verdicts_at
@@ -49,36 +49,25 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         return
     at = int(np.nanargmax(growth))
     straight = straight_decay(case.assembly, float(speeds[at]))
-    inputs = f"{counted(len(speeds), 'speed')}, {subject.shown(speeds[0])} to {subject.shown(speeds[-1])}"
+    worst = (float(growth[at]), float(speeds[at]), judged_at(subject, speeds))
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     unstable = verdict == Verdict.UNSTABLE
     if np.any(unstable):
-        ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
         resonance = _resonance(case, float(speeds[at])) if subject.naming else ""
-        because = (
-            f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s {here}{resonance}; unstable "
-            f"{_ranges(subject, ranges)}"
-        )
         margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
-        yield Check(
-            NAME, Status.EXCEEDED, RULE, because, float(margin), 0.0, float(growth[at]), 0.0, "1/s",
-            float(speeds[at]), inputs, case.name, ranges,
-        )  # fmt: skip
+        yield _growing(subject, case, speeds, unstable, f"{here}{resonance}", float(margin), worst)
     elif np.all(verdict[judgeable] == Verdict.STABLE) and np.all(judgeable):
         share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
         because = (
             f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
             "the straight line's damping"
         )
-        yield Check(
-            NAME, Status.SATISFIED, RULE, because, float(share), 0.0, float(growth[at]), 0.0, "1/s",
-            float(speeds[at]), inputs, case.name,
-        )  # fmt: skip
+        yield _judged(case, Status.SATISFIED, because, float(share), worst)
     else:
         words = sorted({str(Verdict(int(v))) for v in verdict if v != Verdict.STABLE})
         remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
         because = f"{' and '.join(words)} at some speeds: {remedy}{case.suffix}"
-        yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=inputs, load_case=case.name)
+        yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=worst[2], load_case=case.name)
 
 
 def _straight(subject: Subject, case: Case) -> Check:
@@ -87,19 +76,34 @@ def _straight(subject: Subject, case: Case) -> Check:
     if not np.any(unstable):
         because = "no joint is bent and no mesh varies: nothing excites the line parametrically"
         return Check(NAME, Status.NOT_APPLICABLE, RULE, because)
-    speeds = case.speeds
-    growth = np.array([-straight_decay(case.assembly, float(speed)) for speed in speeds])
+    growth = np.array([-straight_decay(case.assembly, float(speed)) for speed in case.speeds])
     at = int(np.argmax(growth >= growth.max() * (1 - 1e-9)))
-    ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
-    because = (
-        f"a disturbance doubles every {np.log(2) / growth[at]:.3g} s at {subject.shown(speeds[at])}{case.suffix}: "
-        "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh; unstable "
-        f"{_ranges(subject, ranges)}"
+    fed = (
+        f"at {subject.shown(case.speeds[at])}{case.suffix}: negative damping, or a torque that grows with the speed, "
+        "feeds it, no joint or mesh"
     )
-    inputs = counted(len(speeds), "speed")
+    worst = (float(growth[at]), float(case.speeds[at]), counted(len(case.speeds), "speed"))
+    return _growing(subject, case, case.speeds, unstable, fed, -np.inf, worst)
+
+
+Worst = tuple[float, float, str]
+"""Growth rate [1/s] and speed [rad/s] where it is largest, and how many speeds were looked at."""
+
+
+def _growing(
+    subject: Subject, case: Case, speeds: Array, unstable: NDArray[np.bool_], where: str, margin: float, worst: Worst
+) -> Check:
+    ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
+    because = f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {where}; unstable {_ranges(subject, ranges)}"
+    return _judged(case, Status.EXCEEDED, because, margin, worst, ranges)
+
+
+def _judged(
+    case: Case, status: Status, because: str, margin: float, worst: Worst, barred: tuple[tuple[float, float], ...] = ()
+) -> Check:
+    growth, speed, inputs = worst
     return Check(
-        NAME, Status.EXCEEDED, RULE, because, -np.inf, 0.0, float(growth[at]), 0.0, "1/s", float(speeds[at]), inputs,
-        case.name, ranges,
+        NAME, status, RULE, because, margin, 0.0, growth, 0.0, "1/s", speed, inputs, case.name, barred,
     )  # fmt: skip
 
 

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from trunnion.analyses.assessment.compared import worst_of
 from trunnion.analyses.assessment.subject import Case
 from trunnion.analyses.linear.along import straight_decay
 from trunnion.analyses.orders.response import order_response
+from trunnion.analyses.orders.result import OrderResponse
 from trunnion.errors import ComputationError, InputError
 
+Array = NDArray[np.float64]
 NEAR = 0.8
 """Share of the largest value on the grid from which a peak may turn out to be the largest."""
 ROUNDS, AROUND = 3, 9
 """Rounds of so many speeds each that close in on a peak."""
+
+
+def _torques(response: OrderResponse, word: str) -> Array:
+    """Torques (speed, spring) [N m]."""
+    return response.peak_torque if word == "peak" else response.vibratory_torque
 
 
 def largest_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
@@ -20,9 +29,8 @@ def largest_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
     and its speed [rad/s]."""
     response = case.response
     assert response is not None
-    values = (response.peak_torque if word == "peak" else response.vibratory_torque)[:, spring]
-    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
-    return (float(values[at]) if np.isfinite(values[at]) else np.inf), float(case.speeds[at])
+    at, value = worst_of(_torques(response, word)[:, spring])
+    return value, float(case.speeds[at])
 
 
 def exact_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
@@ -33,7 +41,7 @@ def exact_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
         return value, speed
     response = case.response
     assert response is not None
-    values = (response.peak_torque if word == "peak" else response.vibratory_torque)[:, spring]
+    values = _torques(response, word)[:, spring]
     inner = (
         np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]) & (values[1:-1] > NEAR * value)) + 1
     )
@@ -41,7 +49,7 @@ def exact_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
     for _ in range(ROUNDS if len(inner) else 0):
         points = np.linspace(low, high, AROUND, axis=1)
         found = order_response(case.assembly, points.ravel())
-        rows = (found.peak_torque if word == "peak" else found.vibratory_torque)[:, spring].reshape(points.shape)
+        rows = _torques(found, word)[:, spring].reshape(points.shape)
         if not np.all(np.isfinite(rows)):
             return np.inf, speed
         top = rows.argmax(axis=1)

@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, above
+from trunnion.analyses.assessment.compared import unanswered
 from trunnion.analyses.assessment.own_limits import unlimited
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
+from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.results.counts import counted, few
 
 REQUIRED = 0.10
 WORTH = 0.01
 """Share of a spring's largest torque by one order from which an order counts."""
 RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical")
-
-
+ALL = "separation of modes"
 NEEDS = "; that needs "
 """Between where a mode meets an order and what would judge it."""
 
@@ -32,11 +32,11 @@ NEEDS = "; that needs "
 def separation(subject: Subject, case: Case) -> Iterator[Check]:
     """One check a mode that an order meets, one for all the others together."""
     if case.response is None:
-        yield Check("separation of modes", Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
+        yield unanswered(case, ALL, RULE)
         return
     orders = shaking_orders(case)
     if not len(orders):
-        yield Check("separation of modes", Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
+        yield Check(ALL, Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
         return
     clear: list[tuple[float, str, float]] = []
     frequency = np.abs(case.modes.imag)
@@ -44,34 +44,34 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
         if not np.isfinite(near):
             continue
-        here = case.modes[at, m]
         hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
+        shown = f"at {subject.shown(case.speeds[at])}"
         if near >= REQUIRED:
-            said = f"order {order:.4g} comes no nearer than {100 * near:.3g} % to {hertz}"
-            clear.append((near, f"{said}, at {subject.shown(case.speeds[at])}", float(case.speeds[at])))
+            said = f"order {order:.4g} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
+            clear.append((near, said, float(case.speeds[at])))
             continue
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
+        here = case.modes[at, m]
         gain = abs(here) / max(-2 * here.real, 1e-300)
-        said = f"order {order:.4g} {what} {hertz} at {subject.shown(case.speeds[at])}, amplification {gain:.3g}"
         without = few(unlimited(case.assembly))
-        status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
         needs = (
             f"{NEEDS}a check of torque or stress: state limits for {without}"
             if without
             else "; the limits of torque and stress judge it"
         )
-        said += needs + case.suffix
-        yield Check(
-            f"separation of mode {m + case.first}", status, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED,
-            "1", float(case.speeds[at]), "", case.name, guideline=True,
-        )  # fmt: skip
+        status = Status.NOT_JUDGED if without else Status.NOT_APPLICABLE
+        said = f"order {order:.4g} {what} {hertz} {shown}, amplification {gain:.3g}{needs}"
+        yield _near(case, f"separation of mode {m + case.first}", status, said, near, float(case.speeds[at]))
     if clear:
-        near, said, speed = min(clear)
-        said += case.suffix
-        yield Check(
-            "separation of modes", Status.SATISFIED, RULE, said, above(near, REQUIRED), 0.0, near, REQUIRED, "1",
-            speed, counted(len(orders), "order"), case.name, guideline=True,
-        )  # fmt: skip
+        nearest, said, speed = min(clear)
+        yield _near(case, ALL, Status.SATISFIED, said, nearest, speed, counted(len(orders), "order"))
+
+
+def _near(case: Case, name: str, status: Status, said: str, near: float, speed: float, inputs: str = "") -> Check:
+    return Check(
+        name, status, RULE, said + case.suffix, above(near, REQUIRED), 0.0, near, REQUIRED, "1", speed, inputs,
+        case.name, guideline=True,
+    )  # fmt: skip
 
 
 def shaking_orders(case: Case) -> NDArray[np.float64]:

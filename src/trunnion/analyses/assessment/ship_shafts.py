@@ -18,10 +18,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import at_worst, unanswered
 from trunnion.analyses.assessment.course import SWING, course
 from trunnion.analyses.assessment.own_limits import bands, spring_of, stress_factor
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, cause
+from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.driveline.limits import SHIP_SHAFTS
 from trunnion.driveline.quantities import PRESSURE
 from trunnion.driveline.shafts import Shaft
@@ -56,7 +57,7 @@ def ship_shafts(subject: Subject, case: Case) -> Iterator[Check]:
 def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Check]:
     title = f"IACS UR M68 of {name}"
     if isinstance(case.answer, str):
-        yield Check(title, Status.NOT_JUDGED, RULE, f"{NO_RESPONSE}{case.answer}")
+        yield unanswered(case, title, RULE)
         return
     if subject.speed is None:
         yield Check(title, Status.NOT_JUDGED, RULE, "no rated speed: write speed under [operation]")
@@ -78,12 +79,11 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
     required = subject.required(name)
     exceeded = bands(speeds, stress, allowed * (1 - required))
     at = int(np.argmax(stress / allowed))
-    margin = below(float(stress[at]), float(allowed[at]))
     by_order = np.abs(case.answer.torque[inside, :, c])
-    said = cause(case, at, by_order[at])
+    transient = np.where(ratio < NO_BAR, 1.7 * allowed / np.sqrt(factor), allowed)
     seen = course(
         case.answer, f"stress of {name}", PRESSURE, SWING, 1e6 * stress,
-        {"continuous, τ_C": 1e6 * allowed, "passing quickly, τ_T": 1e6 * _transient(allowed, ratio, factor)},
+        {"continuous, τ_C": 1e6 * allowed, "passing quickly, τ_T": 1e6 * transient},
         by_order * stress_factor(shaft), inside,
     )  # fmt: skip
     inputs = (
@@ -91,17 +91,23 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
         f"n₀ = {subject.shown(subject.speed)}"
     )
     barred = tuple(_range(speeds, stress / allowed, ends, subject.speed) for ends in exceeded)
-    numbers = f"±{stress[at]:.4g} N/mm² against ±{allowed[at]:.4g} N/mm² at {subject.shown(speeds[at])}"
-    because = f"{numbers} (λ = {ratio[at]:.3g}), {percent(margin)}" + (f", {said}" if said else "") + case.suffix
-    if barred:
-        because += "; bar " + " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in barred)
-    yield Check(
-        title, judged(margin, required), RULE, because, margin, required, float(stress[at]) * 1e6,
-        float(allowed[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name, barred, element=name, cause=said,
-        course=seen,
+    bar = " and ".join(f"{subject.shown(a)} to {subject.shown(b)}" for a, b in barred)
+
+    def against(limit: Array, at: int) -> tuple[tuple[float, float, str], str]:
+        words = f"±{stress[at]:.4g} N/mm² against ±{limit[at]:.4g} N/mm²"
+        return (float(stress[at]) * 1e6, float(limit[at]) * 1e6, "Pa"), words
+
+    yield at_worst(
+        subject, case, title, RULE, at, *against(allowed, at), required=required, inputs=inputs,
+        where=f" (λ = {ratio[at]:.3g})", more=f"; bar {bar}" if bar else "", element=name, barred=barred,
+        cause=cause(case, at, by_order[at]), course=seen,
     )  # fmt: skip
     if barred:
-        yield _passing(subject, case, title, (speeds, ratio, stress), allowed, factor, required, inputs)
+        at = int(np.argmax(stress / transient))
+        yield at_worst(
+            subject, case, f"{title}, passing", PASSING, at, *against(transient, at), required=required, inputs=inputs,
+            where="" if ratio[at] < NO_BAR else " (no barred range at λ ≥ 0.8)",
+        )  # fmt: skip
 
 
 def _range(speeds: Array, share: Array, ends: tuple[float, float], rated: float) -> tuple[float, float]:
@@ -110,27 +116,3 @@ def _range(speeds: Array, share: Array, ends: tuple[float, float], rated: float)
     worst = float(speeds[inside][np.argmax(share[inside])]) if np.any(inside) else sum(ends) / 2
     low, high = barred_range(worst, worst / rated)
     return min(low, ends[0]), max(high, ends[1])
-
-
-def _transient(allowed: Array, ratio: Array, factor: float) -> Array:
-    """±τ_T of ±τ_C, λ and C_K."""
-    return np.where(ratio < NO_BAR, 1.7 * allowed / np.sqrt(factor), allowed)
-
-
-def _passing(
-    subject: Subject, case: Case, title: str, seen: tuple[Array, Array, Array], allowed: Array, factor: float,
-    required: float, inputs: str,
-) -> Check:  # fmt: skip
-    speeds, ratio, stress = seen
-    transient = _transient(allowed, ratio, factor)
-    at = int(np.argmax(stress / transient))
-    margin = below(float(stress[at]), float(transient[at]))
-    where = "" if ratio[at] < NO_BAR else " (no barred range at λ ≥ 0.8)"
-    because = (
-        f"±{stress[at]:.4g} N/mm² against ±{transient[at]:.4g} N/mm² at {subject.shown(speeds[at])}{where}, "
-        f"{percent(margin)}{case.suffix}"
-    )
-    return Check(
-        f"{title}, passing", judged(margin, required), PASSING, because, margin, required, float(stress[at]) * 1e6,
-        float(transient[at]) * 1e6, "Pa", float(speeds[at]), inputs, case.name,
-    )  # fmt: skip

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
+from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import guideline
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.kinetostatics import Kinetostatics
 from trunnion.analyses.kinetostatics.limits import EVEN_RUNNING
@@ -30,9 +31,7 @@ def uniformity(subject: Subject, turn: Kinetostatics | None) -> Iterator[Check]:
     for branch in turn.branches:
         end = turn.on_branch(branch)
         u = end.irregularity
-        margin = below(u, EVEN_RUNNING)
         angle = end.equivalent_angle / DEGREE
-        because = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg, {percent(margin)}"
+        numbers = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg"
         title = "uniformity" if len(turn.branches) == 1 else f"uniformity of {branch}"
-        yield Check(title, judged(margin), RULE, because, margin, 0.0, u, EVEN_RUNNING, "1", inputs="rigid shafts",
-                    guideline=True)  # fmt: skip
+        yield guideline(title, RULE, (u, EVEN_RUNNING, "1"), numbers, inputs="rigid shafts")
