@@ -63,21 +63,22 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
 
 def _row(
     *,
-    refused: dict[str, str] | None = None,
+    refused: Mapping[str, Words] | None = None,
     said: Mapping[str, Words] | None = None,
-    not_judged: dict[str, str] | None = None,
-    inert: dict[str, str] | None = None,
+    not_judged: Mapping[str, Words] | None = None,
+    inert: Mapping[str, Words] | None = None,
 ) -> Row:
     """Cells of all features: those named, the others counted."""
     row = {f.key: Cell(Treatment.COUNTED) for f in FEATURES}
-    for key, reason in (refused or {}).items():
-        row[key] = Cell(Treatment.REFUSED, reason)
-    for key, words in (said or {}).items():
-        row[key] = Cell(Treatment.SAID, *((words,) if isinstance(words, str) else words))
-    for key, reason in (not_judged or {}).items():
-        row[key] = Cell(Treatment.NOT_JUDGED, reason)
-    for key, reason in (inert or {}).items():
-        row[key] = Cell(Treatment.INERT, reason)
+    treated = {
+        Treatment.REFUSED: refused,
+        Treatment.SAID: said,
+        Treatment.NOT_JUDGED: not_judged,
+        Treatment.INERT: inert,
+    }
+    for treatment, reasons in treated.items():
+        for key, words in (reasons or {}).items():
+            row[key] = Cell(treatment, *((words,) if isinstance(words, str) else words))
     return {f.key: row[f.key] for f in FEATURES}
 
 

@@ -7,11 +7,10 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 def one_number(value: object, key: str, remedy: str = "") -> float:
@@ -24,6 +23,18 @@ def one_number(value: object, key: str, remedy: str = "") -> float:
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise InputError("must be a number", key=key, value=_said(value), remedy=remedy)
     return float(value)
+
+
+def whole_number(value: object, key: str, least: int) -> int:
+    """A whole number, ``least`` or more.
+
+    Raises
+    ------
+    InputError : it is none, or less.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise InputError(f"must be a whole number, {least} or more", key=key, value=value)
+    return int(value)
 
 
 def numbers(values: ArrayLike, key: str, remedy: str = "") -> Array:

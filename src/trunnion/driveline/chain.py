@@ -29,14 +29,19 @@ class Chain(Record):
     damping_ratio_frequency: Frequency | None = None
 
     @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Name of every element: as given, or its kind and its ordinal among all of that kind ("Shaft 2")."""
+    def default_names(self) -> tuple[str, ...]:
+        """Names that elements have when the user gives none: the kind and its ordinal among all of that kind."""
         seen: Counter[str] = Counter()
         names = []
         for element in self.elements:
             seen[element.kind] += 1
-            names.append(element.name or f"{element.kind} {seen[element.kind]}")
+            names.append(f"{element.kind} {seen[element.kind]}")
         return tuple(names)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Name of every element: as given, or its kind and its ordinal among all of that kind ("Shaft 2")."""
+        return tuple(one.name or usual for one, usual in zip(self.elements, self.default_names, strict=True))
 
     @cached_property
     def parents(self) -> tuple[int | None, ...]:

@@ -47,6 +47,9 @@ class Element(Record):
         element.
     """
 
+    idle: ClassVar[tuple[str, ...]] = ()
+    """Numbers that do nothing and are no parameters."""
+
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
     after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
 

@@ -19,8 +19,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.joints import HookeJoint
@@ -28,7 +29,6 @@ from trunnion.driveline.quantities import ANGLE, DEGREE, LENGTH, Kind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 COLLINEAR = 1e-9
 """Bend angle [rad] below which a joint has no plane of its own."""
 
@@ -54,7 +54,7 @@ class Layout:
     angles: Array
     planes: Array
     lengths: Array
-    straight: NDArray[np.bool_]
+    straight: Flags
     right_handed: bool = True
 
     @property
@@ -174,7 +174,7 @@ def layout(
     return Layout(centres, axes, angles, planes if right_handed else -planes, lengths, straight, right_handed)
 
 
-def _planes(axes: Array, cross: Array, straight: NDArray[np.bool_]) -> Array:
+def _planes(axes: Array, cross: Array, straight: Flags) -> Array:
     """Angle of each joint's normal from that of the last bent joint, about the shaft in front of it."""
     planes = np.zeros(len(cross))
     normal = None

@@ -16,6 +16,17 @@ def speed_unit(line: Driveline) -> str:
     return line.operation.speed_unit if line.operation else "rad/s"
 
 
+def stated_range(line: Driveline) -> tuple[float, float] | None:
+    """Lowest and highest speed that the description states [rad/s], its operating speed alone where it states no range;
+    None where it states neither."""
+    operation = line.operation
+    if operation is None:
+        return None
+    if operation.speed_range:
+        return operation.speed_range
+    return None if operation.speed is None else (operation.speed, operation.speed)
+
+
 def operating_speed(line: Driveline, speed: float | None) -> float:
     """``speed``, or the operating speed the description gives [rad/s]."""
     if speed is None:

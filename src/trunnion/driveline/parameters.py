@@ -17,15 +17,16 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.packed_numbers import SPEED as SPEED
@@ -61,11 +62,11 @@ class Columns:
 
     label: str
     unit: str
-    index: NDArray[np.intp]
-    slope: NDArray[np.float64]
-    offset: NDArray[np.float64]
+    index: Places
+    slope: Array
+    offset: Array
 
-    def put(self, table: NDArray[np.float64], value: ArrayLike) -> None:
+    def put(self, table: Array, value: ArrayLike) -> None:
         """Write ``value`` (one per row of ``table``, or a scalar) into the columns of this parameter."""
         spread = np.asarray(value, dtype=float)[..., None]
         table[..., self.index] = self.offset + self.slope * spread
@@ -76,7 +77,7 @@ class PackedLine:
     """The numbers of a line: ``values[column]`` in SI, with ``labels`` and ``units`` by column."""
 
     line: Driveline
-    values: NDArray[np.float64]
+    values: Array
     place: dict[tuple[int, str], int] = field(repr=False)
 
     @cached_property
@@ -94,7 +95,7 @@ class PackedLine:
         """Column of an element's number; −1 where the description does not give it."""
         return self.place.get((element, key), -1)
 
-    def table(self, rows: int) -> NDArray[np.float64]:
+    def table(self, rows: int) -> Array:
         """``rows`` copies of the line's numbers, to be varied; shape (rows, columns)."""
         return np.tile(self.values, (rows, 1))
 
@@ -123,7 +124,7 @@ class PackedLine:
         first = columns.index[0]
         return float((self.values[first] - columns.offset[0]) / columns.slope[0])
 
-    def line_at(self, values: NDArray[np.float64]) -> Driveline:
+    def line_at(self, values: Array) -> Driveline:
         """The line with the numbers of ``values`` (columns,), checked as one written by hand; the speed is left out.
 
         Raises
@@ -143,6 +144,13 @@ class PackedLine:
             except InputError:
                 # Tolerances about other numbers may reach where no line can be; the numbers themselves speak again.
                 return line.replace_all(fields, tolerances=(), **own)
+
+    def line_if_possible(self, values: Array) -> Driveline | None:
+        """The same; None where its element or the line refuses a number."""
+        try:
+            return self.line_at(values)
+        except InputError:
+            return None
 
     def _resolve_path(self, path: str) -> Columns:
         factor = path.startswith("factor of ")
@@ -178,7 +186,7 @@ class PackedLine:
             members = [i for i, e in enumerate(line.elements) if e.kind == owner[:-2]]
         else:
             members = [i for i, n in enumerate(line.names) if n == owner]
-            members = members or [i for i, n in enumerate(default_names(line)) if n == owner]
+            members = members or [i for i, n in enumerate(line.default_names) if n == owner]
         columns = [c for i in members if (c := self.column(i, key)) >= 0]
         if not columns:
             raise self._unknown(path)
@@ -247,8 +255,8 @@ def _unit(key: str) -> str:
 
 def _numbers(element: Element) -> list[tuple[str, float]]:
     """Every number of an element by its key."""
-    (plain, harmonics, lists), read, has_idle = _reading(type(element))
-    idle = getattr(element, "idle", ()) if has_idle else ()
+    (plain, harmonics, lists), read = _reading(type(element))
+    idle = element.idle
     found = [
         (key, float(number))
         for key, number in zip(plain, read(element), strict=False)
@@ -265,16 +273,16 @@ def _numbers(element: Element) -> list[tuple[str, float]]:
 
 
 @cache
-def _reading(kind: type[Element]) -> tuple[tuple[tuple[str, ...], ...], Callable[[Element], tuple[Any, ...]], bool]:
+def _reading(kind: type[Element]) -> tuple[tuple[tuple[str, ...], ...], Callable[[Element], tuple[Any, ...]]]:
     """Of single numbers, lists of harmonics and lists of numbers, those that a kind of element has; what reads all
-    single ones in one call; whether some may be idle (pydantic is slow to miss an attribute)."""
+    single ones in one call (pydantic is slow to miss an attribute)."""
 
     def has(key: str) -> bool:
         return key in kind.model_fields or hasattr(kind, key)
 
     keys = tuple(tuple(filter(has, every)) for every in (UNITS, _HARMONICS, _LISTS))
     # And the kind twice, so that it is a tuple where there is one number or none.
-    return keys, attrgetter(*keys[0], "kind", "kind"), hasattr(kind, "idle")
+    return keys, attrgetter(*keys[0], "kind", "kind")
 
 
 def _number(harmonic: Any, key: str) -> float | None:
@@ -308,13 +316,3 @@ def _with(harmonic: Any, part: str, number: float) -> dict[str, Any]:
         return {**stated, part: number}
     largest = max(abs(a) for a in amplitudes)
     return {**stated, "amplitudes": tuple(a * number / largest for a in amplitudes)}
-
-
-def default_names(line: Driveline) -> Sequence[str]:
-    """The names elements have when the user gives none: the kind and its ordinal."""
-    count: dict[str, int] = {}
-    names = []
-    for element in line.elements:
-        count[element.kind] = count.get(element.kind, 0) + 1
-        names.append(f"{element.kind} {count[element.kind]}")
-    return names

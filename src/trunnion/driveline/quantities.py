@@ -102,6 +102,12 @@ KINDS = (
     RATIO,
 )
 
+
+def kind_of(unit: str) -> Kind | None:
+    """The first of ``KINDS`` with this SI unit ("rad/s": a speed); None where there is none."""
+    return next((kind for kind in KINDS if kind.unit == unit), None)
+
+
 USUAL: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": DEGREE},
     "rad/s": {"rad/s": 1.0, "rpm": RPM, "Hz": HERTZ},

@@ -27,7 +27,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.elements import Element
 from trunnion.driveline.packed_numbers import UNITS
-from trunnion.driveline.quantities import KINDS, RATIO, Kind, parse, written
+from trunnion.driveline.quantities import RATIO, Kind, kind_of, parse, written
 from trunnion.driveline.record import listed
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError, InputRemark
@@ -36,7 +36,7 @@ FARTHEST = 3.0
 """Standard deviations that stand for the ends of a normal distribution, which has none."""
 LINES_OWN = ("speed", "damping_ratio", "damping_ratio_frequency")
 SCATTERING: dict[str, Kind] = {
-    key: next(kind for kind in KINDS if kind.unit == unit) for key, unit in UNITS.items() if key not in LINES_OWN
+    key: kind for key, unit in UNITS.items() if key not in LINES_OWN and (kind := kind_of(unit))
 }
 """Numbers of elements that can scatter, and their physical kinds."""
 _HOW = 'write "5 %", "0.5 deg", ["1 kN*m/rad", "2 kN*m/rad"] or { deviation = "2 %" }'
@@ -64,9 +64,16 @@ class Scatter:
         """Lowest and highest value."""
         if self.form == "range":
             return self.numbers[0], self.numbers[1]
-        reach = self.numbers[0] * (abs(nominal) if self.form in ("share", "normal") else 1.0)
-        reach *= FARTHEST if self.form in ("normal", "deviation") else 1.0
+        deviation = self.deviation(nominal)
+        reach = self._size(nominal) if deviation is None else FARTHEST * deviation
         return nominal - reach, nominal + reach
+
+    def deviation(self, nominal: float) -> float | None:
+        """Standard deviation of a normal distribution; None where every value within its ends is alike."""
+        return self._size(nominal) if self.form in ("normal", "deviation") else None
+
+    def _size(self, nominal: float) -> float:
+        return self.numbers[0] * (abs(nominal) if self.form in ("share", "normal") else 1.0)
 
     @property
     def written(self) -> object:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trunnion.analyses.optimisation.result import Optimum, in_words
+from trunnion.analyses.optimisation.result import Optimum
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain, printed
+from trunnion.results.units import in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,15 +40,15 @@ def _bounds(found: Optimum, axes: Axes | None) -> Axes:
         axes.plot(min(max(before, 0), 1), place, "s", mfc="white", mec=INK, ms=8, zorder=3,
                   label="before" if not place else None)  # fmt: skip
         axes.plot(after, place, "o", color=ACCENT, ms=9, zorder=4, label="best" if not place else None)
-        axes.annotate(in_words(found.rounded(found.value)[place], unit), (after, place), textcoords="offset points",
+        axes.annotate(in_words(found.rounded(found.value)[place], unit, 5), (after, place), textcoords="offset points",
                       xytext=(0, 9), ha="center", fontsize=SMALL, color=INK)  # fmt: skip
         for end, where, side in ((low, -0.02, "right"), (high, 1.02, "left")):
-            axes.annotate(in_words(end, unit), (where, place), ha=side, va="center", fontsize=SMALL, color=FAINT)
+            axes.annotate(in_words(end, unit, 5), (where, place), ha=side, va="center", fontsize=SMALL, color=FAINT)
     axes.set_yticks(range(len(found.free)), found.free, fontsize=SMALL)
     axes.set_ylim(len(found.free) - 0.4, -0.7)
     axes.set_xlim(-0.28, 1.28)
     axes.set_xticks([])
-    before, after = (in_words(v[0], found.aim_units[0]) for v in (found.aim_before, found.aim))
+    before, after = (in_words(v[0], found.aim_units[0], 5) for v in (found.aim_before, found.aim))
     axes.set_title(f"{found.aims[0]}: {after} instead of {before}", fontsize=TEXT, color=INK, loc="left")
     return _finished(axes, small=True)
 

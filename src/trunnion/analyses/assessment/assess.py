@@ -20,7 +20,7 @@ from trunnion.analyses.assessment.uniformity import uniformity
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.driveline.arguments import numbers
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.errors import InputError
 from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
@@ -93,11 +93,8 @@ def prepare(cases: tuple[Case, ...]) -> None:
 
 def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:
     stated = line.operation.speed if line.operation else None
-    if speeds is None and line.operation and line.operation.speed_range:
-        speeds = line.operation.speed_range
     if speeds is None:
-        one = operating_speed(line, None)
-        return one, one, one
+        speeds = stated_range(line) or (operating_speed(line, None), 0.0)  # which says that none is stated
     ends = tuple(numbers(speeds, "speeds", "speeds=(tn.rpm(300), tn.rpm(2400)), say").tolist())
     if len(ends) != 2 or not 0 <= ends[0] <= ends[1] or not 0 < ends[1] < float("inf"):
         remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"

@@ -5,14 +5,12 @@ from __future__ import annotations
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.course import Course
 from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
-
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
 
 
 def unanswered(case: Case, name: str, rule: Rule) -> Check:

@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.compared import at_worst, unanswered, worst_of
@@ -23,11 +22,11 @@ from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.own_limits import spring_of
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array
 from trunnion.driveline.quantities import POWER, TORQUE, against, shown
 from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
 
-Array = NDArray[np.float64]
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 FREE_FREQUENCY = 10.0
 """Frequency [Hz] up to which S_f is 1."""

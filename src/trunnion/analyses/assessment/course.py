@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.quantities import Kind
 
-Array = NDArray[np.float64]
 SWING = "half peak to peak"
 WHOLE = "largest, mean and all"
 
@@ -44,7 +43,7 @@ def course(
     value: Array,
     limits: Mapping[str, float | Array],
     by_order: Array | None = None,
-    inside: NDArray[np.bool_] | None = None,
+    inside: Flags | None = None,
 ) -> Course:
     """The course of ``value`` (speed,), of the speeds of ``response`` or those ``inside``."""
     speed = response.speed if inside is None else response.speed[inside]

@@ -8,18 +8,18 @@ from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import assess
 from trunnion.analyses.assessment.check import Check, Status, in_order, worst
 from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.limits.stable_limit import HIGHEST, stable_limit
+from trunnion.arrays import Array
+from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.schedules import Schedule
 from trunnion.equations.coefficients import assemble
-from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -29,7 +29,6 @@ from trunnion.results.speeds import show_speed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 POINTS = 5
 LIMIT_SPEEDS = 60
 """Speeds of the range at which a stable limit is solved for."""
@@ -142,15 +141,14 @@ def envelope(
     ------
     InputError : as ``assess``; a number of points below 2; a line at a point of a schedule that is refused.
     """
-    if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 2:
-        raise InputError("must be a whole number, 2 or more", key="points", value=points)
+    points = whole_number(points, "points", 2)
     tell = progress or (lambda share: None)
     stated = _stripped(line, line.operation, {})
     first = assess(stated, speeds, unit=unit)
     shown = unit or speed_unit(line)
     places = [Place("", "", nan, "as stated", stated)]
     for schedule in line.operation.schedules if line.operation else ():
-        places += _places(line, schedule, int(points), (first.low, first.high), shown)
+        places += _places(line, schedule, points, (first.low, first.high), shown)
     judged, limits = [first], []
     for k, place in enumerate(places):
         if k:

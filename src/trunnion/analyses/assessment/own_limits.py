@@ -11,20 +11,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.compared import at_worst, unanswered, worst_of
 from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import against, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.results.counts import counted
 
-Array = NDArray[np.float64]
 OF_ALL = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours")
 OF_SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours")
 WITHOUT_LIMIT = "torque without limit"

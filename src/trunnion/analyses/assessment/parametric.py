@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.own_limits import bands, judged_at
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, straight_decay
 from trunnion.analyses.orders.stable_speeds import verdicts_at
+from trunnion.arrays import Array, Codes, Flags
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
@@ -30,7 +30,6 @@ from trunnion.results.verdict import Verdict
 RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived")
 EACH, COARSE = 25, 1e-8
 NAME = "parametric stability"
-Array = NDArray[np.float64]
 
 
 def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
@@ -91,7 +90,7 @@ Worst = tuple[float, float, str]
 
 
 def _growing(
-    subject: Subject, case: Case, speeds: Array, unstable: NDArray[np.bool_], where: str, margin: float, worst: Worst
+    subject: Subject, case: Case, speeds: Array, unstable: Flags, where: str, margin: float, worst: Worst
 ) -> Check:
     ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
     because = f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {where}; unstable {_ranges(subject, ranges)}"
@@ -125,7 +124,7 @@ def _resonance(case: Case, speed: float) -> str:
     return f" ({found})" if found else ""
 
 
-def _along(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
+def _along(case: Case) -> tuple[Array, Array, Codes]:
     """Speeds, growth rates [1/s] and verdicts."""
     try:
         found = case.along
@@ -134,7 +133,7 @@ def _along(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
     return found.speed, found.growth_rate, found.verdict
 
 
-def _one_by_one(case: Case) -> tuple[Array, Array, NDArray[np.int8]]:
+def _one_by_one(case: Case) -> tuple[Array, Array, Codes]:
     """The same at few speeds, each about its own motion, found by shooting."""
     # Loaded where needed: it brings the compiler with it.
     from trunnion.analyses.linear.stability import stability

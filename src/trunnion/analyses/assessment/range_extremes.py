@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.compared import worst_of
 from trunnion.analyses.assessment.subject import Case
 from trunnion.analyses.linear.along import straight_decay
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array
 from trunnion.errors import ComputationError, InputError
 
-Array = NDArray[np.float64]
 NEAR = 0.8
 """Share of the largest value on the grid from which a peak may turn out to be the largest."""
 ROUNDS, AROUND = 3, 9

@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status, above
 from trunnion.analyses.assessment.compared import unanswered
 from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.analyses.assessment.subject import Case, Subject
+from trunnion.arrays import Array
 from trunnion.results.counts import counted, few
 
 REQUIRED = 0.10
@@ -74,7 +74,7 @@ def _near(case: Case, name: str, status: Status, said: str, near: float, speed: 
     )  # fmt: skip
 
 
-def shaking_orders(case: Case) -> NDArray[np.float64]:
+def shaking_orders(case: Case) -> Array:
     """Orders that make up 1 % of any spring's torque at least."""
     response = case.response
     assert response is not None
@@ -85,9 +85,7 @@ def shaking_orders(case: Case) -> NDArray[np.float64]:
     return np.unique(response.order[worth & (response.frequency == 0) & (response.order > 0)])
 
 
-def _nearest(
-    speeds: NDArray[np.float64], frequency: NDArray[np.float64], orders: NDArray[np.float64]
-) -> tuple[float, float, int, bool]:
+def _nearest(speeds: Array, frequency: Array, orders: Array) -> tuple[float, float, int, bool]:
     """Smallest |kΩ/ω − 1| over orders and speeds, with the order and the speed's number; 0 where they meet between."""
     off = np.multiply.outer(orders, speeds) / frequency - 1
     if not np.any(np.isfinite(off)):

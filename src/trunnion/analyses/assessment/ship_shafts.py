@@ -16,18 +16,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.compared import at_worst, unanswered
 from trunnion.analyses.assessment.course import SWING, course
 from trunnion.analyses.assessment.own_limits import bands, spring_of, stress_factor
 from trunnion.analyses.assessment.subject import Case, Subject, cause
+from trunnion.arrays import Array
 from trunnion.driveline.limits import SHIP_SHAFTS
 from trunnion.driveline.quantities import PRESSURE
 from trunnion.driveline.shafts import Shaft
 
-Array = NDArray[np.float64]
 SOURCE = "IACS UR M68 in form; check your edition"
 RULE = Rule("±τ ≤ (σ_B + 160)/18 · C_K C_D (3 − 2λ²); · 1.38 for λ ≥ 0.9", SOURCE, "known")
 PASSING = Rule("±τ ≤ 1.7 τ_C/√C_K in a barred range, none at λ ≥ 0.8", SOURCE, "known")

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.charts.axes import lowest_speed
@@ -18,6 +17,7 @@ from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
 from trunnion.analyses.orders.response import order_response, own_motions_of, response_about
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import bent
@@ -28,7 +28,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
-Array = NDArray[np.float64]
 POINTS = 201
 """Speeds of the even part of the grid; the peaks of the modes get more."""
 NEARLY_LARGEST = 0.9
@@ -156,7 +155,7 @@ class Case:
         named = [r.speed for r in resonance_speeds(self.assembly).within(low, high) if r.opens] if low < high else []
         return stability_along(self.assembly, np.union1d(self.speeds, named), motions=self.motions)
 
-    def _judged(self) -> NDArray[np.int8]:
+    def _judged(self) -> Codes:
         if lossy(self.assembly):
             return np.full(len(self.speeds), Verdict.FAILED, dtype=np.int8)  # no equations in time
         return self.along.verdict[np.searchsorted(self.along.speed, self.speeds)]
@@ -167,7 +166,7 @@ class Case:
         return self.answer if isinstance(self.answer, OrderResponse) else None
 
     @cached_property
-    def modes(self) -> NDArray[np.complex128]:
+    def modes(self) -> Complex:
         """Eigenvalues (speed, mode) [1/s] of the loaded line, joints straight, at ``speeds``."""
         return loaded_modes(self.assembly, self.speeds)[0]
 

@@ -16,7 +16,7 @@ from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import speed_unit, stated_range
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
@@ -95,17 +95,8 @@ def _spans(
     """Range of both; None where neither has one."""
     if speeds is not None:
         return speeds, speeds
-    first, second = _own(a), _own(b)
+    first, second = stated_range(a), stated_range(b)
     return first or second, second or first
-
-
-def _own(line: Driveline) -> tuple[float, float] | None:
-    operation = line.operation
-    if operation is None:
-        return None
-    if operation.speed_range:
-        return float(operation.speed_range[0]), float(operation.speed_range[1])
-    return (float(operation.speed), float(operation.speed)) if operation.speed is not None else None
 
 
 def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[str, float, str, float]]]:

@@ -12,12 +12,11 @@ import numpy as np
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.changes import Change
-from trunnion.driveline.quantities import KINDS, SPEED, shown
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
-from trunnion.results.units import with_unit
+from trunnion.results.units import in_words, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -180,10 +179,7 @@ def value_words(value: float, one: Difference) -> str:
         return f"{float(f'{100 * value:.4g}'):g} %"
     if one.kind == "frequency":
         return show_speed(value, "Hz")
-    kind = next((kind for kind in KINDS if kind.unit == one.unit and kind is not SPEED), None)
-    if kind is None or one.unit == "1":
-        return with_unit(f"{value:.4g}", one.unit)
-    return shown(value, kind, digits=4)
+    return in_words(value, one.unit)
 
 
 def change_words(one: Difference) -> str:

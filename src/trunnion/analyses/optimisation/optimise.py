@@ -14,8 +14,9 @@ from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, a
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
 from trunnion.analyses.optimisation.space import Space
+from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import speed_unit, stated_range
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -86,7 +87,7 @@ def optimise(
     """
     wanted = aims_of(line, aims)
     space = Space(assemble(line), free)
-    _require_whole(designs, seed)
+    designs, seed = whole_number(designs, "designs", 20), whole_number(seed, "seed", 0)
     span = _span(line, speeds, wanted)
     held = _held(checks)
     if span is not None:
@@ -100,11 +101,11 @@ def optimise(
         progress(1.0)
     return Optimum(
         line=after,
-        free=tuple(one.path for one in space.free),
+        free=tuple(one.label for one in space.free),
         units=tuple(one.unit for one in space.free),
         low=np.array([one.low for one in space.free]),
         high=np.array([one.high for one in space.free]),
-        before=np.array([one.before for one in space.free]),
+        before=np.array([one.nominal for one in space.free]),
         value=space.values(best.shares),
         aims=tuple(aim.name for aim in wanted),
         aim_units=tuple(aim.unit for aim in wanted),
@@ -203,20 +204,10 @@ def _found(search: Search) -> tuple[list[Tried], Tried]:
     return found, found[int(np.argmin(np.hypot(off[:, 0], off[:, 1])))]
 
 
-def _require_whole(designs: object, seed: object) -> None:
-    for name, value, least in (("designs", designs, 20), ("seed", seed, 0)):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-            raise InputError(f"must be a whole number, {least} or more", key=name, value=value)
-
-
 def _span(line: Driveline, speeds: tuple[float, float] | None, aims: Sequence[Aim]) -> tuple[float, float] | None:
-    operation = line.operation
-    if speeds is not None:
-        return speeds
-    if operation is not None and operation.speed_range:
-        return float(operation.speed_range[0]), float(operation.speed_range[1])
-    if operation is not None and operation.speed is not None:
-        return float(operation.speed), float(operation.speed)
+    span = stated_range(line) if speeds is None else speeds
+    if span is not None:
+        return span
     needing = next((aim.name for aim in aims if aim.over_range), None)
     if needing is not None:
         remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"
@@ -266,4 +257,4 @@ def _findings(space: Space, best: Tried, found: Sequence[Tried]) -> Iterator[Fin
     for one, share in zip(space.free, best.shares, strict=True):
         if min(share, 1 - share) < AT_BOUND:
             side = "lowest" if share < 0.5 else "largest"
-            yield Finding(Gravity.NOTE, f"{one.path} stands at its {side} bound: a wider one may give more.")
+            yield Finding(Gravity.NOTE, f"{one.label} stands at its {side} bound: a wider one may give more.")

@@ -7,20 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.result import Assessment
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.quantities import KINDS, SPEED, shown
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
-from trunnion.results.units import with_unit
+from trunnion.results.units import in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
@@ -64,7 +61,7 @@ class Optimum(Result):
     def sentence(self) -> str:
         """What was reached, with which numbers, in one sentence."""
         reached = " and ".join(
-            f"{name} {in_words(new, unit)} instead of {in_words(old, unit)}"
+            f"{name} {in_words(new, unit, 5)} instead of {in_words(old, unit, 5)}"
             for name, unit, old, new in zip(self.aims, self.aim_units, self.aim_before, self.aim, strict=True)
         )
         return f"{reached}, with {self._chosen(self.value)}"
@@ -93,7 +90,7 @@ class Optimum(Result):
         """One row a point of the front: aims, then the numbers that reach them."""
         names, units = (*self.aims, *self.free), (*self.aim_units, *self.units)
         rows = np.concatenate([self.front, self.rounded(self.front_value)], axis=1).tolist()
-        return [{n: in_words(v, u) for n, u, v in zip(names, units, row, strict=True)} for row in rows]
+        return [{n: in_words(v, u, 5) for n, u, v in zip(names, units, row, strict=True)} for row in rows]
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """The front, or of one aim where the numbers lie between their bounds; see ``plots.optimum.draw``."""
@@ -116,18 +113,10 @@ class Optimum(Result):
 
     def _chosen(self, values: Array) -> str:
         return ", ".join(
-            f"{path} = {in_words(new, unit)} ({in_words(old, unit)} before)"
+            f"{path} = {in_words(new, unit, 5)} ({in_words(old, unit, 5)} before)"
             for path, unit, old, new in zip(self.free, self.units, self.before, self.rounded(values), strict=True)
         )
 
     def rounded(self, values: Array) -> Array:
         """Free numbers (…, free) as they are printed: what is nothing beside its bounds is 0."""
         return np.where(np.abs(values) < 1e-9 * (self.high - self.low), 0.0, values)
-
-
-def in_words(value: float, unit: str) -> str:
-    """A value with an engineer's unit."""
-    kind = next((kind for kind in KINDS if kind.unit == unit and kind is not SPEED), None)
-    if kind is None or unit == "1":
-        return with_unit(f"{value:.4g}", unit)
-    return shown(value, kind, digits=5)

@@ -11,14 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, minimize
 
 from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
 from trunnion.analyses.optimisation.aims import Answer, Question
 from trunnion.analyses.optimisation.space import Space
+from trunnion.arrays import Array
 
-Array = NDArray[np.float64]
 BROKEN, REFUSED = 1e12, 1e18
 """Merit of what violates checks, and of what cannot be computed."""
 NEAR = 0.03

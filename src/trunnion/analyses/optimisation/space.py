@@ -7,30 +7,22 @@ from dataclasses import dataclass
 from math import isfinite, log
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.analyses.bounded import Bounded, columns_of, require_possible, table_at
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.parameters import Columns
-from trunnion.driveline.quantities import KINDS, parse
+from trunnion.driveline.quantities import kind_of, parse
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 EXAMPLE = 'free={"Shaft 2.fork_offset": ("0 deg", "180 deg")}'
 WIDE = 10.0
 """Ratio of the bounds from which a positive number is searched by its logarithm."""
 
 
 @dataclass(frozen=True)
-class Free:
-    """One number to choose: its path, unit, bounds and the value that the line has (SI units)."""
-
-    path: str
-    unit: str
-    low: float
-    high: float
-    before: float
-    columns: Columns
+class Free(Bounded):
+    """One number to choose."""
 
     @property
     def logarithmic(self) -> bool:
@@ -60,20 +52,12 @@ class Space:
             raise InputError("must name one parameter or more", key="free", remedy=EXAMPLE)
         self.assembly = assembly
         self.free = tuple(_free(assembly, path, ends) for path, ends in free.items())
-        taken: dict[int, str] = {}
-        for one in self.free:
-            for column in one.columns.index.tolist():
-                if column in taken:
-                    raise InputError(
-                        f"moves {assembly.packed.labels[column]}, as {taken[column]} does", key=one.path,
-                        remedy="let each number be free once",
-                    )  # fmt: skip
-                taken[column] = one.path
+        require_possible(assembly, self.free, once="let each number be free once", within="move the bound")
 
     @property
     def start(self) -> Array:
         """Shares of the line as it is, as near as the bounds allow."""
-        return np.array([one.share(one.before) for one in self.free])
+        return np.array([one.share(one.nominal) for one in self.free])
 
     def values(self, shares: Array) -> Array:
         """Values (free,) in SI units."""
@@ -81,43 +65,25 @@ class Space:
 
     def line(self, shares: Array) -> Driveline | None:
         """The line there; None where its elements refuse it."""
-        row = self.assembly.packed.values[None].copy()
-        for one, value in zip(self.free, self.values(shares), strict=True):
-            one.columns.put(row, value)
-        try:
-            return self.assembly.packed.line_at(row[0])
-        except InputError:
-            return None
+        return self.assembly.packed.line_if_possible(table_at(self.assembly, self.free, self.values(shares)[None])[0])
 
 
 def _free(assembly: Assembly, path: str, ends: Sequence[object]) -> Free:
-    columns = assembly.packed.resolve(path)
-    if 0 in columns.index:
-        raise InputError("is no parameter of the line but its speed", key=path, remedy="give speeds instead")
+    columns = columns_of(assembly, path)
     if isinstance(ends, str) or not isinstance(ends, Sequence) or len(ends) != 2:
         raise InputError("must be a low and a high bound", key=path, value=ends, remedy=EXAMPLE)
     low, high = (_bound(path, end, columns.unit) for end in ends)
     if not low < high:
         raise InputError("must be rising bounds", key=path, value=tuple(ends), remedy=EXAMPLE)
-    one = Free(path, columns.unit, low, high, assembly.packed.value(path), columns)
-    for end in (low, high):
-        row = assembly.packed.values[None].copy()
-        columns.put(row, end)
-        try:
-            assembly.packed.line_at(row[0])
-        except InputError as error:
-            problem = f"would reach {end:.6g}, which no line can have ({error.problems[0].problem})"
-            raise InputError(problem, key=path, remedy="move the bound") from None
-    return one
+    return Free(path, columns.unit, columns, assembly.packed.value(path), low, high)
 
 
 def _bound(path: str, end: object, unit: str) -> float:
-    if isinstance(end, str):
-        kind = next(kind for kind in KINDS if kind.unit == unit)
+    if isinstance(end, str) and (kind := kind_of(unit)):
         try:
             return parse(end, kind)
         except InputError as error:
-            raise InputError(error.problem, key=path, value=end, remedy=error.remedy) from None
+            raise error.but(key=path, value=end) from None
     if isinstance(end, bool) or not isinstance(end, int | float | np.number) or not isfinite(end):
         raise InputError("must be finite numbers or texts with a unit", key=path, value=end, remedy=EXAMPLE)
     return float(end)

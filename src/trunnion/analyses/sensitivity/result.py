@@ -12,14 +12,13 @@ import numpy as np
 from trunnion.analyses.assessment.remedies.result import STEPS
 from trunnion.analyses.assessment.remedies.variables import Scale, scale_of
 from trunnion.arrays import Array
-from trunnion.driveline.quantities import KINDS, SPEED, shown
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
-from trunnion.results.units import with_unit
+from trunnion.results.units import in_words, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -236,12 +235,6 @@ class Sensitivities(Result):
         if name not in names:
             raise InputError("is not a quantity of this result", key="name", value=name, remedy=nearest(name, names))
         return names.index(name)
-
-
-def in_words(value: float, unit: str) -> str:
-    """A value with an engineer's unit."""
-    kind = next((kind for kind in KINDS if kind.unit == unit and kind is not SPEED), None)
-    return with_unit(f"{value:.4g}", unit) if kind is None or unit == "1" else shown(value, kind, digits=4)
 
 
 def share_of(quantity: Quantity) -> tuple[float, str]:

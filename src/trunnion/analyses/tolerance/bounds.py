@@ -14,13 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.topology import Link
 
-Array = NDArray[np.float64]
 ROUNDED = 1e-13
 """Relative widening of what is computed from a description, far above its rounding."""
 

@@ -11,12 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tolerance.bounds import Coefficients, Ratios
+from trunnion.arrays import Array, Integers
 from trunnion.equations.coefficients import Assembly
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ class BoxTerms:
     c: Array
     scale: Array
     nu: Array
-    which: NDArray[np.int64]
+    which: Integers
     power: Array
 
     @classmethod

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.analyses.bounded import table_at
 from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.stability import stability
 from trunnion.analyses.tolerance.bounds import half_widths, over_boxes
 from trunnion.analyses.tolerance.lyapunov import judge_boxes
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances
+from trunnion.arrays import Array, Integers
+from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
@@ -35,7 +37,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 BATCH = {1: 48, 2: 24, 3: 8}
 """Boxes judged together, by unknowns: some 300 MB of matrices."""
 MOST_UNKNOWNS = 3
@@ -141,8 +142,7 @@ def certify_stability(
         speeds = description.operation.speed_range
     if not isinstance(speeds, tuple | list) or len(speeds) != 2 or not 0 < speeds[0] < speeds[1] < np.inf:
         raise InputError("must be two rising positive speeds", key="speeds", value=speeds, remedy="(100.0, 200.0)")
-    if isinstance(most_boxes, bool) or not isinstance(most_boxes, int) or most_boxes < 1:
-        raise InputError("must be a whole number, 1 or more", key="most_boxes", value=most_boxes)
+    most_boxes = whole_number(most_boxes, "most_boxes", 1)
     assembly = assemble(line)
     _require_provable(assembly)
     require_steady_base(assembly, assembly.table(1, 1.0))
@@ -192,11 +192,9 @@ class _Space:
     def table(self, shares: Array) -> Array:
         """Numbers of lines (boxes, columns)."""
         values = self.values(shares)
-        table = self.assembly.table(len(shares))
+        table = table_at(self.assembly, self.spreads, values[:, 1:])
         table[:, 0] = values[:, 0]
-        for k, one in enumerate(self.spreads, start=1):
-            one.columns.put(table, values[:, k])
-        return np.asarray(table)
+        return table
 
     def ends(self, boxes: Array) -> tuple[Array, Array]:
         """Numbers at the low and high ends of boxes, rounded outward."""
@@ -205,7 +203,7 @@ class _Space:
         wider = 1e-14 * np.maximum(np.abs(low), np.abs(high)) * moved
         return low - wider, high + wider
 
-    def across(self, boxes: Array, blame: Array) -> NDArray[np.int64]:
+    def across(self, boxes: Array, blame: Array) -> Integers:
         """The side of each box that moves the variables most that are to blame (boxes, variables) for its failure."""
         middle = boxes.mean(axis=1)
         moved = []
@@ -252,7 +250,7 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
     return _Found(None, todo, np.concatenate(proved), judged, radius)
 
 
-def _halved(boxes: Array, along: NDArray[np.int64]) -> Array:
+def _halved(boxes: Array, along: Integers) -> Array:
     """Two halves of each box, across a side."""
     if not len(boxes):
         return boxes

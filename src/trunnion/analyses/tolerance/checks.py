@@ -13,18 +13,17 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
-from trunnion.analyses.tolerance.spread import Spread, tables
+from trunnion.analyses.tolerance.spread import Spread, numbers_at, tables
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
 
-Array = NDArray[np.float64]
 SECONDS = 30.0
 FEWEST, MOST = 4, 256
 """Lines in each of the scrambles."""
@@ -59,7 +58,7 @@ class CheckStudy(Result):
     probability: Array
     interval: Array
     judged: Array
-    guideline: NDArray[np.bool_]
+    guideline: Flags
     together: float
     together_interval: tuple[float, float]
     confidence: float
@@ -174,22 +173,14 @@ class _Judge:
     spreads: tuple[Spread, ...]
     speeds: tuple[float, float]
 
-    def values(self, shares: Array) -> dict[str, float]:
-        """The numbers of a line at shares (parameters,) of its tolerances."""
-        return {s.label: float(s.values(shares[k : k + 1])[0]) for k, s in enumerate(self.spreads)}
-
     def of(self, shares: Array) -> tuple[Check, ...] | None:
         """Its checks; None where it cannot be computed."""
-        row = tables(self.assembly, self.spreads, np.clip(shares, LEAST, 1 - LEAST)[None], float("nan"))[0]
+        row = tables(self.assembly, self.spreads, shares[None], float("nan"))[0]
         try:
             line: Driveline = self.assembly.packed.line_at(row)
             return checks_of(subject_of(line, self.speeds, None, None, POINTS))
         except (InputError, ComputationError):
             return None
-
-
-LEAST = 1e-12
-"""Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
 
 
 def _named(checks: tuple[Check, ...] | None, name: str) -> Check | None:
@@ -228,7 +219,7 @@ def _worst(
     for place in candidates:
         check = _named(judge.of(place), names[k])
         if check is not None and np.isfinite(check.spare) and (best is None or check.spare < best.spare):
-            best = WorstLine(judge.values(np.clip(place, LEAST, 1 - LEAST)), names[k], check.spare, check.because)
+            best = WorstLine(numbers_at(judge.spreads, place), names[k], check.spare, check.because)
     scatter = float(spare[own, k].var())
     weight = slope**2 * design.var(axis=0) / scatter if scatter > 0 else np.zeros(len(slope))
     pairs = [(s.label, float(min(w, 1.0))) for s, w in zip(judge.spreads, weight, strict=True)]

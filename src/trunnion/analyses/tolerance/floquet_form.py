@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_continuous_lyapunov
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from trunnion.arrays import Array, Complex, Flags
 
 STEPS = 512
 """Steps of the integration over half a turn, and samples of what is bounded."""
@@ -41,7 +40,7 @@ class FloquetForm:
     lam: Complex
     exponents: Complex
     basis: Complex
-    blocks: NDArray[np.bool_]
+    blocks: Flags
     radius: Array
     most: Array
     most_slope: Array
@@ -69,7 +68,7 @@ def sampled(harmonic: Complex) -> tuple[Complex, Complex]:
     return found[0], found[1]
 
 
-def harmonics(a: Array, energy: Array) -> tuple[Complex, Complex, Complex, Complex, NDArray[np.bool_], Array]:
+def harmonics(a: Array, energy: Array) -> tuple[Complex, Complex, Complex, Complex, Flags, Array]:
     """Coefficients of W at e^{2ikτ} (boxes, harmonics, 2n, 2n), which define it; Λ, its exponents, its eigenvectors,
     its blocks, and the largest multiplier."""
     boxes, _, size, _ = a.shape
@@ -122,7 +121,7 @@ def _step(first: Array, middle: Array, last: Array, h: float, phi: Array) -> Arr
     return np.asarray(phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + last @ (phi + h * k3)))
 
 
-def _grouped(values: Complex, vectors: Complex, energy: Array) -> tuple[Complex, Complex, NDArray[np.bool_]]:
+def _grouped(values: Complex, vectors: Complex, energy: Array) -> tuple[Complex, Complex, Flags]:
     """Exponents (boxes, 2n), of one branch within a block; the matrix X that takes coordinates of the chosen basis to
     those of the eigenvectors; and the entries that belong to blocks."""
     size = values.shape[1]

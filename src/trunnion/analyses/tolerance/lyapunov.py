@@ -40,7 +40,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tolerance.bounds import Coefficients, Ratios, over_boxes, ratios
 from trunnion.analyses.tolerance.box_terms import BoxTerms
@@ -53,10 +52,8 @@ from trunnion.analyses.tolerance.floquet_form import (
     floquet_form,
     sampled,
 )
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.coefficients import Assembly
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SLACK = 1e-10
 """Share of ``carried_size`` added for rounding: a thousand times what it can be."""
@@ -70,7 +67,7 @@ class Judged:
     Hermitian part of H [per radian], each (boxes,); how much of what stands against a proof each variable brings
     (boxes, variables): ln k, ln c, ln 1/J, ln s, and the angle of a line's only joint."""
 
-    proved: NDArray[np.bool_]
+    proved: Flags
     radius: Array
     largest: Array
     blame: Array

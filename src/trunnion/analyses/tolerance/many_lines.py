@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import quantities
 from trunnion.analyses.charts.chart_pixels import Pixels, judge, put_better
+from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
@@ -24,7 +24,6 @@ from trunnion.numerics.chain.exponential_monodromy import by_halving
 from trunnion.numerics.threads import on_threads
 from trunnion.results.verdict import verdicts
 
-Array = NDArray[np.float64]
 AT_ONCE = 1 << 15
 """Lines in one call of the kernel."""
 STEPPED_AT_ONCE = 256
@@ -121,7 +120,7 @@ class ManyLines:
         return np.asarray(np.log(np.maximum(known, 1e-300)) / self.period * table[:, 0])
 
 
-def _too_coarse(found: Pixels) -> NDArray[np.bool_]:
+def _too_coarse(found: Pixels) -> Flags:
     return ~(found.error <= np.maximum(COARSE, SHARE * np.abs(1 - found.radius)))
 
 

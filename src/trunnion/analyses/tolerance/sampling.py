@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import beta, qmc
 from scipy.stats import t as student
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array, Flags
+
 SCRAMBLES = 16
 
 
@@ -17,7 +17,7 @@ def sobol(parameters: int, each: int, seed: int) -> Array:
     return np.concatenate([qmc.Sobol(parameters, scramble=True, seed=g).random(each) for g in generators])
 
 
-def interval(stable: NDArray[np.bool_], confidence: float) -> tuple[float, float]:
+def interval(stable: Flags, confidence: float) -> tuple[float, float]:
     """Of the share of True: from the scatter of the rows' means, or where there is none from the count."""
     means, count = stable.mean(axis=1), stable.size
     middle = float(means.mean())

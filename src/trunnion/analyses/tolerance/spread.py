@@ -6,31 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from trunnion.driveline.parameters import Columns
-from trunnion.driveline.tolerances import FARTHEST
+from trunnion.analyses.bounded import Bounded, columns_of, require_possible, table_at
+from trunnion.arrays import Array
+from trunnion.driveline.tolerances import Scatter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 Tolerances = Mapping[str, object]
 """Path → what it scatters by; see ``read_tolerances``."""
+LEAST = 1e-12
+"""Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
 EXAMPLE = '{"Shaft 1.stiffness": 0.1} for ±10 %, ("range", low, high), ("normal", 0.03) or ("deviation", size)'
 
 
 @dataclass(frozen=True)
-class Spread:
-    """One parameter between ``low`` and ``high`` (SI units), uniformly, or normally about their middle with
-    ``deviation``."""
+class Spread(Bounded):
+    """One parameter that scatters, uniformly, or normally about its middle with ``deviation``."""
 
-    label: str
-    unit: str
-    columns: Columns
-    nominal: float
-    low: float
-    high: float
     deviation: float | None = None
 
     def values(self, share: Array) -> Array:
@@ -56,71 +50,40 @@ def read_tolerances(assembly: Assembly, tolerances: Tolerances | None) -> tuple[
     if not isinstance(tolerances, Mapping) or not tolerances:
         raise InputError("must name one parameter or more", key="tolerances", value=tolerances, remedy=EXAMPLE)
     spreads = tuple(_spread(assembly, path, given) for path, given in tolerances.items())
-    taken: dict[int, str] = {}
-    for one in spreads:
-        for column in one.columns.index.tolist():
-            if column in taken:
-                raise InputError(
-                    f"moves {assembly.packed.labels[column]}, as {taken[column]} does", key=one.label,
-                    remedy="let each number scatter once",
-                )  # fmt: skip
-            taken[column] = one.label
-    _require_lines(assembly, spreads)
+    require_possible(assembly, spreads, once="let each number scatter once", within="narrow the tolerance")
     return spreads
 
 
 def _spread(assembly: Assembly, path: str, given: object) -> Spread:
-    columns = assembly.packed.resolve(path)
-    if 0 in columns.index:
-        raise InputError("is no parameter of the line but its speed", key=path, remedy="give speeds instead")
-    nominal = assembly.packed.value(path)
-    kind, numbers = _read(path, given)
-    if kind == "range":
-        low, high = numbers
-        return Spread(columns.label, columns.unit, columns, nominal, low, high)
-    if kind == "deviation":
-        ends = nominal - FARTHEST * numbers[0], nominal + FARTHEST * numbers[0]
-        return Spread(columns.label, columns.unit, columns, nominal, *ends, numbers[0])
-    if nominal == 0:
+    columns = columns_of(assembly, path)
+    nominal, scatter = assembly.packed.value(path), _read(path, given)
+    if nominal == 0 and scatter.form in ("share", "normal"):
         raise InputError("is zero, so no share of it is a tolerance", key=path, remedy='("range", low, high)')
-    reach = abs(nominal) * numbers[0]
-    if kind == "normal":
-        ends = nominal - FARTHEST * reach, nominal + FARTHEST * reach
-        return Spread(columns.label, columns.unit, columns, nominal, *ends, reach)
-    return Spread(columns.label, columns.unit, columns, nominal, nominal - reach, nominal + reach)
+    return Spread(columns.label, columns.unit, columns, nominal, *scatter.ends(nominal), scatter.deviation(nominal))
 
 
-def _read(path: str, given: object) -> tuple[str, tuple[float, ...]]:
+def _read(path: str, given: object) -> Scatter:
     plain = isinstance(given, int | float) and not isinstance(given, bool)
     parts = ("share", given) if plain else given
     if isinstance(parts, Sequence) and not isinstance(parts, str) and len(parts) >= 2:
-        kind, numbers = parts[0], parts[1:]
+        form, numbers = parts[0], parts[1:]
         if all(isinstance(n, int | float) and np.isfinite(n) for n in numbers):
-            if kind in ("share", "normal") and len(numbers) == 1 and 0 < numbers[0] < 1:
-                return str(kind), (float(numbers[0]),)
-            if kind == "deviation" and len(numbers) == 1 and numbers[0] > 0:
-                return "deviation", (float(numbers[0]),)
-            if kind == "range" and len(numbers) == 2 and numbers[0] < numbers[1]:
-                return "range", (float(numbers[0]), float(numbers[1]))
+            rises = len(numbers) == 2 and numbers[0] < numbers[1]
+            inside = len(numbers) == 1 and 0 < numbers[0] < (np.inf if form == "deviation" else 1)
+            if form == "range" and rises or form in ("share", "normal", "deviation") and inside:
+                return Scatter(path, form, tuple(map(float, numbers)))
     raise InputError("is no tolerance", key=path, value=given, remedy=EXAMPLE)
-
-
-def _require_lines(assembly: Assembly, spreads: tuple[Spread, ...]) -> None:
-    """Refuse ends that no line can have."""
-    for one in spreads:
-        for value in (one.low, one.high):
-            row = assembly.table(1)
-            one.columns.put(row, value)
-            try:
-                assembly.packed.line_at(row[0])
-            except InputError as error:
-                problem = f"would reach {value:.6g}, which no line can have ({error.problems[0].problem})"
-                raise InputError(problem, key=one.label, remedy="narrow the tolerance") from None
 
 
 def tables(assembly: Assembly, spreads: tuple[Spread, ...], shares: Array, speed: float) -> Array:
     """The numbers of lines (lines, columns) at shares (lines, parameters) of their tolerances."""
-    table = assembly.table(len(shares), speed)
-    for k, one in enumerate(spreads):
-        one.columns.put(table, one.values(shares[:, k]))
-    return np.asarray(table)
+    inside = np.clip(shares, LEAST, 1 - LEAST)
+    return table_at(
+        assembly, spreads, np.stack([s.values(x) for s, x in zip(spreads, inside.T, strict=True)], 1), speed
+    )
+
+
+def numbers_at(spreads: tuple[Spread, ...], shares: Array) -> dict[str, float]:
+    """By parameter the numbers of one line at shares (parameters,) of its tolerances."""
+    inside = np.clip(shares, LEAST, 1 - LEAST)
+    return {one.label: float(one.values(share)) for one, share in zip(spreads, inside, strict=True)}

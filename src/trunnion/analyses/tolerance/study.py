@@ -13,15 +13,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.charts.chart_pixels import Pixels
 from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
-from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances, tables
-from trunnion.driveline.arguments import numbers, one_number
+from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables
+from trunnion.arrays import Array
+from trunnion.driveline.arguments import numbers, one_number, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -36,7 +37,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
 CLIMBS = 6
@@ -175,10 +175,7 @@ def tolerance_study(
     at = numbers(operating_speed(description, None) if speeds is None else speeds, "speeds", "tn.rpm(1500)")
     if not np.all(np.isfinite(at)) or not np.all(at > 0):
         raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
-    if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 256:
-        raise InputError("must be a whole number, 256 or more", key="samples", value=samples)
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise InputError("must be a whole number, 0 or more", key="seed", value=seed)
+    samples, seed = whole_number(samples, "samples", 256), whole_number(seed, "seed", 0)
     if not isinstance(checks, bool | int | np.integer) or checks < 0:
         raise InputError("must be True, False or a number of lines", key="checks", value=checks)
     if not 0.5 <= one_number(confidence, "confidence", "0.95, say") < 1:
@@ -251,7 +248,7 @@ def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth:
     speed, place, best = float(speeds[k]), shares[start].copy(), float(growth[k, start])
 
     def rates(points: Array) -> Array:
-        table = tables(lines.assembly, spreads, np.clip(points, LEAST, 1 - LEAST), speed)
+        table = tables(lines.assembly, spreads, points, speed)
         return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE))
 
     size = len(spreads)
@@ -268,15 +265,9 @@ def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth:
         if not reached[top] > best:
             break
         place, best = tried[top], float(reached[top])
-    place = np.clip(place, LEAST, 1 - LEAST)
     table = tables(lines.assembly, spreads, place[None], speed)
     verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
-    values = {s.label: float(s.values(place[k : k + 1])[0]) for k, s in enumerate(spreads)}
-    return Worst(values, speed, best, verdict)
-
-
-LEAST = 1e-12
-"""Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
+    return Worst(numbers_at(spreads, place), speed, best, verdict)
 
 
 def _ranking(spreads: tuple[Spread, ...], shares: Array, growth: Array) -> tuple[tuple[str, float], ...]:

@@ -6,16 +6,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
 from trunnion.analyses.assessment.result import Assessment
+from trunnion.arrays import Array
 from trunnion.driveline.quantities import DEGREE
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark
 
-Array = NDArray[np.float64]
 STRONGEST = 3
 """Sensitivities printed of each check."""
 LEAST, SHARE = 1e-5, 0.01

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.assessment.check import Check
 from trunnion.analyses.assessment.remedies.variables import Design
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.sensitivity.checks import check_slopes
 from trunnion.analyses.sensitivity.directions import Neighbours, directions_of
-
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
 
 
 @dataclass(frozen=True)

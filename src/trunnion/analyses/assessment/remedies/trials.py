@@ -110,19 +110,23 @@ class Trials:
 
     def quick(self, variable: DesignVariable, value: float) -> Trial | None:
         """The changed line to look around; None where it is refused."""
-        key = variable.path, value
-        if key not in self._quick:
-            line = self.design.changed(variable, value)
-            self._quick[key] = None if line is None else self._looked_at(line)
-        return self._quick[key]
+        return self._judged(self._quick, variable, value, self._looked_at)
 
     def whole(self, variable: DesignVariable, value: float) -> Trial | None:
         """The changed line to be judged wholly; None where it is refused."""
+        return self._judged(self._whole, variable, value, self._judged_wholly)
+
+    def _judged(
+        self, known: Known, variable: DesignVariable, value: float, judge: Callable[[Driveline], Trial]
+    ) -> Trial | None:
         key = variable.path, value
-        if key not in self._whole:
+        if key not in known:
             line = self.design.changed(variable, value)
-            self._whole[key] = None if line is None else Trial(self._asked(line, self.points), len(GROUPS), whole=True)
-        return self._whole[key]
+            known[key] = None if line is None else judge(line)
+        return known[key]
+
+    def _judged_wholly(self, line: Driveline) -> Trial:
+        return Trial(self._asked(line, self.points), len(GROUPS), whole=True)
 
     def _asked(self, line: Driveline, points: int | None) -> Subject:
         """The same question about another line."""

@@ -15,8 +15,8 @@ from math import ceil, exp, floor, isfinite, log, log10, pi
 
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.parameters import PackedLine, pack
-from trunnion.driveline.quantities import DEGREE, KINDS, shown
-from trunnion.errors import InputError
+from trunnion.driveline.quantities import DEGREE
+from trunnion.results.units import in_words
 
 BEND, TURN = 30 * DEGREE, pi / 0.7
 """Angle of a joint, and phase, whose change has the size 1 [rad]."""
@@ -101,8 +101,7 @@ class DesignVariable:
 
     def shown(self, value: float) -> str:
         """A value with an engineer's unit."""
-        kind = next((kind for kind in KINDS if kind.unit == self.unit), None)
-        return f"{value:.4g} {self.unit}".removesuffix(" 1") if kind is None else shown(value, kind, digits=4)
+        return in_words(value, self.unit)
 
 
 class Design:
@@ -123,10 +122,7 @@ class Design:
         numbers[variable.column] = value
         if not isfinite(value) or self._worn(variable, value):
             return None
-        try:
-            return self.packed.line_at(numbers)
-        except InputError:
-            return None
+        return self.packed.line_if_possible(numbers)
 
     def _worn(self, variable: DesignVariable, value: float) -> bool:
         """Whether a smaller outer diameter leaves a bored shaft less than half of its wall."""
