@@ -47,9 +47,6 @@ class Element(Record):
         element.
     """
 
-    idle: ClassVar[tuple[str, ...]] = ()
-    """Numbers that do nothing and are no parameters."""
-
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
     after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
 
@@ -64,6 +61,11 @@ class Element(Record):
     def called(cls, data: dict[str, Any]) -> str:
         """Its name where it has one, else its kind."""
         return data["name"] if is_name(data.get("name")) else cls.__name__
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Numbers that do nothing here and are no parameters."""
+        return ()
 
     @property
     def kind(self) -> str:

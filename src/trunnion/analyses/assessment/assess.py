@@ -94,7 +94,7 @@ def prepare(cases: tuple[Case, ...]) -> None:
 def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:
     stated = line.operation.speed if line.operation else None
     if speeds is None:
-        speeds = stated_range(line) or (operating_speed(line, None), 0.0)  # which says that none is stated
+        speeds = stated_range(line) or 2 * (operating_speed(line, None),)
     ends = tuple(numbers(speeds, "speeds", "speeds=(tn.rpm(300), tn.rpm(2400)), say").tolist())
     if len(ends) != 2 or not 0 <= ends[0] <= ends[1] or not 0 < ends[1] < float("inf"):
         remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"

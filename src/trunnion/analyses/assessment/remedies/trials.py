@@ -66,6 +66,10 @@ class Trial:
         return {check.name: check for check in in_order(c for found in self.in_turn(0) for c in found.values())}
 
 
+Known = dict[tuple[str, float], Trial | None]
+"""Changed lines by the variable and its value; None where the line is refused."""
+
+
 class Trials:
     """Changed lines, each judged once.
 
@@ -86,8 +90,8 @@ class Trials:
         self.cases = {check.load_case for check in asked}
         growth = any(check.name == GROWTH for check in targets)
         self.groups = (len(GROUPS) - (not growth)) if asked else 1
-        self._quick: dict[tuple[str, float], Trial | None] = {}
-        self._whole: dict[tuple[str, float], Trial | None] = {}
+        self._quick: Known = {}
+        self._whole: Known = {}
         unchanged = self._looked_at(subject.line)
         self.of = {name: i for i, found in enumerate(unchanged.in_turn(0)) for name in found}
         """By name of a check the number of its group."""
