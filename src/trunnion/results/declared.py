@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -61,6 +61,13 @@ def fields_over(axes: str, result: object, **units: str) -> Iterator[Held]:
     """Attributes of a result over ``axes``, under their own names, each with its unit ("" for none)."""
     for name, unit in units.items():
         yield over(axes, name, getattr(result, name), unit)
+
+
+def members_over(axes: str, members: Iterable[object], about: str = "", **units: str) -> Iterator[Held]:
+    """The same attributes of every one of ``members``, one along ``axes`` each, under their own names."""
+    several = list(members)
+    for name, unit in units.items():
+        yield over(axes, name, [getattr(one, name) for one in several], unit, about)
 
 
 def remark(name: str, value: object) -> Held:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from math import inf, isfinite, nan
+from math import inf, isfinite, isnan, nan
 
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.assessment.course import Course
@@ -64,6 +64,11 @@ class Check:
     course: Course | None = field(default=None, repr=False, compare=False)
 
     @property
+    def judged(self) -> bool:
+        """Whether it was: satisfied or exceeded."""
+        return self.status in (Status.SATISFIED, Status.EXCEEDED)
+
+    @property
     def spare(self) -> float:
         """Margin beyond the one required."""
         return self.margin - self.required_margin
@@ -94,18 +99,18 @@ def percent(margin: float) -> str:
     return f"{share} free" if margin >= 0 else f"exceeded by {share}"
 
 
-_RANK = {Status.EXCEEDED: 0, Status.SATISFIED: 1, Status.NOT_JUDGED: 2, Status.NOT_APPLICABLE: 3}
-
-
 def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
     """What is exceeded first, then what is satisfied, each by spare margin, limits and ratings before guidelines."""
     return tuple(sorted(checks, key=_place))
 
 
 def _place(check: Check) -> tuple[int, bool, float]:
-    exceeded = check.status is Status.EXCEEDED
-    spare = check.spare if check.spare == check.spare else 0.0
-    return _RANK[check.status], exceeded and check.guideline, spare
+    rank = [Status.EXCEEDED, Status.SATISFIED, Status.NOT_JUDGED, Status.NOT_APPLICABLE].index(check.status)
+    return rank, check.status is Status.EXCEEDED and check.guideline, _known(check.spare)
+
+
+def _known(number: float) -> float:
+    return 0.0 if isnan(number) else number
 
 
 def worst(checks: Iterable[Check]) -> tuple[Check, ...]:
@@ -131,5 +136,5 @@ def merged(ranges: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], 
 
 
 def _severity(check: Check) -> tuple[int, float]:
-    rank = {Status.EXCEEDED: 0, Status.NOT_JUDGED: 1, Status.SATISFIED: 2, Status.NOT_APPLICABLE: 3}
-    return rank[check.status], check.spare if check.spare == check.spare else 0.0
+    rank = [Status.EXCEEDED, Status.NOT_JUDGED, Status.SATISFIED, Status.NOT_APPLICABLE].index(check.status)
+    return rank, _known(check.spare)

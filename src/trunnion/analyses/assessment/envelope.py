@@ -20,7 +20,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.schedules import Schedule
 from trunnion.equations.coefficients import assemble
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, members_over, over, remark, remarks_of
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.quantity_axes import quantity_axis
@@ -90,21 +90,20 @@ class Envelope(Result):
         yield over("place check", "margin", self.margin, "1", "distance to the limit over the limit")
         yield over("check", "status", [str(c.status) for c in self.checks])
         yield over("check", "worst_place", [self.places[k].label for k in self.where])
-        yield over("check", "load_case", [c.load_case for c in self.checks])
-        yield over("check", "value", [c.value for c in self.checks], about="in the unit of its check")
-        yield over("check", "speed", [c.speed for c in self.checks], "rad/s", "input speed where it binds")
-        yield over("check", "because", [c.because for c in self.checks])
+        yield from members_over("check", self.checks, load_case="")
+        yield from members_over("check", self.checks, "in the unit of its check", value="")
+        yield from members_over("check", self.checks, "input speed where it binds", speed="rad/s")
+        yield from members_over("check", self.checks, because="")
         yield over("place", "stable_limit", self.limit, self.parameter_unit, f"largest stable {self.parameter}")
         yield remark("verdict", str(self.verdict))
-        yield remark("sentence", self.sentence)
-        yield remark("parameter", self.parameter)
+        yield from remarks_of(self, "sentence", "parameter")
         yield remark("findings", [str(f) for f in self.findings])
 
     def __str__(self) -> str:
         span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
         rows = [f"envelope from {span}: {self.sentence}"]
         for check, k in zip(self.checks, self.where, strict=True):
-            judged = check.status in (Status.SATISFIED, Status.EXCEEDED)
+            judged = check.judged
             where = f" {self.places[k].label}" if judged and len(self.places) > 1 else ""
             rows.append(f"  {check.status}: {check.name}{where}: {check.because}")
         if self.parameter and np.isfinite(self.limit).any():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from trunnion.analyses.assessment.check import Check, Status, merged, percent
 from trunnion.results.counts import few
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, members_over, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
@@ -79,17 +79,13 @@ class Assessment(Result):
         yield axis("check", [c.name for c in self.checks])
         yield over("check", "status", [str(c.status) for c in self.checks])
         yield over("check", "margin", [c.margin for c in self.checks], "1", "distance to the limit over the limit")
-        yield over("check", "required_margin", [c.required_margin for c in self.checks], "1")
-        yield over("check", "value", [c.value for c in self.checks], about="in the unit of its check")
-        yield over("check", "limit", [c.limit for c in self.checks], about="in the unit of its check")
+        yield from members_over("check", self.checks, required_margin="1")
+        yield from members_over("check", self.checks, "in the unit of its check", value="", limit="")
         yield over("check", "check_unit", [c.unit for c in self.checks])
-        yield over("check", "speed", [c.speed for c in self.checks], "rad/s", "input speed where it binds")
-        yield over("check", "because", [c.because for c in self.checks])
-        yield over("check", "formula", [c.rule.formula for c in self.checks])
-        yield over("check", "source", [c.rule.source for c in self.checks])
-        yield over("check", "certainty", [c.rule.certainty for c in self.checks])
-        yield over("check", "inputs", [c.inputs for c in self.checks])
-        yield over("check", "load_case", [c.load_case for c in self.checks])
+        yield from members_over("check", self.checks, "input speed where it binds", speed="rad/s")
+        yield from members_over("check", self.checks, because="")
+        yield from members_over("check", [c.rule for c in self.checks], formula="", source="", certainty="")
+        yield from members_over("check", self.checks, inputs="", load_case="")
         yield remark("verdict", str(self.verdict))
         yield remark("sentence", self.sentence)
         yield remark("findings", [str(f) for f in self.findings])
@@ -102,7 +98,7 @@ class Assessment(Result):
             {
                 "check": c.name,
                 "status": str(c.status),
-                "margin": percent(c.margin) if c.status in (Status.SATISFIED, Status.EXCEEDED) else "",
+                "margin": percent(c.margin) if c.judged else "",
                 f"speed [{unit}]": f"{c.speed * speed_factor(unit):.5g}" if c.speed == c.speed else "",
                 "because": c.because,
             }
@@ -114,7 +110,7 @@ class Assessment(Result):
         rows = [f"assessment from {span}: {self.sentence}"]
         for c in self.checks:
             rows.append(f"  {c.status}: {c.name}: {c.because}")
-            if c.status in (Status.SATISFIED, Status.EXCEEDED):
+            if c.judged:
                 details = [c.rule.formula, f"{c.rule.source} ({c.rule.certainty})", c.inputs]
                 rows.append(f"      {'; '.join(d for d in details if d)}")
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])

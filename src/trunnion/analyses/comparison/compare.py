@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
-from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.assessment.range_extremes import exact_torque, largest_growth, largest_torque
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.assessment.subject import Subject
@@ -130,7 +129,7 @@ def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, 
 
 def _margins(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
     for check in judged.checks if judged else ():
-        if check.status in (Status.SATISFIED, Status.EXCEEDED):
+        if check.judged:
             yield f"margin of {check.name}", ("margin", float(check.margin), "1", float(check.speed))
 
 

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.changes import Change
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, members_over, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
@@ -119,13 +117,12 @@ class Comparison(Result):
         yield over("change", "value_before", [one.before for one in self.changes])
         yield over("change", "value_after", [one.after for one in self.changes])
         yield axis("quantity", [one.name for one in self.differences])
-        yield over("quantity", "kind", [one.kind for one in self.differences])
+        yield from members_over("quantity", self.differences, kind="")
         yield over("quantity", "quantity_unit", [one.unit for one in self.differences])
         for name in ("before", "after"):
-            about = "in the unit of the quantity"
-            yield over("quantity", name, np.array([getattr(one, name) for one in self.differences]), about=about)
-            speeds = np.array([getattr(one, f"speed_{name}") for one in self.differences])
-            yield over("quantity", f"speed_{name}", speeds, "rad/s", "input speed where it stands")
+            speed = {f"speed_{name}": "rad/s"}
+            yield from members_over("quantity", self.differences, "in the unit of the quantity", **{name: ""})
+            yield from members_over("quantity", self.differences, "input speed where it stands", **speed)
         yield remark("names", list(self.names))
         yield remark("verdicts", ["" if v is None else str(v) for v in self.verdicts])
         yield remark("binding", ["" if c is None else c.name for c in self.binding])

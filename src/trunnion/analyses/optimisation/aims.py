@@ -106,7 +106,7 @@ class Question:
                 subject = replace(subject, cases=tuple(c for c in subject.cases if c.name in self.cases))
         checks = checks_of(subject) if subject is not None and self.checking else ()
         values = tuple(_value(aim, line, subject, checks) for aim in self.aims)
-        judged = [c for c in checks if self._must_hold(c) and c.status in (Status.SATISFIED, Status.EXCEEDED)]
+        judged = [c for c in checks if self._must_hold(c) and c.judged]
         broken = [c for c in judged if c.status is Status.EXCEEDED]
         violation = sum(min(-c.spare, WORST) for c in broken)
         return Answer(values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf))
@@ -214,7 +214,7 @@ def _largest(torques: Iterable[tuple[Case, int, float]]) -> float:
 
 def _margins(aim: Aim, checks: Iterable[Check]) -> Iterator[float]:
     for check in checks:
-        if check.status not in (Status.SATISFIED, Status.EXCEEDED):
+        if not check.judged:
             continue
         if aim.name == SPARE and not check.guideline:
             yield check.spare

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, over, remark, remarks_of
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.units import in_words
@@ -81,9 +81,7 @@ class Optimum(Result):
         yield over("point free", "front_value", self.front_value, about="in the unit of the free number")
         yield over("point aim", "front", self.front, about="in the unit of the aim")
         yield remark("broken", list(self.broken))
-        yield remark("designs", self.designs)
-        yield remark("seed", self.seed)
-        yield remark("sentence", self.sentence)
+        yield from remarks_of(self, "designs", "seed", "sentence")
         yield remark("findings", [str(f) for f in self.findings])
 
     def table(self) -> list[dict[str, object]]:

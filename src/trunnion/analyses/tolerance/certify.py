@@ -28,7 +28,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remark, remarks_of
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
@@ -81,11 +81,9 @@ class StabilityCertificate(Result):
         yield over("open_box variable", "low", self.undecided_low)
         yield over("open_box variable", "high", self.undecided_high)
         yield axis("proved_box", np.arange(len(self.proved_low)))
-        yield over("proved_box variable", "proved_low", self.proved_low)
-        yield over("proved_box variable", "proved_high", self.proved_high)
+        yield from fields_over("proved_box variable", self, proved_low="", proved_high="")
         yield over("", "largest_radius", self.largest_radius, "1", "largest multiplier at the middle of any box")
-        yield remark("verdict", self.verdict)
-        yield remark("undecided_share", self.undecided_share)
+        yield from remarks_of(self, "verdict", "undecided_share")
         yield remark("speeds", list(self.speeds))
         yield remark("boxes", self.boxes)
 

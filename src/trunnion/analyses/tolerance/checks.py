@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, numbers_at, tables
 from trunnion.arrays import Array, Flags
-from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -131,24 +129,32 @@ def study_checks(
     if lines is None and each > FEWEST and each * SCRAMBLES > wanted:
         each //= 2
     shares = sobol(len(spreads), each, seed)
-    found = []
+    found: list[dict[str, Check] | None] = []
     for k, place in enumerate(shares):
         found.append(judge.of(place))
         tell((k + 1) / len(shares))
-    names = tuple(dict.fromkeys(c.name for checks in found for c in checks or () if c.status in _JUDGED))
-    status = np.array([[_status(checks, name) for name in names] for checks in found]).reshape(len(found), len(names))
-    guideline = np.array([_is_guideline(found, name) for name in names], dtype=bool)
-    holds = status != _EXCEEDED
     computed = np.array([checks is not None for checks in found])
+    every = [checks or {} for checks in found]
+    names = tuple(dict.fromkeys(name for checks in every for name, own in checks.items() if own.judged))
+    shape = len(found), len(names)
+
+    def matrix(read: Callable[[Check], float], otherwise: float) -> Array:
+        """By line and check, of what is judged."""
+        rows = [[read(c) if (c := own.get(name)) and c.judged else otherwise for name in names] for own in every]
+        return np.array(rows, dtype=float).reshape(shape)
+
+    judged = matrix(lambda check: 1.0, 0.0) > 0
+    holds = matrix(lambda check: check.status is not Status.EXCEEDED, 1.0) > 0
+    spare = matrix(lambda check: check.spare, np.nan)
+    guideline = np.array([any(own[n].guideline for own in every if n in own) for n in names], dtype=bool)
     together = holds[:, ~guideline].all(axis=1) & computed
-    spare = np.array([[_spare(checks, name) for name in names] for checks in found]).reshape(len(found), len(names))
     worst, ranking = _worst(judge, shares, spare[:, ~guideline], np.array(names)[~guideline].tolist())
     grid = (SCRAMBLES, each)
     return CheckStudy(
         names,
         holds.mean(axis=0),
         np.array([interval(column.reshape(grid), confidence) for column in holds.T]).reshape(-1, 2),
-        (status != _UNJUDGED).mean(axis=0),
+        judged.mean(axis=0),
         guideline,
         float(together.mean()),
         interval(together.reshape(grid), confidence),
@@ -163,44 +169,20 @@ def study_checks(
     )
 
 
-_JUDGED = (Status.SATISFIED, Status.EXCEEDED)
-_HOLDS, _EXCEEDED, _UNJUDGED = 0, 1, 2
-
-
 @dataclass(frozen=True)
 class _Judge:
     assembly: Assembly
     spreads: tuple[Spread, ...]
     speeds: tuple[float, float]
 
-    def of(self, shares: Array) -> tuple[Check, ...] | None:
-        """Its checks; None where it cannot be computed."""
+    def of(self, shares: Array) -> dict[str, Check] | None:
+        """Checks by name of the line at shares (parameters,) of its tolerances; None where it cannot be computed."""
         row = tables(self.assembly, self.spreads, shares[None], float("nan"))[0]
         try:
-            line: Driveline = self.assembly.packed.line_at(row)
-            return checks_of(subject_of(line, self.speeds, None, None, POINTS))
+            line = self.assembly.packed.line_at(row)
+            return {check.name: check for check in checks_of(subject_of(line, self.speeds, None, None, POINTS))}
         except (InputError, ComputationError):
             return None
-
-
-def _named(checks: tuple[Check, ...] | None, name: str) -> Check | None:
-    return next((c for c in checks or () if c.name == name), None)
-
-
-def _status(checks: tuple[Check, ...] | None, name: str) -> int:
-    own = _named(checks, name)
-    if own is None or own.status not in _JUDGED:
-        return _UNJUDGED
-    return _EXCEEDED if own.status is Status.EXCEEDED else _HOLDS
-
-
-def _spare(checks: tuple[Check, ...] | None, name: str) -> float:
-    own = _named(checks, name)
-    return own.spare if own is not None and own.status in _JUDGED else float("nan")
-
-
-def _is_guideline(found: list[Any], name: str) -> bool:
-    return any(own.guideline for checks in found if (own := _named(checks, name)) is not None)
 
 
 def _worst(
@@ -217,7 +199,7 @@ def _worst(
     candidates = [shares[at], *(shares[at] + part * (np.where(slope > 0, 0.0, 1.0) - shares[at]) for part in PARTS)]
     best: WorstLine | None = None
     for place in candidates:
-        check = _named(judge.of(place), names[k])
+        check = (judge.of(place) or {}).get(names[k])
         if check is not None and np.isfinite(check.spare) and (best is None or check.spare < best.spare):
             best = WorstLine(numbers_at(judge.spreads, place), names[k], check.spare, check.because)
     scatter = float(spare[own, k].var())

@@ -28,7 +28,7 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.chart import require_pixels
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remark, remarks_of
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
@@ -90,8 +90,7 @@ class ToleranceStudy(Result):
         """Tolerances with their ranking, shares over speed, the worst line."""
         rank = dict(self.ranking)
         yield axis("parameter", list(self.parameters))
-        yield over("parameter", "low", self.low)
-        yield over("parameter", "high", self.high)
+        yield from fields_over("parameter", self, low="", high="")
         yield over("parameter", "explained", np.array([rank[p] for p in self.parameters]), "1")
         yield over("parameter", "worst", np.array([self.worst.values[p] for p in self.parameters]))
         yield axis("speed", self.speeds, "rad/s")
@@ -100,9 +99,7 @@ class ToleranceStudy(Result):
         yield over("speed quantile", "growth_rate", np.nanquantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
         yield remark("probability", self.probability)
         yield remark("interval", list(self.interval))
-        yield remark("confidence", self.confidence)
-        yield remark("undecided", self.undecided)
-        yield remark("samples", self.samples)
+        yield from remarks_of(self, "confidence", "undecided", "samples")
         yield remark("worst_speed", self.worst.speed)
         yield remark("worst_growth_rate", self.worst.growth_rate)
         yield remark("worst_verdict", str(self.worst.verdict))

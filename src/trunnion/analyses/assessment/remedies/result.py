@@ -13,7 +13,7 @@ from trunnion.analyses.assessment.result import Assessment
 from trunnion.arrays import Array
 from trunnion.driveline.quantities import DEGREE
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, over, remark, remarks_of
 
 STRONGEST = 3
 """Sensitivities printed of each check."""
@@ -124,8 +124,7 @@ class Remedies(Result):
         yield over("remedy", "remedy_verdict", [str(r.verdict) for r in self.remedies])
         yield over("remedy", "sentence", [r.sentence for r in self.remedies])
         yield remark("verdict", str(self.assessment.verdict))
-        yield remark("lines", self.lines)
-        yield remark("verified", self.verified)
+        yield from remarks_of(self, "lines", "verified")
 
     def __str__(self) -> str:
         rows = [
