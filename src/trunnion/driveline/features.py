@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk
-from trunnion.driveline.joints import DoubleCardanJoint
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
 
@@ -37,40 +37,23 @@ class Feature:
             return tuple(self.find(line))
         return tuple(
             f"{name}.{key}"
-            for name, element in zip(line.names, line.elements, strict=True)
+            for name, element in line.parts
             for kind, key in (field.split(".") for field in self.fields)
             if element.kind == kind and getattr(element, key, None)
         )
 
 
+def _where(kind: type[Element], key: str, test: Callable[[Any], object]) -> Finder:
+    """Finds elements of a kind that pass a test, and names their ``key``."""
+    return lambda line: [f"{name}.{key}" for name, e in line.parts if isinstance(e, kind) and test(e)]
+
+
 def _excited(by: str) -> Finder:
-    def find(line: Driveline) -> list[str]:
-        return [
-            f"{name}.excitation"
-            for name, e in zip(line.names, line.elements, strict=True)
-            if isinstance(e, Disk) and any(getattr(one, by) for one in e.excitation)
-        ]
-
-    return find
-
-
-def _off_centre(line: Driveline) -> list[str]:
-    return [
-        f"{name}.distance_ratio"
-        for name, e in zip(line.names, line.elements, strict=True)
-        if isinstance(e, DoubleCardanJoint) and e.distance_ratio
-    ]
+    return _where(Disk, "excitation", lambda disk: any(getattr(one, by) for one in disk.excitation))
 
 
 def _rubbing(at_one_motion: bool) -> Finder:
-    def find(line: Driveline) -> list[str]:
-        return [
-            f"{name}.friction"
-            for name, e in zip(line.names, line.elements, strict=True)
-            if isinstance(e, Clutch) and (e.linear_amplitude is not None) is at_one_motion
-        ]
-
-    return find
+    return _where(Clutch, "friction", lambda clutch: (clutch.linear_amplitude is not None) is at_one_motion)
 
 
 def _branches(line: Driveline) -> list[str]:
@@ -138,7 +121,7 @@ FEATURES = (
         ),
     ),
     Feature("double Cardan joint", ("DoubleCardanJoint.angle", "DoubleCardanJoint.yoke_length")),
-    Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",), _off_centre),
+    Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",)),
     Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
     Feature(
         "gear mesh",

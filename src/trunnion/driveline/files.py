@@ -43,7 +43,7 @@ from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.writing import written_whole
 
-Made = TypeVar("Made")
+Made = TypeVar("Made", bound=Record)
 FORMAT = 1
 LARGEST_FILE = 4_000_000
 """Bytes of a driveline file; examples have a few thousand."""
@@ -279,52 +279,35 @@ def _operation(table: Any) -> Operation:
     data = dict(table)
     wrong: list[InputError] = []
     made: dict[str, Any] = {}
-    for key, make in (("load_case", LoadCase), ("schedule", Schedule)):
+    kinds: dict[str, type[Record]] = {"load_case": LoadCase, "schedule": Schedule}
+    for key, kind in kinds.items():
         many = f"{key}s"
         if many in data:  # the name in Python; a file repeats [[operation.load_case]]
             raise InputError("unknown key", element="operation", key=many, remedy=f'did you mean "{key}"?')
-        tables = data.pop(key, [])
-        if not isinstance(tables, list):
-            remedy = f"write [[operation.{key}]] with double brackets"
-            raise InputError("is a single table", element="operation", key=key, remedy=remedy)
-        made[many] = []
-        for place, one in enumerate(tables, start=1):
-            try:
-                made[many].append(_named(one, place, key, make))
-            except InputError as error:
-                wrong += error.problems
+        try:
+            made[many] = _each(data.pop(key, []), key, kind, "operation")
+        except InputError as error:
+            wrong += error.problems
     wrong += problems_of([lambda: Operation(**data, **({} if wrong else made))])
     if wrong:
         raise InputError.together(wrong)
     return Operation(**data, **made)
 
 
-def _named(table: Any, place: int, key: str, make: Callable[..., Made]) -> Made:
-    label = f"{key.replace('_', ' ')} {place}"
-    if not isinstance(table, dict):
-        raise InputError("is not a table", element=label, value=table, remedy=f"write [[operation.{key}]]")
-    try:
-        return make(**table)
-    except InputError as error:
-        if is_name(table.get("name")):
-            raise
-        raise about(error, label) from None
-
-
-def _each(tables: Any, what: str, make: Callable[..., Made]) -> list[Made]:
-    """Every ``[[what]]`` of a file."""
+def _each(tables: Any, key: str, kind: type[Made], owner: str = "") -> list[Made]:
+    """Every ``[[key]]`` of a file, or of a table of it that is its ``owner``."""
+    header = f"[[{owner}.{key}]]" if owner else f"[[{key}]]"
     if not isinstance(tables, list):
-        remedy = f"write [[{what}]] with double brackets"
-        raise InputError("is a single table", key=what, remedy=remedy)
+        raise InputError("is a single table", element=owner, key=key, remedy=f"write {header} with double brackets")
 
     def one(place: int, table: Any) -> Made:
-        label = f"{what} {place}"
+        label = f"{kind.what} {place}"
         if not isinstance(table, dict):
-            raise InputError("is not a table", element=label, value=table, remedy=f"write [[{what}]]")
+            raise InputError("is not a table", element=label, value=table, remedy=f"write {header}")
         try:
-            return make(**table)
+            return kind(**table)
         except InputError as error:
-            raise (error if isinstance(table.get("of"), str) else about(error, label)) from None
+            raise (error if kind.called(table) != kind.what else about(error, label)) from None
 
     return all_made(partial(one, place, table) for place, table in enumerate(tables, start=1))
 

@@ -109,7 +109,7 @@ class Layout:
 
     def shaft_lengths(self, line: Driveline) -> dict[str, float]:
         """Length [m] of each shaft between two joints by its name in ``line``, for ``kinetostatics``."""
-        names = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Shaft)]
+        names = [n for n, e in line.parts if isinstance(e, Shaft)]
         return {name: float(length) for name, length in zip(names[1:-1], self.lengths, strict=True)}
 
     def __str__(self) -> str:

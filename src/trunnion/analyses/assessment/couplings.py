@@ -51,7 +51,7 @@ def frequency_factor(frequency: float) -> float:
 
 def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
     """Every rating that a coupling states."""
-    for name, element in zip(subject.line.names, subject.line.elements, strict=True):
+    for name, element in subject.line.parts:
         if not isinstance(element, Coupling):
             continue
         for key, formula in RATINGS.items():

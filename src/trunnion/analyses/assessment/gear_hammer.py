@@ -26,7 +26,7 @@ NOTHING = 1e-3
 
 def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
     """Every mesh of the line."""
-    pairs = [n for n, e in zip(subject.line.names, subject.line.elements, strict=True) if isinstance(e, GearPair)]
+    pairs = [n for n, e in subject.line.parts if isinstance(e, GearPair)]
     if not pairs:
         yield Check("gear hammer", Status.NOT_APPLICABLE, RULE, "the line has no GearPair")
     for name in pairs:

@@ -23,7 +23,6 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.threads import on_threads
 
 IRREGULARITY, GROWTH, SPARE = "irregularity", "growth rate", "least spare margin"
-TORQUES = ("peak torque of ", "vibratory torque of ")
 MARGIN = "margin of "
 WORST = 10.0
 """The largest violation that one check can count, in margins."""
@@ -32,32 +31,20 @@ OwnAim = Callable[[Driveline], float]
 
 @dataclass(frozen=True)
 class Aim:
-    """One aim: its name and unit, and whether the largest value is wanted, not the smallest."""
+    """One aim: its name and unit, and whether the largest value is wanted, not the smallest; of a torque, "peak" or
+    "vibratory", and whose."""
 
     name: str
     unit: str
     largest: bool = False
     own: OwnAim | None = None
+    word: str = ""
+    spring: str = ""
 
     @property
     def judged(self) -> bool:
         """Whether it needs the checks."""
         return self.name == SPARE or self.name.startswith(MARGIN)
-
-    @property
-    def of_torque(self) -> bool:
-        """Whether it is a spring's torque."""
-        return self.own is None and self.name.startswith(TORQUES)
-
-    @property
-    def word(self) -> str:
-        """ "peak" or "vibratory", of a torque."""
-        return self.name.partition(" torque of ")[0]
-
-    @property
-    def spring(self) -> str:
-        """Whose torque."""
-        return self.name.partition(" torque of ")[2]
 
     @property
     def over_range(self) -> bool:
@@ -114,14 +101,14 @@ class Question:
     @property
     def of_torques(self) -> bool:
         """Whether nothing but torques is asked for, of which the load cases' largest counts."""
-        return not self.checking and all(aim.of_torque or not aim.over_range for aim in self.aims)
+        return not self.checking and all(aim.word or not aim.over_range for aim in self.aims)
 
     def near_cases(self, line: Driveline, points: int = POINTS) -> frozenset[str]:
         """Names of the load cases whose torques come near the largest, by speeds of the grid; none where nothing can
         be computed."""
         try:
             subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
-            torques = [_coarse(aim, subject) for aim in self.aims if aim.of_torque]
+            torques = [_coarse(aim, subject) for aim in self.aims if aim.word]
         except (InputError, ComputationError):
             return frozenset()
         return frozenset(case.name for found in torques for case, _, value in found if value >= NEAR * _largest(found))
@@ -167,18 +154,17 @@ def _aim(line: Driveline, given: object) -> Aim:
         return Aim(getattr(given, "__name__", "own aim"), "1", own=given)
     from trunnion.equations.coefficients import assemble
 
-    springs = shaft_names(assemble(line))
-    known = [IRREGULARITY, GROWTH, SPARE, *(f"{word}{spring}" for word in TORQUES for spring in springs)]
+    known = [Aim(IRREGULARITY, "1"), Aim(GROWTH, "1/s"), Aim(SPARE, "1", largest=True)]
+    for word in ("peak", "vibratory"):
+        for spring in shaft_names(assemble(line)):
+            known.append(Aim(f"{word} torque of {spring}", "N*m", word=word, spring=spring))
     if isinstance(given, str) and given.startswith(MARGIN):
         return Aim(given, "1", largest=True)
-    if given not in known:
-        near = nearest(str(given), known)
-        raise InputError(
-            "is no aim", key="aims", value=given, remedy=f'{near}; "margin of CHECK", or a function of a line'
-        )
-    assert isinstance(given, str)
-    units = {IRREGULARITY: "1", GROWTH: "1/s", SPARE: "1"}
-    return Aim(given, units.get(given, "N*m"), largest=given == SPARE)
+    for aim in known:
+        if aim.name == given:
+            return aim
+    remedy = f'{nearest(str(given), [aim.name for aim in known])}; "margin of CHECK", or a function of a line'
+    raise InputError("is no aim", key="aims", value=given, remedy=remedy)
 
 
 def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[Check]) -> float:

@@ -9,7 +9,6 @@ import numpy as np
 
 from trunnion.analyses.assessment.assess import assess, subject_of
 from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
-from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, aims_of
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
@@ -115,7 +114,7 @@ def optimise(
         front_value=np.array([space.values(one.shares) for one in found]),
         front=np.array([signs * one.losses for one in found]),
         broken=best.answer.broken,
-        assessment=_judged(after, span, load_case, unit),
+        assessment=None if span is None else assess(after, span, load_case=load_case, unit=unit),
         designs=tried,
         seed=seed,
         findings=by_gravity(_findings(space, best, found)),
@@ -239,12 +238,6 @@ def _require_checks(line: Driveline, question: Question, held: frozenset[str]) -
             raise InputError(
                 "is not a check of this line", key="checks", value=name, remedy=f"there are {', '.join(known)}"
             )
-
-
-def _judged(
-    line: Driveline, span: tuple[float, float] | None, load_case: str | None, unit: str | None
-) -> Assessment | None:
-    return None if span is None else assess(line, span, load_case=load_case, unit=unit)
 
 
 def _findings(space: Space, best: Tried, found: Sequence[Tried]) -> Iterator[Finding]:

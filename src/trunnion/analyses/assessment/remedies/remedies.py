@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,12 +11,14 @@ from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.remedies.result import Remedies, Remedy
 from trunnion.analyses.assessment.remedies.search import Found, Search, goals_of
-from trunnion.analyses.assessment.remedies.sensitivities import sensitivities
 from trunnion.analyses.assessment.remedies.trials import Trials
 from trunnion.analyses.assessment.remedies.variables import Design
 from trunnion.analyses.assessment.result import verdict_of
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.linear.loaded_modes import loaded_modes
+from trunnion.analyses.sensitivity.checks import check_slopes
+from trunnion.analyses.sensitivity.directions import Neighbours, directions_of
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
@@ -90,7 +93,7 @@ def remedies_of(
     design = Design(subject.line)
     by_name = {check.name: check for check in base}
     targets = [by_name[name] for name in goals]
-    slopes = sensitivities(subject, design, targets)
+    slope, error, speed = _sensitivities(subject, design, targets)
     found: list[Found] = []
     closest: list[Found] = []
     verified = ""
@@ -104,14 +107,29 @@ def remedies_of(
         assessment=judged,
         checks=tuple(goals),
         variables=design.variables,
-        sensitivity=slopes.slope,
-        sensitivity_error=slopes.error,
-        sensitivity_speed=slopes.speed,
+        sensitivity=slope,
+        sensitivity_error=error,
+        sensitivity_speed=speed,
         remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
         closest={one.check: _closest(one, by_name) for one in closest},
         lines=lines,
         verified=verified,
     )
+
+
+def _sensitivities(subject: Subject, design: Design, checks: Sequence[Check]) -> tuple[Array, Array, Array]:
+    """d ln(value)/d ln p of checks' values by design variables (check, variable), d ln(value)/dφ [1/rad] for angles;
+    their errors; the speed (check,) [rad/s] where they were taken. NaN where a check has no value. Of bent lines that
+    start free about the motion of rigid shafts, right to first order in what joints force."""
+    assembly = subject.cases[0].assembly
+    directions = directions_of(assembly, [v.path for v in design.variables]) if design.variables else ()
+    if subject.cases[0].costly:
+        subject = replace(subject, cases=tuple(replace(case, rough=True) for case in subject.cases))
+    found = check_slopes(subject, Neighbours(assembly), directions, checks)
+    size = np.array([one.size for one in directions]).reshape(1, -1)
+    value = found.value[:, :1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return found.slope[:, 0] * size / value, found.error[:, 0] * size / np.abs(value), found.speed
 
 
 def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) -> dict[str, float]:
