@@ -280,9 +280,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             damping[:, e], loss[:, e] = (_series(each, list(part)) for part in zip(*parts, strict=True))
         if has_stages(assembly.line.elements[shafts[0]]):
             if states_a_motion(assembly.line.elements[shafts[0]]) and not free:
-                rubbing = mean_clutch(assembly.packed, table, shafts[0], static[:, e], damping[:, e])
-                at_rest, stiffness[:, e] = rubbing.middle, rubbing.stiffness
-                damping[:, e] = rubbing.damping if damped else 0.0
+                mean_there = mean_clutch(assembly.packed, table, shafts[0], static[:, e], damping[:, e])
+                at_rest, stiffness[:, e], rubs = mean_there
+                damping[:, e] = rubs if damped else 0.0
             else:
                 law = stage_law(assembly.line, shafts[0], column, table)
                 at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)

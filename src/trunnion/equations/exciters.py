@@ -64,7 +64,7 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
     for s, place in topo.disks:
         element = line.elements[place]
         assert isinstance(element, Disk)
-        held = topo.coordinate[topo.group_of(s)] < 0
+        held = bool(topo.unknown_of[s] < 0)
         for h, harmonic in enumerate(element.excitation, start=1):
             own = harmonic.order or 0.0
             found.append(
@@ -140,17 +140,16 @@ def torque_on_unknowns(topo: Topology, exciter: Exciter, sizes: Complex, base: B
     sense = float(np.sign(float(topo.speed_ratio[s])))
     turned = np.exp(1j * exciter.own_order * sense * base.rotation[..., s])
     g = np.zeros((*turned.shape, topo.size), dtype=complex)
-    g[..., topo.coordinate[topo.group_of(s)]] = base.relative[..., s] * sense * sizes[:, None] * turned
+    g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * sizes[:, None] * turned
     return g
 
 
 def twist_on_unknowns(topo: Topology, exciter: Exciter, torque: Complex, relative: Array) -> Complex:
     """g (case, time, n) of a mesh whose transmission error alone gives it the ``torque`` (case, time) [N m]."""
-    ends = topo.compliances[exciter.compliance]
-    far, near = topo.coordinate[ends.far_group], topo.coordinate[topo.group_of(ends.near)]
+    far, near = topo.ends[exciter.compliance]
     g = np.zeros((*torque.shape, topo.size), dtype=complex)
     if far >= 0:
         g[..., far] -= torque
     if near >= 0:
-        g[..., near] += relative[..., ends.near] * torque
+        g[..., near] += relative[..., topo.compliances[exciter.compliance].near] * torque
     return g

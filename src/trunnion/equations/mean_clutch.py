@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from trunnion.arrays import Array
@@ -15,22 +13,17 @@ from trunnion.errors import InputError
 from trunnion.laws import friction
 
 
-@dataclass(frozen=True)
-class MeanClutch:
-    """What stands for a clutch, (case,) each: middle [rad] of the swing, stiffness [N m/rad], damping [N m s/rad]."""
-
-    middle: Array
-    stiffness: Array
-    damping: Array
-
-
 def states_a_motion(element: Element) -> bool:
     """Whether it is a clutch that states the motion at which linear equations take it."""
     return isinstance(element, Clutch) and element.linear_amplitude is not None
 
 
-def mean_clutch(packed: PackedLine, table: Array, place: int, torque: Array, viscous: Array) -> MeanClutch:
-    """The clutch at ``place`` on average under a static ``torque`` (case,) [N m], at the rows of ``table``.
+def mean_clutch(
+    packed: PackedLine, table: Array, place: int, torque: Array, viscous: Array
+) -> tuple[Array, Array, Array]:
+    """What stands for the clutch at ``place`` under a static ``torque`` (case,) [N m], at the rows of ``table``.
+
+    Middle [rad] of the swing, stiffness [N m/rad] and damping [N m s/rad], (case,) each.
 
     ``viscous`` : damping (case,) of its spring [N m s/rad].
 
@@ -57,7 +50,7 @@ def mean_clutch(packed: PackedLine, table: Array, place: int, torque: Array, vis
     if not law.softest_damped:
         acts = np.arange(law.slopes.shape[1]) != np.argmin(law.slopes, axis=1)[:, None]
         viscous = viscous * friction.damped_share(law, acts, middle, amplitude)
-    return MeanClutch(middle, stiffness, viscous + lost / (np.pi * amplitude**2 * frequency))
+    return middle, stiffness, viscous + lost / (np.pi * amplitude**2 * frequency)
 
 
 def _positive(packed: PackedLine, table: Array, place: int, key: str) -> Array:

@@ -49,6 +49,12 @@ def bent(assembly: Assembly, table: Array | None = None) -> bool:
     return any(law.uneven for law in joint_laws(assembly, assembly.table(1) if table is None else table))
 
 
+def moves_by_itself(assembly: Assembly, table: Array | None = None) -> bool:
+    """Whether the line starts free and is bent, so that it has a periodic motion of its own: as described, or at any
+    row of ``table``."""
+    return assembly.topology.free and bent(assembly, table)
+
+
 def require_balance(assembly: Assembly, table: Array) -> None:
     """Refuse a free line whose torques do not add up to nothing at the rows of ``table``, and name them."""
     left = imbalance(assembly, table)

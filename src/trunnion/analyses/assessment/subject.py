@@ -20,7 +20,7 @@ from trunnion.analyses.orders.result import OrderResponse
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import bent, moves_by_itself
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
@@ -136,7 +136,7 @@ class Case:
     @property
     def costly(self) -> bool:
         """Whether every speed takes a motion of its own."""
-        return self.assembly.topology.free and bent(self.assembly)
+        return moves_by_itself(self.assembly)
 
     @property
     def parametric(self) -> bool:

@@ -27,6 +27,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 
 Progress = Callable[[float], None]
+Reached = tuple[tuple[OtherLimit, ...], str]
 SCAN = 24
 """Steps of the grid of values."""
 EXACT = 1e-10
@@ -45,29 +46,26 @@ class Demand:
     values: Callable[[OrderResponse, Array], Array]
 
 
-@dataclass(frozen=True)
-class OtherLimits:
-    """What was found, and how, in words."""
-
-    limits: tuple[OtherLimit, ...]
-    search: str
-
-
 def other_limits(
     assembly: Assembly, columns: Columns, speed: Array, low: float, high: float, scan: int, tell: Progress
-) -> OtherLimits:
-    """The value between ``low`` and ``high`` at which each limit of the line is reached first at every ``speed``."""
+) -> Reached:
+    """The value between ``low`` and ``high`` at which each limit of the line is reached first at every ``speed``.
+
+    Behind the limits stands in words how they were looked for.
+    """
     demands = demands_of(assembly)
     if not demands:
-        return OtherLimits((), "")
+        return (), ""
     search = _Search(assembly, columns, demands, speed)
     try:
         reached = search.first(np.linspace(low, high, scan + 1), tell)
     except (InputError, ComputationError) as error:
-        return OtherLimits((), f"limits of the description are not compared: {str(error).splitlines()[0]}")
+        return (), f"limits of the description are not compared: {str(error).splitlines()[0]}"
     found = tuple(OtherLimit(d.name, d.allowed, d.unit, r) for d, r in zip(demands, reached, strict=True))
-    return OtherLimits(found, f"limits of the description: linear response at {scan + 1} values and at maxima between "
-                              "them, passages solved for; a narrower peak may be missing")  # fmt: skip
+    return found, (
+        f"limits of the description: linear response at {scan + 1} values and at maxima between them, passages solved "
+        "for; a narrower peak may be missing"
+    )
 
 
 def demands_of(assembly: Assembly) -> list[Demand]:

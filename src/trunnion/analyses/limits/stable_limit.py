@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from trunnion.analyses.charts.building import family_for, way_named
 from trunnion.analyses.charts.stability_chart import Task, family_of_chart
 from trunnion.analyses.features import left_out
-from trunnion.analyses.limits.other_limits import SCAN, OtherLimits, other_limits
+from trunnion.analyses.limits.other_limits import SCAN, Reached, other_limits
 from trunnion.analyses.limits.result import LimitKind, StableLimit
 from trunnion.analyses.tongues.boundaries import MOST
 from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
@@ -133,7 +133,7 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
         region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: None)
     asked = np.clip(np.asarray(speeds, dtype=float), chart.x.min(), chart.x.max())
     found = _Stability.of(region, np.unique(np.concatenate([asked, chart.x] if own else [asked])))
-    return _result(assemble(chart.line), task, region, found, OtherLimits((), ""), None)
+    return _result(assemble(chart.line), task, region, found, ((), ""), None)
 
 
 def _region(task: Task, speeds: int, tolerance: float, workers: int, tell: Progress) -> Region:
@@ -168,7 +168,12 @@ class _Stability:
 
 
 def _result(
-    assembly: Assembly, task: Task, region: Region, found: _Stability, others: OtherLimits, whole: StableWindows | None
+    assembly: Assembly,
+    task: Task,
+    region: Region,
+    found: _Stability,
+    others: Reached,
+    whole: StableWindows | None,
 ) -> StableLimit:
     low, high = float(task.x.values[0]), float(task.x.values[-1])
     some = np.array([len(ranges) > 0 for ranges in found.unstable])
@@ -182,7 +187,7 @@ def _result(
     return StableLimit(
         task.x.label, task.x.unit, found.speed, limit, kind, found.unstable, low, high,
         region.by_coefficients and not region.uncovered, _search_words(region),
-        others.limits, others.search, whole, (*said, *notes), speed_unit(assembly.line),
+        *others, whole, (*said, *notes), speed_unit(assembly.line),
     )  # fmt: skip
 
 

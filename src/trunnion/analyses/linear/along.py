@@ -26,7 +26,7 @@ from trunnion.equations.first_order import (
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
-from trunnion.equations.steady_base import bent, require_balance
+from trunnion.equations.steady_base import moves_by_itself, require_balance
 from trunnion.errors import InputError
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import without
@@ -78,7 +78,7 @@ def stability_along(
     InputError : no period; torques that do not balance. NoSharedMotion is one.
     """
     speed = np.asarray(speeds, dtype=float)
-    if assembly.topology.free and bent(assembly):
+    if moves_by_itself(assembly):
         return _about_own_motions(assembly, speed, motions)
     table = assembly.table(len(speed), speed)
     co = assembly.coefficients(table, statically_twisted=statically_twisted)

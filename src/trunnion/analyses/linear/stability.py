@@ -29,7 +29,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import moves_by_itself
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.spectrum import multipliers, spectral_radius
@@ -219,7 +219,7 @@ def stability(
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
     assembly = assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
-    if assembly.topology.free and bent(assembly):
+    if moves_by_itself(assembly):
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)

@@ -16,12 +16,12 @@ Key = tuple[Fraction, float]
 class OrderSum:
     """Amplitudes by (order, frequency), summed up as they come."""
 
-    def __init__(self, cases: int, channels: int, points: int) -> None:
+    def __init__(self, cases: int, channels: Channels) -> None:
         self.amplitude: dict[Key, Complex] = {}
         self.base: dict[Key, Complex] = {}
-        self.mean = np.zeros((cases, channels))
-        self.zero = np.zeros((cases, channels), dtype=complex)
-        self.flat = np.zeros((cases, points), dtype=complex)
+        self.mean = np.zeros((cases, channels.count))
+        self.zero = np.zeros((cases, channels.count), dtype=complex)
+        self.flat = np.zeros((cases, channels.points), dtype=complex)
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
         """Take in one part; order 0 is the mean, negative orders are folded onto positive ones."""

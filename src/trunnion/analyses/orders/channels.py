@@ -8,6 +8,7 @@ that of the points whose motion is shown: disks, each where it is, behind its jo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -17,48 +18,34 @@ from trunnion.equations.topology import Topology
 
 @dataclass(frozen=True)
 class Channels:
-    """Where each kind of quantity stands on the axis of channels."""
+    """Where each kind of quantity stands on the axis of channels.
 
-    springs: int
-    inertias: int
-    joints: int
-    points: int
+    twist [rad] and torque [N m] of every spring; deviation [rad] from the base motion of every unknown, the first
+    station of its group, of every joint_input, and of every point of ``Topology.points``.
+    """
 
-    @property
-    def twist(self) -> slice:
-        """Elastic twist [rad] of every spring."""
-        return slice(0, self.springs)
-
-    @property
-    def torque(self) -> slice:
-        """Torque [N m] of every spring."""
-        return slice(self.springs, 2 * self.springs)
+    twist: slice
+    torque: slice
+    deviation: slice
+    joint_input: slice
+    point: slice
 
     @property
-    def deviation(self) -> slice:
-        """Deviation [rad] of every unknown, the first station of its group, from its base motion."""
-        return slice(2 * self.springs, 2 * self.springs + self.inertias)
-
-    @property
-    def joint_input(self) -> slice:
-        """Deviation [rad] at every joint's input."""
-        start = self.deviation.stop
-        return slice(start, start + self.joints)
-
-    @property
-    def point(self) -> slice:
-        """Deviation [rad] of every point of ``Topology.points`` from its base motion."""
-        return slice(self.count - self.points, self.count)
+    def points(self) -> int:
+        """How many points there are."""
+        return int(self.point.stop - self.point.start)
 
     @property
     def count(self) -> int:
-        """How many there are."""
-        return 2 * self.springs + self.inertias + self.joints + self.points
+        """How many channels there are."""
+        return int(self.point.stop)
 
 
 def channels_of(topo: Topology) -> Channels:
     """The channels of a line."""
-    return Channels(len(topo.compliances), topo.size, len(topo.joints), len(topo.points))
+    springs = len(topo.compliances)
+    ends = list(accumulate([springs, springs, topo.size, len(topo.joints), len(topo.points)], initial=0))
+    return Channels(*(slice(start, end) for start, end in pairwise(ends)))
 
 
 def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -> Complex:

@@ -32,17 +32,14 @@ from trunnion.numerics import harmonics as fourier
 
 @dataclass(frozen=True)
 class OwnBase:
-    """The own motions at some speeds, at ``tau`` (time,) over the period, and the equations linearised about them.
+    """The own motions at some speeds, over the period, and the equations linearised about them.
 
-    relative (case, time, station): r of each station from its group's first; ratio (case, time, spring) of the near
-    ends; mass (case, time, n); base: what excitations need; seen (case, time, channel): the motion itself; by_state
-    (case, harmonic, n, 2n) and by_drive (case, harmonic, n): Fourier coefficients of the slopes of accelerations, by
-    states and by the drives' torque; phase (n,): the input among the unknowns; rate (case,) b Ω [rad/s]; count:
-    harmonics kept on each side.
+    ratio (case, time, spring): r of the near ends; mass (case, time, n); base: what excitations need; seen (case, time,
+    channel): the motion itself; by_state (case, harmonic, n, 2n) and by_drive (case, harmonic, n): Fourier coefficients
+    of the slopes of accelerations, by states and by the drives' torque; phase (n,): the input among the unknowns; rate
+    (case,) b Ω [rad/s]; count: harmonics kept on each side.
     """
 
-    tau: Array
-    relative: Array
     ratio: Array
     mass: Array
     base: BaseOfExcitation
@@ -99,8 +96,6 @@ class OwnOrders:
         swing = observed.rotation - rigid
         seen[..., places.joint_input] = (swing - swing.mean(axis=1, keepdims=True))[..., before]
         return OwnBase(
-            tau=tau,
-            relative=relative,
             ratio=relative[..., [c.near for c in topo.compliances]],
             mass=mass,
             base=BaseOfExcitation(relative, observed.rotation),
@@ -141,8 +136,8 @@ def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
 
 def seen_about(own: OwnBase, topo: Topology, h: Integers, x: Complex) -> Complex:
     """Channels (case, h, channel) without torque of X (case, h, n)."""
-    times = 1 << int(np.ceil(np.log2(len(h) + len(own.tau))))
-    return channels_of_harmonics(topo, x, h, times, _finer(own.ratio, times), _finer(own.relative, times))
+    times = 1 << int(np.ceil(np.log2(len(h) + own.mass.shape[1])))
+    return channels_of_harmonics(topo, x, h, times, _finer(own.ratio, times), _finer(own.base.relative, times))
 
 
 def _finer(values: Array, times: int) -> Array:
@@ -155,7 +150,7 @@ Add = Callable[[Fraction, float, Complex], None]
 
 def add_own(own: OwnBase, cycles: Fraction, add: Add) -> None:
     """The own motions' harmonics, ``add``ed by order."""
-    times = len(own.tau)
+    times = own.mass.shape[1]
     spectrum = np.fft.fft(own.seen, axis=1) / times
     for h in range(-own.count, own.count + 1):
         add(h * cycles, 0.0, spectrum[:, h % times])

@@ -33,7 +33,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import bent, moves_by_itself
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.verdict import Verdict
@@ -91,7 +91,7 @@ def order_response(
 
 def own_motions_of(assembly: Assembly) -> MotionsBySpeed | None:
     """For the motions that a bent line which starts free is taken about, each solved once; None for other lines."""
-    if not (assembly.topology.free and bent(assembly)):
+    if not moves_by_itself(assembly):
         return None
     # Loaded for lines that need it: it brings the compiler and the orbits with it.
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
@@ -232,7 +232,7 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
         yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
-    if assembly.topology.free and bent(assembly) and spectrum.loss.any():
+    if moves_by_itself(assembly) and spectrum.loss.any():
         yield Finding(
             Gravity.NOTE,
             "A loss factor without a frequency has no motion in time: this bent line that starts free is taken about "
@@ -266,7 +266,7 @@ def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Ex
     swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
     for exciter in at_work:
         if exciter.station >= 0 and not exciter.in_time:
-            i = topo.coordinate[topo.group_of(exciter.station)]
+            i = topo.unknown_of[exciter.station]
             worst = max(worst, (exciter.own_order * float(np.nanmax(swing[:, i], initial=0.0)), exciter.element))
     if worst[0] > 0:
         yield Finding(

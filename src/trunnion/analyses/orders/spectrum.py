@@ -33,7 +33,7 @@ from trunnion.equations.exciters import (
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
-from trunnion.equations.steady_base import bent, require_steady_base
+from trunnion.equations.steady_base import bent, moves_by_itself, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
@@ -122,7 +122,7 @@ def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, tabl
     if table is None:
         return numbers
     remedy = "ask order_response of each line by itself"
-    if assembly.topology.free and bent(assembly, numbers):
+    if moves_by_itself(assembly, numbers):
         raise InputError(
             "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
         )
@@ -184,7 +184,7 @@ class _Case:
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
         self.own: OwnOrders | None = None
-        if self.topo.free and bent(assembly) and not about_rigid:
+        if moves_by_itself(assembly) and not about_rigid:
             # Loaded for lines that need it: it brings the compiler and the orbits with it.
             from trunnion.analyses.orders.own_orders import OwnOrders
 
@@ -239,7 +239,7 @@ class _Case:
     def _straight(self, table: Array) -> OrderSum:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
         matrices, base = line_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
-        total = OrderSum(len(table), self.places.count, self.places.points)
+        total = OrderSum(len(table), self.places)
         groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
         if groups:
             nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
@@ -281,7 +281,7 @@ class _Case:
         every = self.springs if self.few is not None else out.co
         alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
         ratio, relative, wave = (part[alike] for part in (out.matrices.ratio, out.base.relative, out.matrices.wave))
-        total = OrderSum(len(speed), self.places.count, self.places.points)
+        total = OrderSum(len(speed), self.places)
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in out.groups:
             carrier = group.carrier_at(out.table[:, 0])
@@ -304,7 +304,7 @@ class _Case:
         from trunnion.analyses.orders.own_orders import about, add_own, seen_about
 
         co, speed = own.coefficients, table[:, 0]
-        total, last = OrderSum(len(speed), self.places.count, self.places.points), np.zeros(len(speed))
+        total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
         add_own(own, 1 / self.turns, total.add)
         for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
             carrier = group.carrier_at(speed)
@@ -341,7 +341,7 @@ class _Case:
         """Torques on the unknowns (case, h, n), over their ``mass`` (case, time, n), and twists by transmission errors
         (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
         right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
-        error = np.zeros((len(base.relative), len(h), self.places.springs), dtype=complex)
+        error = np.zeros((len(base.relative), len(h), len(self.topo.compliances)), dtype=complex)
         for exciter, m in group.members:
             at, e = int(np.searchsorted(h, m)), exciter.compliance
             sizes = size(self.assembly, exciter, table)

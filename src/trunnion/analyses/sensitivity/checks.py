@@ -24,10 +24,9 @@ from trunnion.analyses.orders.response import response_of_spectrum
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
 from trunnion.analyses.sensitivity.growth import radius_slope
-from trunnion.analyses.sensitivity.responses import SpectrumSlope, solved_exactly, spectrum_slope
+from trunnion.analyses.sensitivity.responses import SpectrumSlope, spectrum_slope
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 
 ROUNDS, AROUND = 4, 17
@@ -66,7 +65,7 @@ def check_slopes(
         speeds[c] = _peak(subject, cases[c], check)
     values = _Values(subject, near, directions, checks, cases, speeds)
     for c, (check, case) in enumerate(zip(checks, cases, strict=True)):
-        if check.name == GROWTH and not (case.assembly.topology.free and bent(case.assembly)):
+        if check.name == GROWTH and not case.costly:
             slopes[c, 0], errors[c, 0], refused[c] = _growth(case, float(speeds[c]), directions)
             here[c], exact[c] = (check.value, check.margin), True
         else:
@@ -107,7 +106,7 @@ class _Values:
         }
         self.of_line = {check.name for check in of_line(subject)}
         self.of_response = {
-            case.name: {check.name for check in of_response(subject, case)} if solved_exactly(case.assembly) else set()
+            case.name: set() if case.costly else {check.name for check in of_response(subject, case)}
             for case in subject.cases
         }
         self._seen: dict[tuple[str, float, str, float], dict[str, Array]] = {}

@@ -23,7 +23,7 @@ from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, STEP
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import moves_by_itself
 from trunnion.errors import InputError
 
 PARTS = ("amplitude", "base", "mean", "damping", "loss")
@@ -98,16 +98,11 @@ class SpectrumSlope:
         return found[0], found[1] + rounding + self.noise * np.abs(here)
 
 
-def solved_exactly(assembly: Assembly) -> bool:
-    """Whether the response is linear equations about a known motion: not that of bent lines that start free."""
-    return not (assembly.topology.free and bent(assembly))
-
-
 def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> SpectrumSlope | None:
     """How the response at ``speed`` [rad/s] changes along a direction; None where the lines beside it have none: their
     torques do not balance, or a frequency of excitation moves.
     """
-    assert solved_exactly(near.assembly)
+    assert not moves_by_itself(near.assembly)
     row = near.row(speed)
     keys = {near.assembly.packed.labels[i].rpartition(".")[2] for i in one.columns.index}
     step = WIDE_STEP if keys <= set(LINEAR_KEYS) else SMOOTH_STEP

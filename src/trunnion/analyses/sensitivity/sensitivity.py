@@ -18,7 +18,6 @@ from trunnion.analyses.sensitivity.checks import check_slopes
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, directions_of
 from trunnion.analyses.sensitivity.growth import radius_slope
 from trunnion.analyses.sensitivity.modes import mode_slopes
-from trunnion.analyses.sensitivity.responses import solved_exactly
 from trunnion.analyses.sensitivity.result import (
     DIFFERENCES,
     EXACT,
@@ -35,7 +34,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import moves_by_itself
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
@@ -173,7 +172,7 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
 
 
 def _growth(question: _Question) -> Iterator[Rows]:
-    if question.assembly.topology.free and bent(question.assembly):
+    if moves_by_itself(question.assembly):
         # Its own motion follows every parameter, so lines beside it are judged.
         if len(question.at):
             here, slope, error = _by_differences(question, own_growth)
@@ -209,7 +208,7 @@ def _stability_rows(
 def _torques(question: _Question) -> Iterator[Rows]:
     if not len(question.at):
         return
-    exact = solved_exactly(question.assembly)
+    exact = not moves_by_itself(question.assembly)
     if exact:
         here, slope, error = exact_torque_slopes(
             question.near, question.lines, question.at, question.directions, question.progress
