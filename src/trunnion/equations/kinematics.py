@@ -1,23 +1,86 @@
-"""How every station of a line turns when no shaft vibrates: the base motion of the linearisation.
+"""How the stations of a line turn: the one walk from the input, through the laws of all joints.
 
-With τ the input angle, each station s has an angle a_s(τ) (fork phases and static twist included), a speed
-w = da/dτ and an acceleration w′ = d²a/dτ². Within its group it follows the group's first station by
-r = da_s/da_ref, with r₁ = dr/da_ref and r₂ = dr₁/da_ref. A joint with input angle χ multiplies, by its law,
+A station follows the one before it: shifted by a fork offset and a twist, passed on by a joint's law, or divided by a
+ratio. The output fork of a Hooke's joint stands a quarter turn from its input fork. Rotations are jets
+(``numerics.jets``), so that speeds and accelerations come with them.
+
+The base motion of the linearisation is that of a line of which no shaft vibrates. With τ the input angle, each station
+s has an angle a_s(τ) (fork phases and static twist included), a speed w = da/dτ and an acceleration w′ = d²a/dτ².
+Within its group it follows the group's first station by r = da_s/da_ref, with r₁ = dr/da_ref and r₂ = dr₁/da_ref. A
+joint multiplies, by its law,
 
     w → ηw,  w′ → η_χ w² + ηw′,  r → ηr,  r₁ → ηr₁ + η_χ r²,  r₂ → ηr₂ + 3η_χ r r₁ + η_χχ r³;
 
-a ratio ρ divides all of them by ρ. The output fork of a Hooke's joint stands a quarter turn from its input fork.
+a ratio ρ divides all of them by ρ.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Link, Topology
+from trunnion.laws.joint import JointLaw, through
+
+Jet = Sequence[Array]
+
+
+class Place(NamedTuple):
+    """How a station follows the one ``before`` it.
+
+    ``shift`` [rad]: the first coefficients of the jet that is added; then the joint's ``law``; then the division by
+    ``ratio``.
+    """
+
+    before: int
+    shift: Sequence[Array] = ()
+    law: JointLaw | None = None
+    ratio: float = 1.0
+
+
+@dataclass(frozen=True)
+class Rotations:
+    """Jets of rotation [rad] by station; at those behind a joint the jet ``chi`` of its input angle from its own plane
+    and what its law ``passed`` on there: ψ and its derivatives by χ."""
+
+    angle: list[Jet]
+    chi: dict[int, Jet]
+    passed: dict[int, tuple[Array, ...]]
+
+    def jet(self, station: int) -> Array:
+        """That of one station as one array (order + 1, …)."""
+        return np.stack(self.angle[station])
+
+
+def walk(places: Iterable[Place], drive: Jet, stood: Array | None = None) -> Rotations:
+    """Rotation of all stations, of which the first has the jet ``drive``, at most of order 4.
+
+    Parameters
+    ----------
+    places : the stations behind the first, in an order in which every one comes after the one before it.
+    stood : (…, station) where joints find the stations in front of them [rad]; by default where the walk leads.
+    """
+    found = Rotations([drive], {}, {})
+    for s, (before, shift, law, ratio) in enumerate(places, start=1):
+        jet = found.angle[before] if stood is None or law is None else [stood[..., before]]
+        if shift:
+            jet = [*(a + b for a, b in zip(jet, shift, strict=False)), *jet[len(shift) :]]
+        if law is not None:
+            passed: tuple[Array, ...] = law.at(jet[0])
+            if len(jet) > len(passed):
+                passed = (*passed, law.third(jet[0]))
+            found.chi[s], found.passed[s] = jet, passed
+            jet = through(passed, jet)
+            jet[0] = jet[0] + law.turned
+        if ratio != 1.0:
+            jet = [a / ratio for a in jet]
+        found.angle.append(jet)
+    return found
 
 
 @dataclass(frozen=True)
@@ -40,28 +103,33 @@ def base_motion(
     ``stood`` (case, time, station) : where stations stand that shafts let twist [rad]; ``relative`` is then that of
     the joints there. By default where the walk leads them.
     """
-    cases = len(coefficients.speed)
-    tau = np.broadcast_to(tau, (cases, np.shape(tau)[-1]))
+    stations, laws = topo.stations[1:], iter(coefficients.joints)
+    places = [
+        Place(
+            station.before,
+            [shift[:, None]] if station.link in (Link.SHAFT, Link.JOINT) else (),
+            next(laws) if station.link is Link.JOINT else None,
+            ratio,
+        )
+        for station, shift, ratio in zip(stations, coefficients.shift.T[1:], topo.ratio_values[1:], strict=True)
+    ]
+    tau = np.broadcast_to(tau, (len(coefficients.speed), np.shape(tau)[-1]))
+    turning = walk(places, [tau], stood)
     # Each station lies in one piece over time, which is how it is filled.
-    a, w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(6))
-    laws, stood = list(coefficients.joints), a if stood is None else stood
-    for s, station in enumerate(topo.stations):
-        b = station.before
-        shift = coefficients.shift[:, s, None]
-        if station.link is Link.ROOT:
-            a[..., s], w[..., s], r[..., s] = tau, 1.0, 1.0
-        elif station.link is Link.SHAFT:
-            a[..., s], w[..., s], w1[..., s] = a[..., b] + shift, w[..., b], w1[..., b]
-            r[..., s] = 1.0
+    a = np.moveaxis(np.array([angle for (angle,) in turning.angle]), 0, -1)
+    w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(5))
+    w[..., 0], r[..., 0] = 1.0, 1.0
+    for s, (station, place) in enumerate(zip(stations, places, strict=True), start=1):
+        b = place.before
+        if station.link is Link.SHAFT:
+            w[..., s], w1[..., s], r[..., s] = w[..., b], w1[..., b], 1.0
         elif station.link is Link.JOINT:
-            law = laws.pop(0)
-            output, eta, slope, curvature = law.at(stood[..., b] + shift)
+            _, eta, slope, curvature = turning.passed[s]
             rb, rb1, rb2, wb, wb1 = r[..., b], r1[..., b], r2[..., b], w[..., b], w1[..., b]
-            a[..., s] = output + law.turned
             w[..., s], w1[..., s] = eta * wb, slope * wb**2 + eta * wb1
             r[..., s], r1[..., s] = eta * rb, eta * rb1 + slope * rb**2
             r2[..., s] = eta * rb2 + 3 * slope * rb * rb1 + curvature * rb**3
         else:
-            for quantity in (a, w, w1, r, r1, r2):
-                quantity[..., s] = quantity[..., b] / topo.ratio_values[s]
+            for quantity in (w, w1, r, r1, r2):
+                quantity[..., s] = quantity[..., b] / place.ratio
     return BaseMotion(a, w, w1, r, r1, r2)

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.laws.joint import Passed
-from trunnion.numerics import jets
 
 Array = NDArray[np.float64]
 
@@ -53,19 +52,10 @@ class FourierLaw:
             slope, curvature = slope - m**2 * sine, curvature - m**3 * cosine
         return Passed(output, ratio, slope, curvature)
 
-    def output_jet(self, chi: Array) -> Array:
+    def third(self, chi: Array) -> Array:
         """See ``JointLaw``."""
-        output = chi
-        for m, a, phase in zip(self.orders, self.amplitude, self.phase, strict=True):
-            output = output + a * jets.sine_cosine(m * chi + jets.constant(phase, chi))[0]
-        return output
-
-    def ratio_jet(self, chi: Array) -> Array:
-        """See ``JointLaw``."""
-        ratio = jets.constant(1.0, chi)
-        for m, a, phase in zip(self.orders, self.amplitude, self.phase, strict=True):
-            ratio = ratio + m * a * jets.sine_cosine(m * chi + jets.constant(phase, chi))[1]
-        return ratio
+        terms = zip(self.orders, self.amplitude, self.phase, strict=True)
+        return sum((m**4 * a * np.sin(m * chi + phase) for m, a, phase in terms), start=np.zeros_like(chi))
 
     def straight(self) -> FourierLaw:
         """See ``JointLaw``."""

@@ -22,7 +22,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.laws.joint import Passed
-from trunnion.numerics import jets
 
 Array = NDArray[np.float64]
 QUARTER_TURN = np.pi / 2
@@ -65,30 +64,18 @@ class CrossLaw:
         curvature = -8 * t * ratio * over * (cosine - 4 * t * sine**2 * over)
         return Passed(chi + np.arctan2(t * sine, 1 - t * cosine), ratio, slope, curvature)
 
-    def output_jet(self, chi: Array) -> Array:
-        """See ``JointLaw``: ψ̇ = η χ̇ integrated term by term."""
-        start = self.at(chi[0]).output
-        if len(chi) == 1:
-            return np.asarray(start[None])
-        return jets.integral(jets.multiply(self.ratio_jet(chi[:-1]), jets.rate(chi)), start)
-
-    def ratio_jet(self, chi: Array) -> Array:
+    def third(self, chi: Array) -> Array:
         """See ``JointLaw``."""
-        below, _, _ = self.denominator_jet(chi)
-        return jets.divide(jets.constant(self.cosine, below), below)
-
-    def denominator_jet(self, chi: Array) -> tuple[Array, Array, Array]:
-        """Jets of D = 1 − sin²β cos²χ, sin χ and cos χ."""
-        sine, cosine = jets.sine_cosine(chi)
-        below = -(4 * self.t / (1 + self.t) ** 2) * jets.multiply(cosine, cosine)
-        below[0] += 1.0
-        return below, sine, cosine
+        t, cosine, sine = self.t, np.cos(2 * chi), np.sin(2 * chi)
+        over = 1 / (1 - 2 * t * cosine + t**2)
+        bend = 4 * t * sine * over
+        return np.asarray(4 * bend * (1 - t**2) * over * (1 + 1.5 * (8 * t * cosine * over - bend**2)))
 
     def straight(self) -> CrossLaw:
         """See ``JointLaw``."""
         return CrossLaw(np.zeros_like(self.t), self.turned)
 
 
-def law(angle: ArrayLike) -> CrossLaw:
-    """One cross bent by ``angle`` β [rad]."""
-    return CrossLaw(np.tan(np.asarray(angle, dtype=float) / 2) ** 2)
+def law(angle: ArrayLike, turned: float = QUARTER_TURN) -> CrossLaw:
+    """One cross bent by ``angle`` β [rad], its output arm ``turned`` [rad] from the input arm."""
+    return CrossLaw(np.tan(np.asarray(angle, dtype=float) / 2) ** 2, turned)

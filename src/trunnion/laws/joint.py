@@ -8,6 +8,10 @@ numbers broadcast against χ.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from functools import reduce
+from math import factorial
+from operator import add
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -47,11 +51,30 @@ class JointLaw(Protocol):
     def at(self, chi: Array) -> Passed:
         """Rotation passed on at input angles ``chi`` [rad]."""
 
-    def output_jet(self, chi: Array) -> Array:
-        """The jet (see ``numerics.jets``) of ψ where that of χ is ``chi``."""
-
-    def ratio_jet(self, chi: Array) -> Array:
-        """The jet of η."""
+    def third(self, chi: Array) -> Array:
+        """d³η/dχ³ [1/rad³] there, which few ask for."""
 
     def straight(self) -> JointLaw:
         """The law of the same joint without bend."""
+
+
+def through(derivatives: Sequence[Array], inner: Sequence[Array]) -> list[Array]:
+    """The jet (see ``numerics.jets``) of f(x), given that of x and f, f′, f″, … at its value.
+
+    Parameters
+    ----------
+    derivatives : as many as ``inner`` has coefficients, or more.
+    """
+    found = [derivatives[0], *(derivatives[1] * coefficient for coefficient in inner[1:])]
+    power = {m: inner[m] for m in range(1, len(inner))}
+    for k in range(2, len(inner)):
+        # (x − x₀)^k begins with the coefficient k.
+        power = {m: _sum(inner[i] * power[m - i] for i in range(1, m - k + 2)) for m in range(k, len(inner))}
+        share = derivatives[k] / factorial(k)
+        for m, coefficient in power.items():
+            found[m] += share * coefficient
+    return found
+
+
+def _sum(terms: Iterable[Array]) -> Array:
+    return reduce(add, terms)

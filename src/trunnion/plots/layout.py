@@ -17,6 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.layout import Layout
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
+from trunnion.laws.hooke import QUARTER_TURN
 from trunnion.plots.kinetostatics import head
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT
 
@@ -158,7 +159,7 @@ def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> 
     names = [", ".join(train.members[m].shafts[:2]) for m in members]
     guessed = not all(np.isfinite(x) for x in inner)
     turning = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 1)).angle[train.steps[joints[0]].parent]
-    sense = float(np.sign(turning[1, 0]))  # behind a ratio
+    sense = float(np.sign(turning[1][0]))  # behind a ratio
     return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed, sense)
 
 
@@ -171,7 +172,7 @@ def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array
         e2, u2, v2 = frames[step.member]
         arms = None
         if step.link is Link.HOOKE:
-            chi, behind = motion.chi[j][0, 0], motion.angle[j][0, 0] - step.fork_offset
+            chi, behind = motion.chi[j][0][0], motion.passed[j][0][0] + QUARTER_TURN
             arms = (np.cos(chi) * u + np.sin(chi) * v, np.cos(behind) * u2 + np.sin(behind) * v2)
         drawn.append(_Joint(step.name, centre, e, e2, v, arms, step.angle))
     return drawn

@@ -27,7 +27,11 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.errors import InputError
 from trunnion.laws import double_cardan, hooke
+from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.joint import JointLaw
+
+UNCHANGED = FourierLaw((), (), ())
+"""The law of a joint that passes rotation unchanged."""
 
 
 class Link(Enum):
@@ -37,12 +41,8 @@ class Link(Enum):
     RIGID = "rigid"
     SHAFT = "shaft"
     HOOKE = "Hooke's joint"
-    IDEAL = "ideal joint"
-    RIPPLE = "joint with ripple"
+    JOINT = "other joint"
     RATIO = "ratio"
-
-
-JOINTS = (Link.HOOKE, Link.IDEAL, Link.RIPPLE)
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,8 @@ class Step:
     """From station ``parent`` to the station behind this step; SI units.
 
     ``reach`` [m] is how far along its member the station behind lies. ``fork_offset`` is what a shaft adds to the
-    angle of the fork at its far end; ``law`` and ``orders`` are those of a joint that does not pass rotation unchanged;
+    angle of the fork at its far end; ``law`` and ``orders`` are those of a joint, which has no orders where it passes
+    rotation unchanged;
     ``near_inertia`` and ``far_inertia`` [kg m²] sit at the two stations; ``ratio`` is input speed over output
     speed; ``load``, ``viscous_load`` and ``quadratic_load`` are a Disk's. A Shaft has a ``stiffness`` [N m/rad], one
     with stages its law of ``stages``.
@@ -113,11 +114,12 @@ class Chain:
     @property
     def joints(self) -> tuple[int, ...]:
         """Steps that bend the axis."""
-        return self.of(*JOINTS)
+        return self.of(Link.HOOKE, Link.JOINT)
 
-    def children(self, station: int) -> tuple[int, ...]:
-        """Steps that start at a station."""
-        return tuple(i for i, step in enumerate(self.steps) if step.parent == station)
+    @property
+    def uneven(self) -> tuple[int, ...]:
+        """Steps that pass rotation on unevenly."""
+        return tuple(i for i, step in enumerate(self.steps) if step.orders)
 
     @property
     def ends(self) -> tuple[int, ...]:
@@ -247,18 +249,17 @@ class _Draft:
             self.members[-1].shafts.append(f"{name}, yoke")
             # the second cross hangs on the station behind the first, at the far end of the yoke
             self._extend(here, element.yoke_length or 0.0)
-            # two quarter turns: taken back, so that the joint counts as one that passes rotation unchanged
-            here = self._cross(here, f"{name}, second cross", angle=float(second), fork_offset=-np.pi)
+            # a quarter turn back, so that the joint counts as one that passes rotation unchanged
+            here = self._cross(here, f"{name}, second cross", angle=float(second), turned=-hooke.QUARTER_TURN)
         elif isinstance(element, HookeJoint):
             here = self._cross(here, name, angle=element.angle, plane=element.plane)
         elif isinstance(element, Joint):
             bend = {key: float(getattr(element, key, 0.0)) for key in ("angle", "plane")}
+            law: JointLaw = UNCHANGED
             if element.orders:
                 packed = pack(self.line)
                 law = element.law(lambda key: np.asarray(packed.values[packed.column(i, key)]))
-                here = self._joint(Link.RIPPLE, here, name, law=law, orders=element.orders, **bend)
-            else:
-                here = self._joint(Link.IDEAL, here, name, **bend)
+            here = self._joint(Link.JOINT, here, name, law=law, orders=element.orders, **bend)
         elif isinstance(element, Ratio | GearPair):
             self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
             here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)
@@ -274,10 +275,11 @@ class _Draft:
             raise InputError("is not an element the kinetostatics know", element=name)
         self.behind.append(here)
 
-    def _cross(self, parent: int, name: str, *, angle: float, plane: float = 0.0, fork_offset: float = 0.0) -> int:
-        law = hooke.law(angle)
-        numbers = {"angle": angle, "plane": plane, "fork_offset": fork_offset}
-        return self._joint(Link.HOOKE, parent, name, law=law, orders=(2,), **numbers)
+    def _cross(
+        self, parent: int, name: str, *, angle: float, plane: float = 0.0, turned: float = hooke.QUARTER_TURN
+    ) -> int:
+        law = hooke.law(angle, turned)
+        return self._joint(Link.HOOKE, parent, name, law=law, orders=(2,), angle=angle, plane=plane)
 
     def _joint(self, link: Link, parent: int, name: str, **numbers: Any) -> int:
         train = self.members[self.steps[parent].member].train

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
-from trunnion.analyses.kinetostatics.motion import Motion
 from trunnion.analyses.kinetostatics.torques import Torques
+from trunnion.equations.kinematics import Rotations
+from trunnion.laws.hooke import QUARTER_TURN
 
 Array = NDArray[np.float64]
 
@@ -43,13 +44,13 @@ class Couples:
     friction_power: Array
 
 
-def secondary_couples(chain: Chain, motion: Motion, passed: Torques, pin_moment: float) -> Couples:
+def secondary_couples(chain: Chain, motion: Rotations, passed: Torques, pin_moment: float) -> Couples:
     """Couples on all forks of the line."""
-    points = motion.angle[0].shape[1]
+    points = len(motion.angle[0][0])
     names, member, standing, rotating, heat = [], [], [], [], np.zeros(points)
     for i in chain.joints:
         step = chain.steps[i]
-        chi, behind = motion.chi[i][0], motion.angle[i][0] - step.fork_offset
+        chi, behind = motion.chi[i][0], motion.angle[i][0]
         names += [f"{step.name} in", f"{step.name} out"]
         member += [chain.steps[step.parent].member, step.member]
         if step.link is Link.HOOKE:
@@ -57,7 +58,7 @@ def secondary_couples(chain: Chain, motion: Motion, passed: Torques, pin_moment:
             on_input, on_output, lost = _cross(step.angle, chi, passed.out[i][0], speeds, pin_moment)
             heat = heat + lost
             rotating += [on_input, on_output]
-            standing += [turned(on_input, chi), turned(on_output, behind)]
+            standing += [turned(on_input, chi), turned(on_output, motion.passed[i][0] + QUARTER_TURN)]
         else:
             steady = np.zeros((2, 2, points))
             steady[0, 0], steady[1, 0] = passed.into[i][0], passed.out[i][0]

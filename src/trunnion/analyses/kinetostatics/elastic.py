@@ -15,15 +15,13 @@ rate is not; the rates given are those beside the step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Step
-from trunnion.analyses.kinetostatics.motion import Motion, drive_jet, walk
-from trunnion.analyses.kinetostatics.torques import Torques, torques
+from trunnion.analyses.kinetostatics.motion import Drive, walk
+from trunnion.analyses.kinetostatics.torques import Torques, rates_needed, torques
+from trunnion.equations.kinematics import Rotations
 from trunnion.errors import ComputationError
 from trunnion.numerics import jets
 
@@ -32,38 +30,21 @@ ROUNDS = 300
 MOTION_ORDER = 2
 
 
-@dataclass(frozen=True)
-class Drive:
-    """What is done to the line: input, torque [N m] by end step, pin friction, and whether inertias count."""
-
-    input_angle: Array
-    speed: float
-    acceleration: float
-    output_torque: Mapping[int, float]
-    pin_moment: float
-    inertia: bool
-
-    def jet(self, order: int) -> Array:
-        """Jet of the input rotation."""
-        return drive_jet(self.input_angle, self.speed, self.acceleration, order)
-
-
-def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Motion, Torques, dict[int, Array]]:
+def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Rotations, Torques, dict[int, Array]]:
     """Motion, torques and twists (jets by Shaft step [rad], far end minus near end; none if rigid)."""
-    rates = _rigid_rates(chain, drive, 0 if rigid else MOTION_ORDER)
     if rigid:
         motion = walk(chain, drive.jet(MOTION_ORDER))
-        return motion, _torques(chain, motion, drive, 0, rates), {}
-    twist: dict[int, Array] = {}
-    change = np.inf
+        return motion, torques(chain, drive, motion, 0, motion), {}
+    untwisted = walk(chain, drive.jet(MOTION_ORDER + rates_needed(chain, drive)))
+    motion, twist, change = untwisted, dict[int, Array](), np.inf
     for _ in range(ROUNDS):
-        motion = walk(chain, drive.jet(MOTION_ORDER), twist)
-        found = _torques(chain, motion, drive, MOTION_ORDER, rates)
+        found = torques(chain, drive, motion, MOTION_ORDER, untwisted)
         new = {i: _yielding(chain.steps[i], found.spring[i]) for i in chain.shafts}
         before, change = change, _change(new, twist, drive.speed)
         twist = new
         if change < 1e-15 or (change < 1e-11 and change >= before):  # rounding
             return motion, found, twist
+        motion = walk(chain, drive.jet(MOTION_ORDER), twist)
     worst = max(twist, key=lambda i: float(np.nanmax(np.abs(twist[i][0]))))
     raise ComputationError(
         f"twist does not settle in {ROUNDS} rounds (last change {change:.1e} rad): {chain.steps[worst].name} "
@@ -71,7 +52,7 @@ def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Motion, Torques, 
     )
 
 
-def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Motion:
+def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Rotations:
     """S2's approximation: the motion with every twist held at its mean over the turn."""
     mean = {i: jets.constant(float(np.mean(xi[0])), xi) for i, xi in twist.items()}
     return walk(chain, drive.jet(MOTION_ORDER), mean)
@@ -92,31 +73,6 @@ def _yielding(step: Step, passed: Array) -> Array:
         step.stages.under(torque[torque != 0])
     rates = np.divide(-passed, slope, out=np.zeros_like(passed), where=slope > 0)
     return np.concatenate([twist[None], rates[1:]])
-
-
-@dataclass(frozen=True)
-class _Rates:
-    """Jets of the speed and acceleration of every station [rad/s, rad/s²], shafts rigid."""
-
-    speeds: list[Array]
-    accelerations: list[Array]
-
-
-def _rigid_rates(chain: Chain, drive: Drive, order: int) -> _Rates:
-    speeds = [jets.rate(a) for a in walk(chain, drive.jet(order + 2)).angle]
-    return _Rates(speeds, [jets.rate(speed) for speed in speeds])
-
-
-def _torques(chain: Chain, motion: Motion, drive: Drive, order: int, rates: _Rates) -> Torques:
-    return torques(
-        chain,
-        motion,
-        order,
-        output_torque=drive.output_torque,
-        pin_moment=drive.pin_moment,
-        speeds=rates.speeds,
-        inertial=rates.accelerations if drive.inertia else None,
-    )
 
 
 def _change(new: dict[int, Array], old: dict[int, Array], speed: float) -> float:

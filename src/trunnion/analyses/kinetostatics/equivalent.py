@@ -22,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
-from trunnion.laws.hooke import QUARTER_TURN
 
 Array = NDArray[np.float64]
 Changes = Mapping[int, Array]
@@ -32,10 +31,10 @@ def is_one_joint(chain: Chain) -> bool:
     """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio."""
     geared = False
     for i in chain.path(chain.output):
-        link = chain.steps[i].link
-        if link is Link.RIPPLE or (link is Link.HOOKE and geared):
+        step = chain.steps[i]
+        if step.orders and (geared or step.link is not Link.HOOKE):
             return False
-        geared = geared or link is Link.RATIO
+        geared = geared or step.link is Link.RATIO
     return True
 
 
@@ -50,13 +49,15 @@ def matrices(
         step = chain.steps[i]
         if step.link is Link.SHAFT:
             product = _rotation(fork_offset.get(i, step.fork_offset), cases) @ product
-        elif step.link in (Link.HOOKE, Link.IDEAL):
+        elif step.law is not None:
             product = _rotation(-np.asarray(plane.get(i, step.plane)), cases) @ product
         if step.link is Link.HOOKE:
             root = np.sqrt(np.cos(angle.get(i, step.angle)))
             stretch = np.zeros((cases, 2, 2))
             stretch[:, 0, 0], stretch[:, 1, 1] = root, 1 / root
-            product = _rotation(QUARTER_TURN + step.fork_offset, cases) @ (stretch @ product)
+            product = stretch @ product
+        if step.law is not None:
+            product = _rotation(step.law.turned, cases) @ product
     return product
 
 
@@ -89,12 +90,12 @@ def phasors(chain: Chain) -> tuple[Array, Array]:
             a += step.fork_offset
         elif step.link is Link.RATIO:
             a /= step.ratio
-        elif step.link in (Link.HOOKE, Link.IDEAL, Link.RIPPLE):
+        elif step.law is not None:
             a -= step.plane
-        if step.link is Link.HOOKE:
-            angles.append(step.angle)
-            phases.append(a)
-            a += QUARTER_TURN + step.fork_offset
+            if step.link is Link.HOOKE:
+                angles.append(step.angle)
+                phases.append(a)
+            a += step.law.turned
     return np.array(angles), np.array(phases)
 
 

@@ -1,4 +1,4 @@
-"""Rotation of every station over the input angle: exact kinematics, walked from the drive to the load.
+"""Rotation of every station over the input angle: exact kinematics, by the walk of ``equations.kinematics``.
 
 Each station carries the angle a of its fork (fork offsets included) as a jet, so that speed and
 acceleration come with it. A joint takes χ = a − plane and gives a = ψ(χ) by its law; the output fork of a Hooke's
@@ -14,19 +14,28 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.kinetostatics.chain import JOINTS, Chain, Link, Step
+from trunnion.analyses.kinetostatics.chain import Chain, Link
+from trunnion.equations import kinematics
+from trunnion.equations.kinematics import Place, Rotations
 from trunnion.laws import hooke
-from trunnion.laws.joint import JointLaw
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Motion:
-    """Jets [rad] by station: ``angle`` of the fork; at joint steps ``chi``, input angle from their plane."""
+class Drive:
+    """What is done to the line: input, torque [N m] by end step, pin friction, and whether inertias count."""
 
-    angle: list[Array]
-    chi: dict[int, Array]
+    input_angle: Array
+    speed: float
+    acceleration: float
+    output_torque: Mapping[int, float]
+    pin_moment: float
+    inertia: bool
+
+    def jet(self, order: int) -> Array:
+        """Jet of the input rotation."""
+        return drive_jet(self.input_angle, self.speed, self.acceleration, order)
 
 
 def drive_jet(input_angle: Array, speed: float, acceleration: float, order: int) -> Array:
@@ -48,7 +57,7 @@ def walk(
     angle: Mapping[int, Array] | None = None,
     plane: Mapping[int, Array] | None = None,
     fork_offset: Mapping[int, Array] | None = None,
-) -> Motion:
+) -> Rotations:
     """Fork angles of all stations.
 
     Parameters
@@ -59,37 +68,20 @@ def walk(
         broadcast against ``drive[0]``, so that many variants are walked at once.
     """
     angle, plane, fork_offset, twist = angle or {}, plane or {}, fork_offset or {}, twist or {}
-    stations, chis = [drive], {}
+    places = []
     for i, step in enumerate(chain.steps[1:], start=1):
-        a = stations[step.parent]
-        if step.link in JOINTS:
-            chis[i] = chi = _shifted(a, -np.asarray(plane.get(i, step.plane)))
-            a = _joint_output(step, hooke.law(angle[i]) if i in angle else step.law, chi)
-        elif step.link is Link.SHAFT:
-            a = _shifted(a, np.asarray(fork_offset.get(i, step.fork_offset)))
-            if i in twist:
-                a = a + twist[i]
-        elif step.link is Link.RATIO:
-            a = a / step.ratio
-        stations.append(a)
-    return Motion(stations, chis)
+        shift: list[Array] = []
+        if step.link is Link.SHAFT:
+            shift = [np.asarray(fork_offset.get(i, step.fork_offset))]
+        elif step.law is not None:
+            shift = [-np.asarray(plane.get(i, step.plane))]
+        if i in twist:
+            shift = [shift[0] + twist[i][0], *twist[i][1:]]
+        law = hooke.law(angle[i]) if i in angle else step.law
+        places.append(Place(step.parent, shift, law, step.ratio))
+    return kinematics.walk(places, list(drive))
 
 
 def assembled(chain: Chain) -> list[float]:
     """Fork angle [rad] of every station of the unloaded line at input angle 0: where rotations count from."""
     return [float(a[0]) for a in walk(chain, np.zeros(1)).angle]
-
-
-def _joint_output(step: Step, law: JointLaw | None, chi: Array) -> Array:
-    if law is None:
-        return chi
-    output = law.output_jet(chi)
-    output[0] += law.turned + step.fork_offset
-    return output
-
-
-def _shifted(a: Array, by: Array) -> Array:
-    shape = np.broadcast_shapes(a.shape[1:], by.shape)
-    shifted = np.array(np.broadcast_to(a, (len(a), *shape)))
-    shifted[0] += by
-    return shifted

@@ -136,10 +136,10 @@ def phased_shafts(train: Chain) -> tuple[int, ...]:
     found: list[int] = []
     shaft, seen = None, False
     for i in train.path(train.output):
-        link = train.steps[i].link
-        if link is Link.SHAFT and seen and shaft is None:
+        step = train.steps[i]
+        if step.link is Link.SHAFT and seen and shaft is None:
             shaft = i
-        elif link in (Link.HOOKE, Link.RIPPLE):
+        elif step.orders:
             found += [shaft] if shaft is not None else []
             shaft, seen = None, True
     return tuple(found)

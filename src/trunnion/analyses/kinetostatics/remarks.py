@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.features import left_out
-from trunnion.analyses.kinetostatics.chain import Chain, Link, period_turns
-from trunnion.analyses.kinetostatics.elastic import Drive
+from trunnion.analyses.kinetostatics.chain import Chain, period_turns
+from trunnion.analyses.kinetostatics.motion import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.operating_speed import speed_unit
@@ -50,8 +50,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
     from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 
-    joints = chain.of(Link.HOOKE, Link.RIPPLE)
-    rates = [max(chain.steps[i].orders) * abs(chain.mean_ratio(i)) for i in joints]
+    rates = [max(chain.steps[i].orders) * abs(chain.mean_ratio(i)) for i in chain.uneven]
     if not rates:
         return []
     try:

@@ -13,16 +13,16 @@ minus the shaft's torque as the dynamics count it (positive with the twist).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link, Step
-from trunnion.analyses.kinetostatics.motion import Motion
+from trunnion.analyses.kinetostatics.motion import Drive
+from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
-from trunnion.laws import hooke
+from trunnion.laws.joint import through
 from trunnion.numerics import jets
 
 Array = NDArray[np.float64]
@@ -40,57 +40,61 @@ class Torques:
     spring: dict[int, Array]
 
 
-def torques(
-    chain: Chain,
-    motion: Motion,
-    order: int,
-    *,
-    output_torque: Mapping[int, float] | None = None,
-    pin_moment: float = 0.0,
-    speeds: list[Array] | None = None,
-    inertial: list[Array] | None = None,
-) -> Torques:
-    """Torques of the loads, and of the inertias where their accelerations are given.
+def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Rotations) -> Torques:
+    """Torques of the loads, and of the inertias where they count.
 
     Parameters
     ----------
     order : of the jets of torque; those of ``motion`` must be at least as high.
-    output_torque : [N m] by step at the end of a branch, beside the Disks' own loads; positive resists rotation.
-    pin_moment : κ′ of the crosses.
-    speeds : jet of the speed of every station [rad/s], for the loads that grow with it.
-    inertial : jet of the acceleration of every station [rad/s²].
+    rigid : rotations of the rigid line, for inertias and loads that grow with the speed; by ``rates_needed`` higher.
     """
-    zero = np.zeros_like(motion.angle[0][: order + 1])
+    size = order + 1
+    zero = np.zeros((size, len(drive.input_angle)))
     out: list[Array] = [zero.copy() for _ in chain.steps]
-    for end, asked in (output_torque or {}).items():
+    for end, asked in drive.output_torque.items():
         out[end][0] += np.sign(chain.mean_ratio(end)) * asked
     into, spring = [zero] * len(chain.steps), {}
     for i in range(len(chain.steps) - 1, -1, -1):
-        step = chain.steps[i]
+        step, parent = chain.steps[i], chain.steps[i].parent
         torque = out[i]
-        if step.link is Link.RIGID:
-            sense = float(np.sign(chain.mean_ratio(i)))
+        sense = float(np.sign(chain.mean_ratio(i)))
+        if step.load:
             torque = torque + jets.constant(sense * step.load, torque)
-            if speeds is not None:
-                torque = torque + _speed_load(step, speeds[i][: order + 1], sense)
-        if inertial is not None and step.far_inertia:
-            torque = torque + step.far_inertia * inertial[i][: order + 1]
+        if _grows(step):
+            torque = torque + _speed_load(step, jets.rate(rigid.jet(i))[:size], sense)
+        if drive.inertia and step.far_inertia:
+            torque = torque + step.far_inertia * _acceleration(rigid, i)[:size]
         if step.link is Link.SHAFT:
             spring[i] = torque
-            if inertial is not None and step.near_inertia:
-                torque = torque + step.near_inertia * inertial[step.parent][: order + 1]
-        elif step.link is Link.HOOKE:
-            power = np.sign(torque[0]) * np.sign(chain.mean_ratio(i))
-            factor = _hooke_factor(step, motion.chi[i][: order + 1], power * pin_moment)
-            torque = jets.multiply(torque, factor)
-        elif step.link is Link.RIPPLE and step.law is not None:
-            torque = jets.multiply(torque, step.law.ratio_jet(motion.chi[i][: order + 1]))
+            if drive.inertia and step.near_inertia:
+                torque = torque + step.near_inertia * _acceleration(rigid, parent)[:size]
+        elif step.link is Link.HOOKE and drive.pin_moment:
+            power = np.sign(torque[0]) * sense
+            torque = jets.multiply(
+                torque, _with_friction(step, np.stack(motion.chi[i][:size]), power * drive.pin_moment)
+            )
+        elif step.orders:
+            torque = jets.multiply(torque, np.stack(through(motion.passed[i][1:], motion.chi[i][:size])))
         elif step.link is Link.RATIO:
             torque = torque / step.ratio
         into[i] = torque
-        if step.parent >= 0:
-            out[step.parent] = out[step.parent] + torque
+        if parent >= 0:
+            out[parent] = out[parent] + torque
     return Torques(into, out, spring)
+
+
+def rates_needed(chain: Chain, drive: Drive) -> int:
+    """Order of the derivatives of the rotations that the torques depend on."""
+    return 2 if drive.inertia else int(any(_grows(step) for step in chain.steps))
+
+
+def _grows(step: Step) -> bool:
+    """Whether a load grows with the speed."""
+    return step.viscous_load != 0 or step.quadratic_load != 0
+
+
+def _acceleration(rotations: Rotations, station: int) -> Array:
+    return jets.rate(jets.rate(rotations.jet(station)))
 
 
 def _speed_load(step: Step, speed: Array, sense: float) -> Array:
@@ -111,13 +115,12 @@ def refuse_locking(chain: Chain, pin_moment: float) -> None:
             )
 
 
-def _hooke_factor(step: Step, chi: Array, pin_moment: Array) -> Array:
+def _with_friction(step: Step, chi: Array, pin_moment: Array) -> Array:
     """M₁/M₂ as a jet; ``pin_moment`` is σκ′ at each angle."""
-    d, sine, cosine = hooke.law(step.angle).denominator_jet(chi)
-    straight = jets.constant(np.cos(step.angle), d)
-    if not np.any(pin_moment):
-        return jets.divide(straight, d)
+    sine, cosine = jets.sine_cosine(chi)
+    d = -(np.sin(step.angle) ** 2) * jets.multiply(cosine, cosine)
+    d[0] += 1.0
     bent = pin_moment * np.sin(abs(step.angle))
-    above = straight + bent * np.sign(sine[0]) * sine
+    above = jets.constant(np.cos(step.angle), d) + bent * np.sign(sine[0]) * sine
     below = d - bent * np.sign(cosine[0]) * jets.multiply(cosine, jets.square_root(d))
     return jets.divide(above, below)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from trunnion.analyses.kinetostatics.bearings import Bearings
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, member_ratio
 from trunnion.analyses.kinetostatics.couples import secondary_couples
-from trunnion.analyses.kinetostatics.elastic import Drive, constant_twist, solve
+from trunnion.analyses.kinetostatics.elastic import constant_twist, solve
 from trunnion.analyses.kinetostatics.friction import CrossFriction
 from trunnion.analyses.kinetostatics.measures import largest
-from trunnion.analyses.kinetostatics.motion import Motion, assembled
+from trunnion.analyses.kinetostatics.motion import Drive, assembled
 from trunnion.analyses.kinetostatics.remarks import remarks
 from trunnion.analyses.kinetostatics.result import ConstantTwist, Kinetostatics
 from trunnion.analyses.kinetostatics.supports import support_forces
@@ -22,6 +22,7 @@ from trunnion.analyses.kinetostatics.torques import Torques, refuse_locking
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE, Kind, parse
 from trunnion.driveline.refusals import nearest
+from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
 
 Array = NDArray[np.float64]
@@ -161,7 +162,7 @@ def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]
     return found
 
 
-def _constant(train: Chain, drive: Drive, motion: Motion, twist: dict[int, Array]) -> tuple[ConstantTwist, ...]:
+def _constant(train: Chain, drive: Drive, motion: Rotations, twist: dict[int, Array]) -> tuple[ConstantTwist, ...]:
     """One for every end."""
     approximate = constant_twist(train, drive, twist).angle
     variation = []
@@ -170,14 +171,14 @@ def _constant(train: Chain, drive: Drive, motion: Motion, twist: dict[int, Array
         variation.append(swing / (2 * abs(mean)) if mean else np.nan)
     found = []
     for end in train.ends:
-        error = approximate[end] - motion.angle[end]
-        angle, speed, half = (float(largest(np.abs(error[k]))) for k in range(3))
+        errors = [np.abs(approximate[end][k] - motion.angle[end][k]) for k in range(3)]
+        angle, speed, half = (float(largest(error)) for error in errors)
         found.append(ConstantTwist(np.array(variation), angle, speed, 2 * half))
     return tuple(found)
 
 
 def _power_residual(
-    train: Chain, drive: Drive, motion: Motion, passed: Torques, twist: dict[int, Array], heat: Array
+    train: Chain, drive: Drive, motion: Rotations, passed: Torques, twist: dict[int, Array], heat: Array
 ) -> float:
     """Largest imbalance of power over the largest power [1].
 
