@@ -18,7 +18,7 @@ from trunnion.analyses.charts.building import build
 from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.charts.plain_chart import build_plainly
 from trunnion.analyses.charts.plain_pixels import plain_radii
-from trunnion.analyses.charts.stability_chart import line_task, stability_chart
+from trunnion.analyses.charts.stability_chart import chart_task, stability_chart
 from trunnion.analyses.limits.result import LimitKind
 from trunnion.analyses.limits.stable_limit import limit_of_chart
 from trunnion.equations.coefficients import assemble
@@ -37,7 +37,7 @@ def nothing_compiled(monkeypatch):
 
 def family(line, low, high, top, points) -> LineFamily:
     axes = ("speed", low, high, points[0]), (ANGLES, 0.0, top, points[1])
-    found = line_task(assemble(line), *axes, None, True).family
+    found = chart_task(assemble(line), *axes, None, True).family
     assert isinstance(found, LineFamily)
     return found
 

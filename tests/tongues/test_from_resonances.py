@@ -12,7 +12,6 @@ from trunnion.analyses.tongues.naming import eigenvalues
 from trunnion.analyses.tongues.region import patched, unpatched
 from trunnion.analyses.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
-from trunnion.equations.coefficients import assemble
 
 
 def paths(line: tn.Driveline, low: float, high: float, angles: tuple[float, float], *, patch: bool = False) -> Followed:
@@ -20,7 +19,7 @@ def paths(line: tn.Driveline, low: float, high: float, angles: tuple[float, floa
     task = task_of(line, ("speed", low, high), ("HookeJoint *.angle", *angles), None, True, "tongues")
     box = task.family, task.x.values, task.y.values
     region = patched(*box, PATCH_TOLERANCE, 2, lambda share: None) if patch else unpatched(*box, 2)
-    found = followed(task, assemble(line), region, True)
+    found = followed(region)
     assert found is not None
     return found
 

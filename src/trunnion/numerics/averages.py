@@ -13,9 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
+
 BATCHES = 20
 CONFIDENCE = 0.95
 MUCH_BETTER = 3.0
@@ -32,9 +32,9 @@ class Average:
     windowed: bool
 
 
-def average(series: Array, batches: int = BATCHES) -> Average:
+def average(series: Array) -> Average:
     """Average of each column of ``series`` (samples, k); all columns by the same weights, so sums stay sums."""
-    plain, windowed = batch_means(series, batches, False), batch_means(series, batches, True)
+    plain, windowed = batch_means(series, BATCHES, False), batch_means(series, BATCHES, True)
     smooth = _scatter(windowed) * MUCH_BETTER < _scatter(plain)
     return pooled(windowed if smooth else plain, smooth)
 
@@ -47,7 +47,7 @@ def pooled(batches: Array, windowed: bool) -> Average:
     if len(batches) < 2:
         return Average(mean, np.full(mean.shape, np.inf), batches, windowed)
     error = batches.std(axis=0, ddof=1) / np.sqrt(len(batches))
-    return Average(mean, student(len(batches) - 1) * error, batches, windowed)
+    return Average(mean, _student(len(batches) - 1) * error, batches, windowed)
 
 
 def batch_means(series: Array, batches: int, windowed: bool) -> Array:
@@ -63,11 +63,11 @@ def batch_means(series: Array, batches: int, windowed: bool) -> Array:
     return np.asarray(np.tensordot(weight / weight.sum(), blocks, (0, 1)))
 
 
-def student(freedom: int, confidence: float = CONFIDENCE) -> float:
+def _student(freedom: int) -> float:
     """Two-sided quantile of Student's t."""
     from scipy.stats import t
 
-    return float(t.ppf(0.5 + confidence / 2, freedom))
+    return float(t.ppf(0.5 + CONFIDENCE / 2, freedom))
 
 
 def _scatter(batches: Array) -> float:

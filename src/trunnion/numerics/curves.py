@@ -15,12 +15,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
+from trunnion.arrays import Array, Complex, Integers
+
 Curves = Callable[[Array], Array]
 """Times (m,) → values (m, curves)."""
 
@@ -186,12 +184,9 @@ def fourier(curves: Curves, cuts: Array, highest: int) -> Complex:
     left = np.repeat(cuts[:-1], count) + within * length
     if highest < WIDTH:
         return _directly(curves, begin, period, left, length, highest)
-    grid: Array | None = None
     size = 2 * fft.next_fast_len(max(2 * (highest + 1), WIDTH))
-    for times, weighed in _weighed(curves, period, left, length):
-        grid = np.zeros((size, weighed.shape[1])) if grid is None else grid
-        _spread((times - begin) / period, weighed, grid)
-    assert grid is not None
+    every = _weighed(curves, period, left, length)
+    grid = sum(_spread((times - begin) / period, weighed, size) for times, weighed in every)
     out = fft.rfft(grid, axis=0)[: highest + 1] / _spreading(np.arange(highest + 1) / size)[:, None]
     out[1:] *= 2
     return np.asarray(out)
@@ -216,16 +211,17 @@ def _directly(curves: Curves, begin: float, period: float, left: Array, length: 
     return np.asarray(out)
 
 
-def _spread(place: Array, values: Array, grid: Array) -> None:
-    """Add values (m, curves) at places (m,) of the period, 0 to 1, to the points of a grid (size, curves) around each,
-    so that a Fourier transform of the grid is a sum over the places (Barnett, Magland, af Klinteberg, SIAM J. Sci.
-    Comput. 41, 2019)."""
-    size = len(grid)
+def _spread(place: Array, values: Array, size: int) -> Array:
+    """A grid (size, curves) of the period whose points hold the values (m, curves) at places (m,), 0 to 1, around each,
+    so that its Fourier transform is a sum over the places (Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41,
+    2019)."""
+    grid = np.zeros((size, values.shape[1]))
     first = np.ceil(place * size - WIDTH / 2).astype(np.int64)
     for k in range(WIDTH):
         share = _kernel((first + k - place * size) / (WIDTH / 2))
         for j in range(grid.shape[1]):
             grid[:, j] += np.bincount((first + k) % size, share * values[:, j], size)
+    return grid
 
 
 def _kernel(z: Array) -> Array:

@@ -9,11 +9,8 @@ harmonics' amplitudes, ranks them, and the STARTS best are followed to their pea
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
+from trunnion.arrays import Array, Complex, Integers, Places
 
 SAMPLES = 16
 STARTS = 3
@@ -32,16 +29,12 @@ def cycle_extremes(index: Integers, amplitude: Complex) -> tuple[Array, Array]:
     Accurate to rounding where no more than STARTS peaks are equal to 2e-4 of the highest harmonics, and to that
     everywhere; NaN rows stay NaN.
     """
-    low, high = np.full(len(amplitude), np.nan), np.full(len(amplitude), np.nan)
     good = np.all(np.isfinite(amplitude), axis=1)
+    low, high = np.where(good, 0.0, np.nan), np.where(good, 0.0, np.nan)
     sizes = np.abs(amplitude[good])
-    if not good.any() or not len(index):
-        low[good] = high[good] = 0.0
-        return low, high
     kept = np.any(sizes > SHARE * sizes.sum(axis=1, keepdims=True), axis=0)
     index, parts = index[kept], amplitude[good][:, kept]
     if not len(index):
-        low[good] = high[good] = 0.0
         return low, high
     rows = max(1, MOST_SAMPLES // (SAMPLES * max(1, int(index.max()))))
     found = [_both(index, parts[i : i + rows]) for i in range(0, len(parts), rows)]
@@ -92,7 +85,7 @@ def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
     return np.asarray(highest)
 
 
-def _best(row: NDArray[np.intp], value: Array, within: Array) -> NDArray[np.intp]:
+def _best(row: Places, value: Array, within: Array) -> Places:
     """Places of the STARTS highest values of each row, those within ``within`` (row,) of its highest."""
     order = np.lexsort((-value, row))
     row, value = row[order], value[order]

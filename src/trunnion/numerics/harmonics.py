@@ -12,11 +12,8 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
+from trunnion.arrays import Array, Complex, Integers
 
 
 def order(row: Array) -> int:
@@ -150,11 +147,3 @@ def spectrum_of_steps(ends: Array, values: Array, highest: int) -> Complex:
     turns = np.exp(-1j * m * ends)
     parts = np.concatenate([np.diff(ends)[None], (turns[:, :-1] - turns[:, 1:]) / (1j * m)]) / (2 * np.pi)
     return np.asarray(values @ parts.T)
-
-
-def tail(rows: Array, last: int = 2) -> Array:
-    """Size of the last harmonics over that of all but the mean, per row (…,): what the series has not caught."""
-    h = order(rows)
-    size = np.hypot(rows[..., 1 : h + 1], rows[..., h + 1 :])
-    whole = np.sqrt(np.sum(size**2, axis=-1))
-    return np.asarray(size[..., max(h - last, 0) :].max(axis=-1) / np.maximum(whole, 1e-300))

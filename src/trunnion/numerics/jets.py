@@ -8,9 +8,8 @@ adds products and the few functions joint laws need, each by its classical recur
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
 
 
 def constant(value: Array | float, like: Array) -> Array:

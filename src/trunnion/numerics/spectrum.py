@@ -13,10 +13,8 @@ which is exact to a factor 2 for one or two close multipliers and stays finite w
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from trunnion.arrays import Array, Complex
 
 
 def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:

@@ -7,10 +7,8 @@ and solves those few again.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
+from trunnion.arrays import Complex, Integers
 
 
 def tree_solve(diagonal: Complex, coupling: Complex, parent: Integers, right: Complex) -> tuple[Complex, Complex]:

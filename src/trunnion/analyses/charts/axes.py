@@ -6,15 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.parameters import Columns, Parameter
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.systems.family import PeriodicLinearFamily
 
-Array = NDArray[np.float64]
 AxisRequest = Sequence[object]
 
 MOST_CYCLES = 500
@@ -232,11 +231,7 @@ def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
                 "it must stay below 90°",
                 element=columns.label, key="range", value=float(ends[steepest.argmax()]),
             )  # fmt: skip
-    for row, value, key in zip(table, ends.tolist(), ("low", "high"), strict=True):
-        try:
-            assembly.packed.line_at(row)
-        except InputError as error:
-            raise _impossible(error.problems[0], columns.label, key, value) from None
+    _refuse_impossible(assembly, table, columns.label, [("low", ends[0].item()), ("high", ends[1].item())])
 
 
 def check_corners(assembly: Assembly, x: Axis, y: Axis) -> None:
@@ -253,17 +248,20 @@ def check_corners(assembly: Assembly, x: Axis, y: Axis) -> None:
     across, up = x.values[[0, 0, -1, -1]], y.values[[0, -1, 0, -1]]
     x.columns.put(table, across)
     y.columns.put(table, up)
-    for row, a, b in zip(table, across.tolist(), up.tolist(), strict=True):
+    corners = zip(across.tolist(), up.tolist(), strict=True)
+    _refuse_impossible(assembly, table, f"{x.label} and {y.label}", [("range", corner) for corner in corners])
+
+
+def _refuse_impossible(assembly: Assembly, table: Array, label: str, ends: Sequence[tuple[str, object]]) -> None:
+    """Refuse rows of packed numbers that make no line; ``ends``: the key and value of the axes at each."""
+    for row, (key, value) in zip(table, ends, strict=True):
         try:
             assembly.packed.line_at(row)
         except InputError as error:
-            raise _impossible(error.problems[0], f"{x.label} and {y.label}", "range", (a, b)) from None
-
-
-def _impossible(said: InputError, label: str, key: str, value: object) -> InputError:
-    place = ".".join(part for part in (said.element, said.key) if part)
-    number = f" {said.value:g}" if isinstance(said.value, float) else ""
-    remedy = "let the axis end where the line is still possible"
-    return InputError(
-        f"would make {place}{number}, which {said.problem}", element=label, key=key, value=value, remedy=remedy
-    )
+            said = error.problems[0]
+            place = ".".join(part for part in (said.element, said.key) if part)
+            number = f" {said.value:g}" if isinstance(said.value, float) else ""
+            raise InputError(
+                f"would make {place}{number}, which {said.problem}",
+                element=label, key=key, value=value, remedy="let the axis end where the line is still possible",
+            ) from None  # fmt: skip

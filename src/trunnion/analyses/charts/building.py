@@ -15,19 +15,20 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows, put_better
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows
+from trunnion.arrays import Array, Flags, Places
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.patches import patches
-from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction, between
+from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.numerics.threads import on_threads
 from trunnion.results.chart import SpotCheck
 from trunnion.results.verdict import Verdict
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
+Matrices = Callable[[Array, Array, float, int], tuple[Array, Array, Array]]
+"""Points (x, y), tolerance, threads → monodromy matrices, their errors and ∫ tr(M⁻¹C) dτ."""
 
 SPOTS = 24
 """Random pixels at which a chart checks itself."""
@@ -35,6 +36,8 @@ FEW = 2000
 """Pixels for each of which hundreds of steps of dense matrices may be spent to decide them."""
 DIRECT_BYTES = 512 * 2**20
 """Memory for matrices of points that are integrated by themselves together."""
+AT_ONCE = 200_000
+"""Numbers of a patch that are turned into pixels together."""
 UNEVEN = 0.4713
 """Where boxes are divided for smaller patches: not in the middle, so that no node stands where one stood."""
 
@@ -156,7 +159,7 @@ def _patched(
     way: Way, family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress
 ) -> PatchedFunction:
     u, v = family.to_patch(x, True), family.to_patch(y, False)
-    box = Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
+    box = Box.around(u, v)
     if not way.patched or box.u0 == box.u1 or box.v0 == box.v1:
         return PatchedFunction((), (box,))
     if not way.smaller and (few := family.leading(box, len(u) * len(v), tolerance / 4, threads, tell)) is not None:
@@ -174,51 +177,54 @@ def _quarters(box: Box) -> list[Box]:
 
 def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int) -> Pixels:
     """Every pixel, patch by patch in parallel, the rest by direct integration."""
-    shape = (len(y), len(x))
-    radius, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    critical, verdict = np.full(shape, np.nan, dtype=complex), np.full(shape, Verdict.FAILED, dtype=np.int8)
-    left = np.ones(shape, dtype=bool)
-    u, v = family.to_patch(x, True), family.to_patch(y, False)
 
-    def fill_strip(task: tuple[Patch, Array, slice, slice]) -> None:
-        patch, along, rows, columns = task
-        found = judge_rows(patch, along, u[columns], v[rows], family.size, family.set_aside)
-        radius[rows, columns], error[rows, columns] = found.radius, found.error
-        critical[rows, columns], verdict[rows, columns] = found.critical, found.verdict
+    def judged(patch: Patch, u: Array) -> Callable[[Array], Pixels]:
+        along = patch.columns(u)
+        return lambda v: judge_rows(patch, along, u, v, family.size, family.set_aside)
 
-    # One patch may cover most of the pixels, so threads share strips.
-    tasks = []
-    for patch in function.patches:
-        rows, columns = between(v, patch.box.v0, patch.box.v1), between(u, patch.box.u0, patch.box.u1)
-        if rows.stop > rows.start and columns.stop > columns.start:
-            width = (columns.stop - columns.start) * len(patch.error)
-            along = patch.columns(u[columns])
-            tasks += [(patch, along, part, columns) for part in _strips(rows, width)]
-            left[rows, columns] = False
-    on_threads(fill_strip, tasks, threads)
+    pixels, left = shown(function, family.to_patch(x, True), family.to_patch(y, False), judged, threads)
     r, c = np.nonzero(left)
     at_once = int(np.clip(DIRECT_BYTES // (32 * (2 * family.size) ** 2), 1, 65536))
     for start in range(0, len(r), at_once):
         here = (r[start : start + at_once], c[start : start + at_once])
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
         found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.set_aside)
-        radius[here], error[here], critical[here], verdict[here] = (
-            found.radius,
-            found.error,
-            found.critical,
-            found.verdict,
-        )
-    pixels = Pixels(radius, error, critical, verdict)
+        pixels.put(here, found)
     decide(family, pixels, x, y, tolerance, threads)
     return pixels
+
+
+def shown(
+    function: PatchedFunction,
+    u: Array,
+    v: Array,
+    judged: Callable[[Patch, Array], Callable[[Array], Pixels]],
+    threads: int,
+) -> tuple[Pixels, Flags]:
+    """Pixels (v, u) of all patches, and which are left; ``judged``: (patch, u) → v → its pixels."""
+    pixels, left = Pixels.failed((len(v), len(u))), np.ones((len(v), len(u)), dtype=bool)
+
+    def fill_strip(task: tuple[Callable[[Array], Pixels], slice, slice]) -> None:
+        judge_strip, rows, columns = task
+        pixels.put((rows, columns), judge_strip(v[rows]))
+
+    # One patch may cover most of the pixels, so threads share strips.
+    tasks = []
+    for patch, rows, columns in function.parts(u, v):
+        width = (columns.stop - columns.start) * len(patch.error)
+        judge_strip = judged(patch, u[columns])
+        tasks += [(judge_strip, part, columns) for part in _strips(rows, width)]
+        left[rows, columns] = False
+    on_threads(fill_strip, tasks, threads)
+    return pixels, left
 
 
 class Spots(NamedTuple):
     """Some of a chart's pixels, known more sharply: ``found`` (spot,) of ``rows`` and ``columns``."""
 
     found: Pixels
-    rows: NDArray[np.intp]
-    columns: NDArray[np.intp]
+    rows: Places
+    columns: Places
 
 
 def spots_known(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, count: int) -> Spots:
@@ -236,7 +242,7 @@ def sharply(tolerance: float) -> float:
     return max(tolerance * 1e-3, 1e-13)
 
 
-def spots(shape: tuple[int, int], count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def spots(shape: tuple[int, int], count: int) -> tuple[Places, Places]:
     """Rows and columns of ``count`` random pixels of a chart of ``shape`` (y, x)."""
     shares = np.random.default_rng(shape[0] * shape[1]).random((count, 2))
     return (shares[:, 0] * shape[0]).astype(int), (shares[:, 1] * shape[1]).astype(int)
@@ -254,8 +260,16 @@ def compared(known: Spots, pixels: Pixels) -> SpotCheck:
     return SpotCheck(len(rows), float(ratio[finite].max()), float(off[finite].max()))
 
 
-def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: float, threads: int) -> None:
-    """Judge undecided pixels (y, x) anew, in place, from monodromy matrices of their own.
+def decide(
+    family: ChartFamily,
+    pixels: Pixels,
+    x: Array,
+    y: Array,
+    tolerance: float,
+    threads: int,
+    matrices: Matrices | None = None,
+) -> None:
+    """Judge undecided pixels (y, x) anew, in place, from monodromy matrices of their own: the family's by default.
 
     Stiff and soft shafts together make coefficients so large that their rounding hides roots which the matrix
     still shows; there are few such pixels in most charts.
@@ -263,12 +277,12 @@ def decide(family: ChartFamily, pixels: Pixels, x: Array, y: Array, tolerance: f
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
     if family.set_aside or not 0 < len(rows) <= family.affordable:
         return
-    found = judge_matrices(*family.matrices(x[columns], y[rows], sharply(tolerance), threads))
-    put_better(found, pixels, rows, columns)
-    decide_stiff(family, pixels, x, y)
+    found = judge_matrices(*(matrices or family.matrices)(x[columns], y[rows], sharply(tolerance), threads))
+    pixels.put_better(found, rows, columns)
+    _decide_stiff(family, pixels, x, y)
 
 
-def decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> None:
+def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> None:
     """Once more for what is left, by the multipliers themselves of steps that are halved until they stay.
 
     What fast modes leave in the matrix makes its error far larger than theirs.
@@ -276,10 +290,10 @@ def decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> Non
     rows, columns = np.nonzero(pixels.verdict == Verdict.UNDECIDED)
     if not 0 < len(rows) <= FEW or (found := family.settled(x[columns], y[rows])) is None:
         return
-    put_better(found, pixels, rows, columns)
+    pixels.put_better(found, rows, columns)
 
 
-def _strips(rows: slice, per_row: int, limit: int = 200_000) -> list[slice]:
-    """Rows in strips of at most ``limit`` numbers: bounded memory, and work for every thread's cache."""
-    step = max(1, limit // max(per_row, 1))
+def _strips(rows: slice, per_row: int) -> list[slice]:
+    """Rows in strips of at most ``AT_ONCE`` numbers: bounded memory, and work for every thread's cache."""
+    step = max(1, AT_ONCE // max(per_row, 1))
     return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]

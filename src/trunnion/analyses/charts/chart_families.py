@@ -13,13 +13,13 @@ from functools import cached_property
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.axes import Axis
-from trunnion.analyses.charts.chart_pixels import Pixels
-from trunnion.analyses.charts.few_nodes import leading_patches
+from trunnion.analyses.charts.chart_pixels import Pixels, undamped
+from trunnion.analyses.charts.few_nodes import corners_of, leading_patches
 from trunnion.analyses.charts.leading_group import told_apart
 from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling, without_groups
+from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion
@@ -42,15 +42,16 @@ from trunnion.numerics.chain.exponential_monodromy import exponential_monodromie
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.jit import at_hand
-from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction, halved_across
-from trunnion.numerics.patches.slabs import build_slabs, on_grids, slab_edges
-from trunnion.results.verdict import verdicts
-
-Array = NDArray[np.float64]
+from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction, grid_by_grid, halved_across
+from trunnion.numerics.patches.slabs import build_slabs, slab_edges
+from trunnion.numerics.threads import on_threads
 
 
 class ChartFamily(Protocol):
-    """Anything a chart can be made of; ``affordable``: points that may each be integrated to settle doubts."""
+    """Anything a chart can be made of; ``affordable``: points that may each be integrated to settle doubts.
+
+    What it says here of itself holds for families of which nothing but their matrices is known.
+    """
 
     affordable: ClassVar[int]
 
@@ -59,44 +60,54 @@ class ChartFamily(Protocol):
         """Number of unknowns."""
 
     @property
-    def set_aside(self) -> int:
-        """How many multipliers that are exactly 1 are to be set aside, as ``Stability.set_aside``."""
-
-    @property
     def period(self) -> float:
         """Period in τ."""
+
+    @property
+    def set_aside(self) -> int:
+        """How many multipliers that are exactly 1 are to be set aside, as ``Stability.set_aside``."""
+        return 0
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices (points, m, m), their errors and ∫ tr(M⁻¹C) dτ (points,)."""
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """Quantities and their error bounds at points (x, y), each (points, quantities)."""
+        return quantities(*self.matrices(x, y, tolerance, threads))
 
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """How to sample grids in the patch variables when building the patches of ``box``; by slabs where they pay."""
+        return _point_by_point(self, box, tolerance, threads)
 
     def leading(
         self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
     ) -> PatchedFunction | None:
         """Patches of the largest multipliers alone, where those stand apart and cost less; else None."""
+        return None
 
     def differ(self, x: Array, y: Array) -> bool:
         """Whether a cheap look tells the stability of two points (x, y) apart; False also where it would be dear."""
+        return False
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """Pixels at points (x, y) from steps that are halved until the multipliers stay; None where there is no way."""
+        return None
 
     def in_numpy(self, x: Array, y: Array) -> Pixels | None:
         """The same of damped lines whose kernels would have to be compiled, which takes longer; else None."""
+        return None
 
     def over_whole_periods(self) -> ChartFamily:
         """The same family integrated over whole periods, whatever symmetry it may have."""
+        return self
 
     def to_patch(self, value: Array, of_x: bool) -> Array:
         """Axis values → the variable in which the quantities are smooth."""
+        return np.asarray(value, dtype=float)
 
     def from_patch(self, value: Array, of_x: bool) -> Array:
         """The inverse of ``to_patch``."""
+        return np.asarray(value, dtype=float)
 
 
 def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]:
@@ -116,7 +127,7 @@ def quantities(matrix: Array, error: Array, trace: Array) -> tuple[Array, Array]
 
 
 @dataclass(frozen=True)
-class LineFamily:
+class LineFamily(ChartFamily):
     """A driveline over two of its parameters; ``half_windows``: half periods suffice where the joints' phases allow."""
 
     assembly: Assembly
@@ -146,12 +157,17 @@ class LineFamily:
 
     def lanes(self, x: Array, y: Array) -> ChainLanes:
         """The kernel's numbers at points (x, y)."""
-        return chain_lanes(self.assembly.topology, self._coefficients(x, y), self._by_speed)
+        return self.lanes_of(self.table(x, y))
+
+    def lanes_of(self, table: Array) -> ChainLanes:
+        """The kernel's numbers of cases of packed numbers (case, column)."""
+        coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+        return chain_lanes(self.assembly.topology, coefficients, self._by_speed)
 
     @cached_property
     def _by_speed(self) -> frozenset[int]:
         """Stations with loads that depend on the speed anywhere on the axes."""
-        box = Box(*(float(a.values[i]) for a in (self.x, self.y) for i in (0, -1)))
+        box = Box.around(self.x.values, self.y.values)
         return loaded_by_speed(self.assembly.topology, self._coefficients(*spread(box, 5)))
 
     @cached_property
@@ -181,18 +197,8 @@ class LineFamily:
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
-        program = self.program
         lanes = self.lanes(x, y)
-        window = self._window(program, lanes)
-        # Lanes with equal joint angles and phases share the joints' laws: let the other axis run along lanes.
-        order = _kinematic_order(lanes)
-        # Each part in rows as before: another layout would have the kernels compiled again for it.
-        sorted_lanes = lanes if order is None else ChainLanes(*(np.take(part, order, axis=-1) for part in lanes))
-        matrix, error, trace = chain_monodromy(program, sorted_lanes, window, tolerance, threads)
-        if order is not None:
-            back = np.argsort(order)
-            matrix, error, trace = matrix[back], error[back], trace[back]
-        return matrix, error, trace
+        return chain_monodromy(self.program, lanes, self._window(self.program, lanes), tolerance, threads)
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
@@ -205,7 +211,7 @@ class LineFamily:
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
         if not slabs or pixels < FEWEST_PIXELS:
-            return grid_by_grid(self, box, tolerance, threads)
+            return _point_by_point(self, box, tolerance, threads)
         lanes = self._patch_lanes(*spread(box))
         program = self.program
         # One window serves the whole box, so it must suit every point of it: corners alone would not tell.
@@ -216,7 +222,7 @@ class LineFamily:
         edges = slab_edges(swiftest * np.sqrt(self.size), *self._swiftness(spread(box, 5), window.begin, length))
         count = len(edges) - 1
         if count < FEWEST_SLABS:
-            return grid_by_grid(self, box, tolerance, threads)
+            return _point_by_point(self, box, tolerance, threads)
         # Slabs are so cheap that a sharper tolerance costs little, and every bound below grows with it.
         sharper = tolerance / (10 if self.size <= 2 else 100)
 
@@ -226,12 +232,12 @@ class LineFamily:
 
         built = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
         if built is None:
-            return grid_by_grid(self, box, tolerance, threads)
+            return _point_by_point(self, box, tolerance, threads)
 
         def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
             return [
                 quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
-                for grid, parts in zip(grids, on_grids(built, grids, threads), strict=True)
+                for grid, parts in zip(grids, on_threads(built.propagators, grids, threads), strict=True)
             ]
 
         # Products of slabs cost less than one integration, so no pixel is worth integrating by itself.
@@ -248,7 +254,12 @@ class LineFamily:
         half = self.half_windows and symmetry_phase(self.program, lanes, self.period) is not None
         phase = lanes.frequency * np.sqrt(self.size) * self.period / (2 if half else 1)
         elsewhere = without_groups(self.size, pixels, float(phase.mean()), float(phase.max()), FEWEST_PIXELS)
-        return leading_patches(self, box, pixels, tolerance, threads, elsewhere, tell)
+        corners = self.rates(*self._from_patch(*corners_of(box)))
+
+        def points(u: Array, v: Array) -> ChainExponentials:
+            return self.exponentials(*self._from_patch(u, v))
+
+        return leading_patches(points, corners, box, pixels, tolerance, threads, elsewhere, tell)
 
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""
@@ -258,7 +269,7 @@ class LineFamily:
         """See ``ChartFamily``."""
         if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE:
             return None
-        return self._by_halving(self.rates(x, y), len(x))
+        return self.by_halving(self.rates(x, y))
 
     def in_numpy(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
@@ -266,9 +277,9 @@ class LineFamily:
             return None
         with instead_of_compiling():
             rates = self.rates(x, y)
-            if np.any(np.abs(rates.trace) < 1e-12 * self.size):
+            if np.any(undamped(rates.trace, self.size)):
                 return None
-            found = self._by_halving(rates, len(x))
+            found = self.by_halving(rates)
         return found if np.isfinite(found.radius).all() else None
 
     @property
@@ -281,12 +292,12 @@ class LineFamily:
         by_steps = (integrate_exponentials,) if 2 * self.size > LARGEST else ()
         return not at_hand(integrator, *by_steps, radii_on_rows)
 
-    def _by_halving(self, rates: LineRates, points: int) -> Pixels:
+    def by_halving(self, rates: LineRates, tolerance: float = 1e-10) -> Pixels:
+        """The points of ``rates`` from exponential steps that are halved until the multipliers stay."""
         found = exponential_monodromies(
-            rates, points, 2 * self.size, self.period, tolerance=1e-10, least_steps=rates.steps
+            rates, len(rates.table), 2 * self.size, self.period, tolerance=tolerance, least_steps=rates.steps
         )
-        code = verdicts(found.radius, found.error, np.abs(rates.trace) < 1e-12 * self.size)
-        return Pixels(found.radius, found.error, found.critical, code)
+        return Pixels.of(found.radius, found.error, found.critical, rates.trace, self.size)
 
     def _window(self, program: ChainProgram, lanes: ChainLanes) -> Window:
         """The window that suits all ``lanes``: half a period where every joint is even about one phase in each."""
@@ -296,7 +307,7 @@ class LineFamily:
     def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
         """Input angles over a stretch, and the speed of the swiftest station over the input's at each."""
         topo = self.assembly.topology
-        x, y = self.from_patch(points[0], True), self.from_patch(points[1], False)
+        x, y = self._from_patch(*points)
         coefficients = self._coefficients(x, y)
         # Many points differ in numbers that move no joint, such as the speed.
         moving = [
@@ -327,7 +338,10 @@ class LineFamily:
         return [Box(box.u0, box.u1, a, b) for a, b in pairs]
 
     def _patch_lanes(self, u: Array, v: Array) -> ChainLanes:
-        return self.lanes(self.from_patch(u, True), self.from_patch(v, False))
+        return self.lanes(*self._from_patch(u, v))
+
+    def _from_patch(self, u: Array, v: Array) -> tuple[Array, Array]:
+        return self.from_patch(u, True), self.from_patch(v, False)
 
     def _grid_lanes(self, grid: Grid) -> ChainLanes:
         u, v = grid
@@ -382,17 +396,13 @@ class Sampler:
     boxes: list[Box]
 
 
-def grid_by_grid(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
+def _point_by_point(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
     """Sample grids by plain evaluation of all their points in one call."""
 
-    def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
-        u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
-        v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
-        values, bounds = family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
-        cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
-        return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
+    def evaluate(u: Array, v: Array) -> tuple[Array, Array]:
+        return family.evaluate(family.from_patch(u, True), family.from_patch(v, False), tolerance, threads)
 
-    return Sampler(evaluate, 0.8 * NODES**2, [box])
+    return Sampler(grid_by_grid(evaluate), 0.8 * NODES**2, [box])
 
 
 def spread(box: Box, count: int = 24) -> tuple[Array, Array]:
@@ -403,17 +413,3 @@ def spread(box: Box, count: int = 24) -> tuple[Array, Array]:
     places = np.concatenate([[0.0, 1.0], np.mod((np.sqrt(5) - 1) / 2 * np.arange(1, count + 1), 1.0)])
     u, v = box.u0 + places * (box.u1 - box.u0), box.v0 + places * (box.v1 - box.v0)
     return np.tile(u, len(v)), np.repeat(v, len(u))
-
-
-def _kinematic_order(lanes: ChainLanes) -> NDArray[np.intp] | None:
-    """An order that puts equal joint angles and phases side by side, or None where they are already."""
-    rows = [*lanes.cosine, *lanes.phase, *lanes.ripple, *lanes.ripple_phase]
-    moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
-    if not moving:
-        return None
-    changes = sum(np.count_nonzero(np.diff(row)) for row in moving)
-    if changes < len(moving[0]) / 4:
-        return None
-    key = np.lexsort((1 / lanes.frequency, *moving))
-    sorted_changes = sum(np.count_nonzero(np.diff(row[key])) for row in moving)
-    return key if sorted_changes < changes / 4 else None

@@ -2,37 +2,66 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Codes, Complex, Flags, Places
 from trunnion.numerics.chain.characteristic import LARGEST, radii, radii_on_rows, roots_of, without_ones
 from trunnion.numerics.chain.eigenvalues_in_rows import conditions, eigenvalues_in_rows
-from trunnion.numerics.patches.patches import Blocks, Patch
+from trunnion.numerics.patches.patches import Patch
 from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.verdict import verdicts
+from trunnion.results.verdict import Verdict, verdicts
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 FEW = 256
 """Matrices that a library is quick enough for."""
 ROUNDING = 4e-15
 """Of a matrix's norm, what of it eigenvalues are found for."""
 
 
-@dataclass(frozen=True)
-class Pixels:
+class Pixels(NamedTuple):
     """Arrays of any one shape: spectral radius, error bound, critical multiplier (of a pair the one with the positive
     imaginary part), verdict code."""
 
     radius: Array
     error: Array
     critical: Complex
-    verdict: NDArray[np.int8]
+    verdict: Codes
 
-    def __post_init__(self) -> None:
-        np.abs(self.critical.imag, out=self.critical.imag)
+    @staticmethod
+    def of(radius: Array, error: Array, critical: Complex, trace: Array, size: int) -> Pixels:
+        """With their verdicts, of lines of ``size`` unknowns by ∫ tr(M⁻¹C) dτ; ``critical`` is changed in place."""
+        np.abs(critical.imag, out=critical.imag)
+        return Pixels(radius, error, critical, verdicts(radius, error, undamped(trace, size)))
+
+    @staticmethod
+    def failed(shape: tuple[int, ...]) -> Pixels:
+        """Pixels of which nothing is known yet."""
+        radius, error, critical = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan, dtype=complex)
+        return Pixels(radius, error, critical, np.full(shape, Verdict.FAILED, dtype=np.int8))
+
+    def at(self, places: Any) -> Pixels:
+        """Those at ``places``, as NumPy picks entries of an array."""
+        return Pixels._make(part[places] for part in self)
+
+    def put(self, places: Any, found: Pixels) -> None:
+        """Set those at ``places``, in place."""
+        self.radius[places], self.error[places] = found.radius, found.error
+        self.critical[places], self.verdict[places] = found.critical, found.verdict
+
+    def put_better(self, found: Pixels, *places: Places) -> None:
+        """Put in place what is better known of the pixels at ``places``, an array of numbers an axis."""
+        better = found.error < self.error[places]
+        self.put(tuple(axis[better] for axis in places), found.at(better))
+
+    def shaped(self, shape: tuple[int, ...]) -> Pixels:
+        """The same pixels in another shape."""
+        return Pixels._make(part.reshape(shape) for part in self)
+
+
+def undamped(trace: Array, size: int) -> Flags:
+    """Where nothing damps a line of ``size`` unknowns, by ∫ tr(M⁻¹C) dτ (points,)."""
+    return np.abs(trace) < 1e-12 * size
 
 
 def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:
@@ -50,7 +79,7 @@ def judge(values: Array, bounds: Array, size: int, set_aside: int) -> Pixels:
         radius, error, critical = radii(*(without_ones(*left, set_aside) if set_aside else left))
     else:
         radius, error, critical = _largest(values[:-1], np.sqrt(np.sum(bounds[:-1] ** 2, axis=0)), m, set_aside)
-    return Pixels(radius, error, critical, verdicts(radius, error, np.abs(trace) < 1e-12 * size))
+    return Pixels.of(radius, error, critical, trace, size)
 
 
 def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
@@ -58,15 +87,7 @@ def judge_matrices(matrix: Array, error: Array, trace: Array) -> Pixels:
     every, bound = multipliers(matrix, error)
     radius, off = spectral_radius(every, bound)
     critical = np.take_along_axis(every, np.abs(every).argmax(axis=1)[:, None], axis=1)[:, 0]
-    return Pixels(radius, off, critical, verdicts(radius, off, np.abs(trace) < 1e-12 * (matrix.shape[1] // 2)))
-
-
-def put_better(found: Pixels, pixels: Pixels, *places: NDArray[np.intp]) -> None:
-    """Put what is better known into ``pixels`` at ``places``, an array of numbers an axis, in place."""
-    better = found.error < pixels.error[places]
-    here = tuple(axis[better] for axis in places)
-    pixels.radius[here], pixels.error[here] = found.radius[better], found.error[better]
-    pixels.critical[here], pixels.verdict[here] = found.critical[better], found.verdict[better]
+    return Pixels.of(radius, off, critical, trace, matrix.shape[1] // 2)
 
 
 def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_aside: int) -> Pixels:
@@ -75,22 +96,15 @@ def judge_rows(patch: Patch, along: Array, u: Array, v: Array, size: int, set_as
     column_block, row_block = patch.blocks(u, v)
     if m > LARGEST or set_aside:
         values = patch.rows(along, v)
-        found = _judge_in_blocks(values.reshape(len(values), -1), patch, row_block, column_block, size, set_aside)
-        return Pixels(
-            found.radius.reshape(shape),
-            found.error.reshape(shape),
-            found.critical.reshape(shape),
-            found.verdict.reshape(shape),
-        )
+        flat = values.reshape(len(values), -1)
+        return _judge_in_blocks(flat, patch, row_block, column_block, size, set_aside).shaped(shape)
     radius, error, critical = np.empty(shape), np.empty(shape), np.empty((*shape, 2))
     bounds = np.ascontiguousarray(patch.error[:m])  # however its file kept it: compiled once
     radii_on_rows(patch.weights(v), along[:m], bounds, row_block, column_block, radius, error, critical)
-    trace = patch.rows(along[-1:], v)[0]
-    code = verdicts(radius, error, np.abs(trace) < 1e-12 * size)
-    return Pixels(radius, error, critical.view(np.complex128)[..., 0], code)
+    return Pixels.of(radius, error, critical.view(np.complex128)[..., 0], patch.rows(along[-1:], v)[0], size)
 
 
-def _judge_in_blocks(values: Array, patch: Patch, rows: Blocks, columns: Blocks, size: int, set_aside: int) -> Pixels:
+def _judge_in_blocks(values: Array, patch: Patch, rows: Places, columns: Places, size: int, set_aside: int) -> Pixels:
     """``judge`` of pixels that lie in the blocks ``rows`` × ``columns`` of a patch.
 
     Of matrices only the norm of the bounds is needed, which is the same all over a block.
@@ -99,8 +113,7 @@ def _judge_in_blocks(values: Array, patch: Patch, rows: Blocks, columns: Blocks,
     if m <= LARGEST:
         return judge(values, patch.error[:, rows[:, None], columns].reshape(len(values), -1), size, set_aside)
     norm = np.sqrt(np.sum(patch.error[:-1] ** 2, axis=0))[rows[:, None], columns].ravel()
-    found = _largest(values[:-1], norm, m, set_aside)
-    return Pixels(*found, verdicts(found[0], found[1], np.abs(values[-1]) < 1e-12 * size))
+    return Pixels.of(*_largest(values[:-1], norm, m, set_aside), values[-1], size)
 
 
 def _multipliers_in(quantities: Array, size: int) -> int:

@@ -9,19 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.leading_group import Points, Settling, group_sizes, known, settle
 from trunnion.analyses.charts.prices import HALVINGS, pixel_price, step_price
+from trunnion.arrays import Array
 from trunnion.equations.first_order import LineRates
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
 from trunnion.numerics.patches.nested import FIRST_DEGREES, HIGHEST_DEGREE, Grid, Series
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 
-Array = NDArray[np.float64]
+AtNodes = Callable[[Array, Array], Points]
+"""Nodes (u, v) → points to be stepped."""
 DEEPEST = 3
 """Halvings of a box in which no group stands apart or whose degrees would be too high."""
 LIKELY_STEPS = 64
@@ -34,21 +34,9 @@ PROBES = 16
 """Input angles at which A is averaged for a forecast."""
 
 
-class Rated(Protocol):
-    """What is charted."""
-
-    def rates(self, x: Array, y: Array) -> LineRates:
-        """The equations at points (x, y), each a case."""
-
-    def exponentials(self, x: Array, y: Array) -> Points:
-        """The same as points to be stepped."""
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """Patch variable → axis value."""
-
-
 def leading_patches(
-    family: Rated,
+    points: AtNodes,
+    corners: LineRates,
     box: Box,
     pixels: int,
     tolerance: float,
@@ -59,24 +47,25 @@ def leading_patches(
 ) -> PatchedFunction | None:
     """Patches of the largest multipliers' e₁ … e_d over ``box``, each to ``tolerance`` of its size (1 at least).
 
+    ``points``: what is charted at nodes (u, v); ``corners``: its equations at the ``corners_of`` the box.
+
     None where that costs more than ``price_elsewhere`` [µs], no group of multipliers stands apart, or it holds them
     all and ``even_all`` is not asked for: elsewhere, then nothing is spared.
     """
-    rates = family.rates(*_from_patch(family, *_corners(box)))
-    states = 2 * rates.root.shape[1]
+    states = 2 * corners.root.shape[1]
     price, spared = step_price(states), price_elsewhere - pixels * pixel_price(6)
-    group, nodes_expected = _forecast(rates)
+    group, nodes_expected = _forecast(corners)
     dearest = spared / (nodes_expected * HALVINGS * price)
     if (group == states and not even_all) or not LIKELY_STEPS < dearest:
         return None
-    each, most_work = _work_at(_at_nodes(family, *_corners(box)), group, tolerance, dearest), SHARE * spared / price
+    each, most_work = _work_at(points(*corners_of(box)), group, tolerance, dearest), SHARE * spared / price
     if not REFINED * nodes_expected * each < most_work:
         return None
     todo, patches = [(box, 0)], list[Patch]()
     nodes, work, whole = 0, 0.0, 0.0
     while todo:
         part, depth = todo.pop()
-        made = _OneBox(family, part, tolerance, threads, most_work - work)
+        made = _OneBox(points, part, tolerance, threads, most_work - work)
         patch = made.patch()
         nodes, work = nodes + len(made.found.steps), work + made.found.work
         if patch is not None:
@@ -90,15 +79,8 @@ def leading_patches(
     return PatchedFunction(tuple(_alike(patches)), (), nodes)
 
 
-def _from_patch(family: Rated, u: Array, v: Array) -> tuple[Array, Array]:
-    return family.from_patch(u, True), family.from_patch(v, False)
-
-
-def _at_nodes(family: Rated, u: Array, v: Array) -> Points:
-    return family.exponentials(*_from_patch(family, u, v))
-
-
-def _corners(box: Box) -> tuple[Array, Array]:
+def corners_of(box: Box) -> tuple[Array, Array]:
+    """u and v of the corners of a box."""
     return np.array([box.u0, box.u1, box.u0, box.u1]), np.array([box.v0, box.v0, box.v1, box.v1])
 
 
@@ -143,10 +125,10 @@ def _work_at(corners: Points, d: int, tolerance: float, dearest: float) -> float
 class _OneBox:
     """A patch over one box, by refining its grid; ``split_u``: where to halve it if there is none."""
 
-    def __init__(self, family: Rated, box: Box, tolerance: float, threads: int, most_work: float) -> None:
-        self.family, self.box, self.tolerance, self.most_work = family, box, tolerance, most_work
+    def __init__(self, points: AtNodes, box: Box, tolerance: float, threads: int, most_work: float) -> None:
+        self.points, self.box, self.tolerance, self.most_work = points, box, tolerance, most_work
         self.grid = Grid(box, *FIRST_DEGREES)
-        self.found = Settling(_at_nodes(family, *self.grid.nodes()), threads)
+        self.found = Settling(points(*self.grid.nodes()), threads)
         self.place = np.arange(len(self.found.steps))  # of each node of the grid among all points
         self.split_u = True
 
@@ -199,7 +181,7 @@ class _OneBox:
         place = np.empty(len(u), dtype=np.intp)
         place[old] = self.place
         place[~old] = len(self.found.steps) + np.arange(fresh)
-        self.found.add(_at_nodes(self.family, u[~old], v[~old]))
+        self.found.add(self.points(u[~old], v[~old]))
         self.grid, self.place = grid, place
         return True
 

@@ -11,16 +11,14 @@ from __future__ import annotations
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.prices import pixel_price, step_price
+from trunnion.arrays import Array, Complex, Places
 from trunnion.numerics.chain.chain_tables import LANES
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
 from trunnion.numerics.threads import on_threads
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 FAINT = 0.01
 """Least difference of ln|σ| between neighbours that parts a group from the rest."""
 ROUGH = 0.05
@@ -50,7 +48,7 @@ class Points(Protocol):
     def states(self) -> int:
         """Size of the matrices."""
 
-    def monodromies(self, which: NDArray[np.intp], steps: int) -> tuple[Array, Array]:
+    def monodromies(self, which: Places, steps: int) -> tuple[Array, Array]:
         """Z (point, m, m) and ∫ tr(M⁻¹C) dτ (point,) of the points ``which``, by so many steps."""
 
     def and_also(self, other: Self) -> Self:
@@ -86,14 +84,14 @@ class Settling:
         self.norm, self.trace = np.concatenate([self.norm, norm]), np.concatenate([self.trace, trace])
         self.steps = np.concatenate([self.steps, np.full(count, 2 * first)])
 
-    def rough(self) -> NDArray[np.intp]:
+    def rough(self) -> Places:
         """Points whose larger multipliers are not yet known well enough to tell groups apart."""
         with np.errstate(divide="ignore", invalid="ignore"):
             fine, coarse = (np.log(np.abs(part[:, : LARGEST + 1])) for part in (self.fine, self.coarse))
             moved = np.where(fine > fine[:, :1] + np.log(NOTABLE), np.abs(fine - coarse), 0.0)
         return np.flatnonzero(~(moved.max(axis=1) < ROUGH))
 
-    def sharpen(self, which: NDArray[np.intp]) -> None:
+    def sharpen(self, which: Places) -> None:
         """Twice the steps at the points ``which``."""
         for steps in np.unique(self.steps[which])[::-1].tolist():  # the least last: none is taken up twice
             some = which[self.steps[which] == steps]
@@ -101,10 +99,10 @@ class Settling:
             self.fine[some], self.norm[some], self.trace[some] = self._multipliers(some, 2 * steps)
             self.steps[some] = 2 * steps
 
-    def _multipliers(self, which: NDArray[np.intp], steps: int) -> tuple[Complex, Array, Array]:
+    def _multipliers(self, which: Places, steps: int) -> tuple[Complex, Array, Array]:
         self.work += len(which) * (steps + self.eigenvalues)
 
-        def run(some: NDArray[np.intp]) -> tuple[Complex, Array, Array]:
+        def run(some: Places) -> tuple[Complex, Array, Array]:
             # Steps that are far too long overflow, and are halved.
             z, trace = self.points.monodromies(some, steps)
             with np.errstate(over="ignore", invalid="ignore"):

@@ -5,71 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.charts.chart_families import ChartFamily, Sampler, grid_by_grid, quantities
-from trunnion.analyses.charts.chart_pixels import Pixels
+from trunnion.analyses.charts.chart_families import ChartFamily
+from trunnion.arrays import Array, Flags
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.dense_monodromy import propagate
-from trunnion.numerics.patches.patches import Box, PatchedFunction
+from trunnion.results.chart import StabilityChart
 from trunnion.systems.family import PeriodicLinearFamily
-
-Array = NDArray[np.float64]
-
-
-class PointByPoint:
-    """What families share whose equations are not known in lanes."""
-
-    def sampler(
-        self: ChartFamily, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True
-    ) -> Sampler:
-        """See ``ChartFamily``."""
-        return grid_by_grid(self, box, tolerance, threads)
-
-    def leading(
-        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
-    ) -> PatchedFunction | None:
-        """Its equations are not known in lanes."""
-        return None
-
-    def differ(self, x: Array, y: Array) -> bool:
-        """Nothing is cheaper than its matrices."""
-        return False
-
-    def settled(self, x: Array, y: Array) -> Pixels | None:
-        """There is no other way than ``matrices``."""
-        return None
-
-    def in_numpy(self, x: Array, y: Array) -> Pixels | None:
-        """There is no other way than ``matrices``."""
-        return None
-
-    def over_whole_periods(self) -> Self:
-        """Own families are always integrated over whole periods."""
-        return self
-
-    def to_patch(self, value: Array, of_x: bool) -> Array:
-        """Parameters are taken as they are."""
-        return np.asarray(value, dtype=float)
-
-    def from_patch(self, value: Array, of_x: bool) -> Array:
-        """The inverse of ``to_patch``."""
-        return np.asarray(value, dtype=float)
 
 
 @dataclass(frozen=True)
-class OwnFamily(PointByPoint):
+class OwnFamily(ChartFamily):
     """A user's ``PeriodicLinearFamily`` over two of its parameters; ``middle`` is a typical point."""
 
     family: PeriodicLinearFamily
     x_name: str
     y_name: str
     middle: tuple[float, float]
-    set_aside: int = 0
     affordable: ClassVar[int] = 2_000
 
     @property
@@ -108,7 +64,7 @@ class OwnFamily(PointByPoint):
             error[p] = run.error * change.max() / change.min()
         return matrix, error, trace
 
-    def failures(self, x: Array, y: Array, failed: NDArray[np.bool_], tolerance: float) -> list[str]:
+    def failures(self, x: Array, y: Array, failed: Flags, tolerance: float) -> list[str]:
         """What went wrong at the pixels (y, x) that ``failed``, as a sentence about the first."""
         if not failed.any():
             return []
@@ -122,10 +78,6 @@ class OwnFamily(PointByPoint):
         count = int(failed.sum())
         return [f"{count} point{'s' if count > 1 else ''} failed; at {place}: {why}"]
 
-    def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
-        """See ``ChartFamily``."""
-        return quantities(*self.matrices(x, y, tolerance, threads))
-
     def _member(self, x: float, y: float) -> Callable[[Array], tuple[Array, Array, Array, Array]]:
         values = {self.x_name: np.array([x]), self.y_name: np.array([y])}
 
@@ -137,21 +89,22 @@ class OwnFamily(PointByPoint):
 
 
 @dataclass(frozen=True)
-class PatchesAlone(PointByPoint):
+class PatchesAlone(ChartFamily):
     """A family read from a file without its function: only its patches answer."""
 
-    size: int
-    period: float
-    set_aside: int = 0
+    chart: StabilityChart
     affordable: ClassVar[int] = 0
 
-    @classmethod
-    def of(cls, function: PatchedFunction, period: float) -> PatchesAlone | None:
-        """The family behind some patches; None where there are none."""
-        if not function.patches:
-            return None
-        count = len(function.patches[0].error) - 1
-        return cls((count if count <= LARGEST else round(np.sqrt(count))) // 2, period)
+    @property
+    def size(self) -> int:
+        """Number of unknowns, by the number of quantities."""
+        count = len(self.chart.function.patches[0].error) - 1
+        return (count if count <= LARGEST else round(np.sqrt(count))) // 2
+
+    @property
+    def period(self) -> float:
+        """Period in τ."""
+        return self.chart.period
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Nothing but the patches is known: NaN."""

@@ -6,14 +6,10 @@ Bounds are those of ``numerics.chain.characteristic``, roots those of companion 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_pixels import Pixels
+from trunnion.arrays import Array, Complex
 from trunnion.numerics.patches.patches import Patch
-from trunnion.results.verdict import verdicts
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def plain_pixels(patch: Patch, u: Array, v: Array, size: int) -> Pixels:
@@ -23,11 +19,7 @@ def plain_pixels(patch: Patch, u: Array, v: Array, size: int) -> Pixels:
     values = patch.weights(v) @ patch.coefficients @ np.polynomial.chebyshev.chebvander(across, count - 1).T
     bounds = patch.error_grid(u, v)
     flat, off = (part[:-1].reshape(len(part) - 1, -1) for part in (values, bounds))
-    shape = values.shape[1:]
-    found, error, critical = plain_radii(flat, off)
-    radius, error = found.reshape(shape), error.reshape(shape)
-    code = verdicts(radius, error, np.abs(values[-1]) < 1e-12 * size)
-    return Pixels(radius, error, critical.reshape(shape), code)
+    return Pixels.of(*plain_radii(flat, off), values[-1].ravel(), size).shaped(values.shape[1:])
 
 
 def plain_radii(values: Array, bounds: Array) -> tuple[Array, Array, Complex]:

@@ -13,16 +13,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
 from trunnion.analyses.charts.building import Built, build, decide, family_for, fill, way_named
 from trunnion.analyses.charts.chart_families import ChartFamily, LineFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, multipliers_of, tells_all
+from trunnion.analyses.charts.chart_pixels import judge, multipliers_of, tells_all
 from trunnion.analyses.charts.own_families import OwnFamily, PatchesAlone
 from trunnion.analyses.charts.plain_chart import MOST_FIRST, Plain, build_plainly
 from trunnion.analyses.charts.prices import compiling_pays, instead_of_compiling
 from trunnion.analyses.features import left_out
+from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly, assemble
@@ -34,7 +34,6 @@ from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 IN_NUMPY, SHARPEST = 0.01, 1e-12
 """Share of the tolerance that is asked for in NumPy: the kernels, too, know their samples that much better."""
@@ -77,44 +76,35 @@ def stability_chart(
     KeyboardInterrupt : passed on; nothing is kept.
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
-    task = (
-        own_task(line, x, y)
-        if isinstance(line, PeriodicLinearFamily)
-        else line_task(line, x, y, speed, statically_twisted, plain=not compiling_pays())
-    )
-    if isinstance(line, PeriodicLinearFamily) and speed is not None:
-        raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
+    task = chart_task(line, x, y, speed, statically_twisted, plain=not compiling_pays())
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
-    workers = threads or os.cpu_count() or 1
-    tell = progress or (lambda share: None)
-    built = None
+    tell, built = progress or (lambda share: None), None
     if isinstance(task.family, LineFamily) and not compiling_pays():
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
             built = build_plainly(task.family, task.x.values, task.y.values, asked, tell, MOST_FIRST)
-    if built is None:
-        built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
-    tell(1.0)
-    return _chart(task, built, tolerance, statically_twisted, workers)
+    return _chart(task, built, tolerance, statically_twisted, threads, tell)
 
 
 def chart_of_report(
     assembly: Assembly, x: AxisRequest, y: AxisRequest, tolerance: float, progress: Progress | None = None
 ) -> StabilityChart:
     """As ``stability_chart`` of a driveline, in plain NumPy where that takes seconds: nothing is compiled then."""
-    tell = progress or (lambda share: None)
-    task, workers = line_task(assembly, x, y, None, True, plain=True), os.cpu_count() or 1
+    tell, task = progress or (lambda share: None), chart_task(assembly, x, y, None, True, plain=True)
     assert isinstance(task.family, LineFamily)
     built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
+    return _chart(task, built, tolerance, True, None, tell)
+
+
+def _chart(
+    task: Task, built: Built | None, tolerance: float, twisted: bool, threads: int | None, tell: Progress
+) -> StabilityChart:
+    """What was built, by compiled kernels if it is not yet, as a result."""
+    workers = threads or os.cpu_count() or 1
     if built is None:
         built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
     tell(1.0)
-    return _chart(task, built, tolerance, True, workers)
-
-
-def _chart(task: Task, built: Built, tolerance: float, twisted: bool, workers: int) -> StabilityChart:
-    """What was built, as a result."""
     x_axis, y_axis, pixels = task.x, task.y, built.pixels
     remarks = [*task.remarks, *built.remarks]
     if isinstance(task.family, OwnFamily):
@@ -162,8 +152,8 @@ class Task:
     remarks: tuple[str, ...]
 
 
-def line_task(
-    line: Driveline | Assembly,
+def chart_task(
+    line: Driveline | Assembly | PeriodicLinearFamily,
     x: AxisRequest,
     y: AxisRequest,
     speed: float | None,
@@ -172,7 +162,7 @@ def line_task(
     *,
     plain: bool = False,
 ) -> Task:
-    """A driveline over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
+    """A line or family over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
 
     ``plain``: nothing is compiled for it, where the line suits that.
 
@@ -180,6 +170,22 @@ def line_task(
     ------
     InputError : see ``stability_chart``.
     """
+    if not isinstance(line, PeriodicLinearFamily):
+        return _line_task(line, x, y, speed, twisted, analysis, plain)
+    if speed is not None:
+        raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
+    return _own_task(line, x, y)
+
+
+def _line_task(
+    line: Driveline | Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | None,
+    twisted: bool,
+    analysis: str,
+    plain: bool,
+) -> Task:
     assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
     across, said_x = axis(assembly, x, "x")
@@ -233,7 +239,7 @@ def _middle(x: Array, y: Array) -> tuple[float, float]:
     return float(np.median(x)), float(np.median(y))
 
 
-def own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
+def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
     """A family of one's own over two of its parameters, checked."""
     across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
     if across.label == up.label:
@@ -258,15 +264,14 @@ def _pointwise(
         found = judge(values, bounds, family.size, family.set_aside)
         # Patches of a stiff line tell its largest multipliers alone.
         every = values if tells_all(values, family.size) else family.evaluate(*where, tolerance / 4, 1)[0].T
-        grid = Pixels(found.radius[None], found.error[None], found.critical[None], found.verdict[None])
-        decide(family, grid, np.array([x]), np.array([y]), tolerance, 1)
-        found = Pixels(grid.radius[0], grid.error[0], grid.critical[0], grid.verdict[0])
+        found = found.shaped((1, 1))
+        decide(family, found, *where, tolerance, 1)
         return ChartPoint(
             x=x,
             y=y,
-            spectral_radius=float(found.radius[0]),
-            error_estimate=float(found.error[0]),
-            verdict=Verdict(int(found.verdict[0])),
+            spectral_radius=found.radius.item(),
+            error_estimate=found.error.item(),
+            verdict=Verdict(found.verdict.item()),
             multipliers=multipliers_of(every[:, 0], family.size, family.set_aside),
             interpolated=patch is not None,
         )
@@ -276,12 +281,8 @@ def _pointwise(
 
 def _resampler(
     family: ChartFamily, function: PatchedFunction, tolerance: float, threads: int
-) -> Callable[[Array, Array], tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]]:
-    def resample(x: Array, y: Array) -> tuple[Array, Array, NDArray[np.complex128], NDArray[np.int8]]:
-        pixels = fill(family, function, x, y, tolerance, threads)
-        return pixels.radius, pixels.error, pixels.critical, pixels.verdict
-
-    return resample
+) -> Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]:
+    return lambda x, y: fill(family, function, x, y, tolerance, threads)
 
 
 def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | None = None) -> StabilityChart:
@@ -298,7 +299,7 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
     if family is not None:
         own = OwnFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
     elif chart.line is None:
-        own = PatchesAlone.of(chart.function, chart.period)
+        own = PatchesAlone(chart) if chart.function.patches else None
     else:
         own = family_of_chart(chart)
     if own is None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.analyses.charts.chart_families import quantities
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, put_better
+from trunnion.analyses.charts.chart_pixels import Pixels, judge
 from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
@@ -22,7 +22,6 @@ from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.chain.exponential_monodromy import by_halving
 from trunnion.numerics.threads import on_threads
-from trunnion.results.verdict import verdicts
 
 AT_ONCE = 1 << 15
 """Lines in one call of the kernel."""
@@ -82,7 +81,7 @@ class ManyLines:
         found = _joined([way(table[start : start + AT_ONCE]) for start in range(0, len(table), AT_ONCE)])
         coarse = np.flatnonzero(_too_coarse(found))
         if len(coarse):
-            put_better(other(table[coarse]), found, coarse)
+            found.put_better(other(table[coarse]), coarse)
         return found
 
     def integrated(self, table: Array, tolerance: float) -> Pixels:
@@ -106,9 +105,9 @@ class ManyLines:
                 lambda which, count: points.monodromies(which, count)[0],
                 len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside,
             )  # fmt: skip
-            undamped = np.abs(points.monodromies(np.arange(len(rows)), steps)[1]) < 1e-12 * topo.size
+            _, trace = points.monodromies(np.arange(len(rows)), steps)
             error = np.where(np.isfinite(found.radius), found.error, np.inf)
-            return Pixels(found.radius, error, found.critical, verdicts(found.radius, error, undamped))
+            return Pixels.of(found.radius, error, found.critical, trace, topo.size)
 
         parts = np.array_split(table, max(1, -(-len(table) // STEPPED_AT_ONCE)))
         return _joined(on_threads(run, parts, self.threads))
@@ -125,6 +124,4 @@ def _too_coarse(found: Pixels) -> Flags:
 
 
 def _joined(parts: list[Pixels]) -> Pixels:
-    return Pixels(
-        *(np.concatenate([getattr(p, name) for p in parts]) for name in ("radius", "error", "critical", "verdict"))
-    )
+    return Pixels._make(map(np.concatenate, zip(*parts, strict=True)))

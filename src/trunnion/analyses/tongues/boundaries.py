@@ -15,15 +15,18 @@ from functools import cache
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array, Complex
+
 MOST = 6
 """Coefficients up to which these functions are used; beyond, coefficients are too ill-conditioned."""
 
 
 def boundary_functions(e: Array, undamped: bool) -> Array:
-    """(functions, …) of coefficients e (m, …) with m = 2, 4 or 6; two functions for m = 2 without damping."""
+    """(functions, …) of coefficients e (m, …) with m = 2, 4 or 6; two functions for m = 2 without damping.
+
+    The highest power of e in any of them is m − 1.
+    """
     m = len(e)
     signs = (-1.0) ** np.arange(1, m + 1)
     at_one = 1 + np.tensordot(signs, e, 1)
@@ -33,11 +36,6 @@ def boundary_functions(e: Array, undamped: bool) -> Array:
     if m == 2:
         return np.stack([at_one, at_minus_one])
     return np.stack([at_one, at_minus_one, _discriminant(e)])
-
-
-def degree(m: int) -> int:
-    """The highest power of e in any of the functions."""
-    return {2: 1, 4: 3, 6: 5}[m]
 
 
 @cache
@@ -74,7 +72,7 @@ def _discriminant(e: Array) -> Array:
     return np.asarray(18 * b * c * d - 4 * b**3 * d + b**2 * c**2 - 4 * c**3 - 27 * d**2)
 
 
-def parted(multipliers: NDArray[np.complex128]) -> Array:
+def parted(multipliers: Complex) -> Array:
     """Of all multipliers (points, 2n) of undamped lines, a number (points,) that is positive where two have parted in
     modulus, with a slope where they do: (ln ρ)² − (Δθ/2)² of the two whose phases are nearest, conjugates included.
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array, Places
+
 ROUNDS = 60
 
 
-def bracketed(
-    function: Callable[[Array, NDArray[np.intp]], Array], low: Array, high: Array, tolerance: Array | float
-) -> Array:
+def bracketed(function: Callable[[Array, Places], Array], low: Array, high: Array, tolerance: Array | float) -> Array:
     """Zeros (brackets,) by Chandrupatla's method: inverse quadratic steps where they are safe, halves elsewhere.
 
     ``function(points, which)`` gives the values of the functions number ``which`` at one point each; it must change its
@@ -45,7 +43,7 @@ def bracketed(
     return np.where(~(np.abs(fb) < np.abs(fa)) & np.isfinite(fa), a, b)
 
 
-def _step(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, which: NDArray[np.intp]) -> Array:
+def _step(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array, which: Places) -> Array:
     """The share of the way from a to b at which to look next."""
     a, b, c, fa, fb, fc = (part[which] for part in (a, b, c, fa, fb, fc))
     with np.errstate(all="ignore"):

@@ -17,18 +17,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.charts.stability_chart import Task
+from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.linear.resonance_speeds import sources
 from trunnion.analyses.tongues.naming import eigenvalues, nearest_phases, partly_bent, straight_frequencies
 from trunnion.analyses.tongues.region import Region
 from trunnion.analyses.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
+from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.topology import require_period
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Multipliers = Callable[[Array], Complex]
 """Multipliers (resonances, 2n) at one speed of each."""
 
@@ -59,7 +57,7 @@ class Followed:
     (levels,), rising."""
 
     region: Region
-    pairs: NDArray[np.intp]
+    pairs: Places
     v: Array
     speed: Array
     phase: Array
@@ -80,7 +78,7 @@ class Followed:
         both = looked_at(self.region, known, missed)
         return [_attributed(new, old, *own) for new, old, own in zip(both, known, places, strict=True)]
 
-    def stretches(self, v: float) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_]]:
+    def stretches(self, v: float) -> tuple[Places, Array, Flags]:
         """Resonances (stretches,) whose multipliers meet on the row at ``v``, stretches (stretches, 2) in u that hold
         their regions there, and whether they have opened one."""
         region = self.region
@@ -98,28 +96,26 @@ class Followed:
         return here, np.clip(ends, region.box.u0, region.box.u1), high[here] > PARTED
 
 
-def followed(task: Task, assembly: Assembly, region: Region, twisted: bool) -> Followed | None:
-    """Every resonance of a line over speed, followed through the box; None where x is not the speed."""
-    if not task.x.is_speed:
+def followed(region: Region) -> Followed | None:
+    """Every resonance of a line over speed, followed through the box; None where x is not the speed of a line."""
+    family = region.family
+    if not isinstance(family, LineFamily) or not family.x.is_speed:
         return None
     v = np.linspace(region.box.v0, region.box.v1, LEVELS + 1)
-    y = region.y(v)
-    middle = float(np.mean(task.x.values))
-    modes = straight_frequencies(task, assembly, np.full(len(y), middle), y)[0]
+    y, speeds, assembly = region.y(v), family.x.values, family.assembly
+    modes = straight_frequencies(family, np.full(len(y), speeds.mean()), y)[0]
     elastic = np.flatnonzero((modes > 0).all(axis=0))
     turns = float(require_period(assembly.line, assembly.topology))
     pairs = _resonances(assembly, turns, len(elastic))
     i, j, cycles = pairs.T
     at = turns * (modes[:, elastic[i]] + modes[:, elastic[j]]) / cycles
-    low, high = (1 - BESIDE) * task.x.values.min(), (1 + BESIDE) * task.x.values.max()
+    low, high = (1 - BESIDE) * speeds.min(), (1 + BESIDE) * speeds.max()
     near = ((at > low) & (at < high)).any(axis=0)
     pairs, speed = pairs[near], at[0, near]
     phase = 2 * np.pi * turns * modes[0, elastic] / speed[:, None]
 
     def bent(share: float) -> Multipliers:
-        return lambda x: partly_bent(
-            task, assembly, x, np.full(len(x), y[0]), np.full(len(x), share), twisted, region.threads
-        )
+        return lambda x: partly_bent(family, x, np.full(len(x), y[0]), np.full(len(x), share), region.threads)
 
     if not len(pairs):
         return Followed(region, pairs, v, np.zeros((len(v), 0)), np.zeros((len(v), 0, len(elastic))))
@@ -139,7 +135,7 @@ def in_words(found: Followed, by: list[int]) -> str:
     )
 
 
-def _resonances(assembly: Assembly, turns: float, modes: int) -> NDArray[np.intp]:
+def _resonances(assembly: Assembly, turns: float, modes: int) -> Places:
     """Resonances (resonances, 3): modes i ≤ j, cycles N in the period."""
     rates = {float(2 * source.rate) * turns for source in sources(assembly)}
     cycles = sorted({round(k * rate) for rate in rates for k in range(1, ORDERS + 1)})
@@ -158,7 +154,7 @@ def _of(region: Region, v: float, tolerance: float) -> Multipliers:
     return at
 
 
-def _along(steps: list[Multipliers], speed: Array, phase: Array, pairs: NDArray[np.intp]) -> list[tuple[Array, Array]]:
+def _along(steps: list[Multipliers], speed: Array, phase: Array, pairs: Places) -> list[tuple[Array, Array]]:
     """Speeds and phases at each of the steps, begun at those given; each from the two before."""
     found = [(speed, phase)]
     for step in steps:
@@ -167,9 +163,7 @@ def _along(steps: list[Multipliers], speed: Array, phase: Array, pairs: NDArray[
     return found[1:]
 
 
-def _closed_in(
-    step: Multipliers, speed: Array, phase: Array, pairs: NDArray[np.intp], close: float
-) -> tuple[Array, Array]:
+def _closed_in(step: Multipliers, speed: Array, phase: Array, pairs: Places, close: float) -> tuple[Array, Array]:
     """Speeds near those given at which the multipliers meet as closely as asked for, and the phases of all modes."""
 
     def read(at: Array, ahead: Array) -> Array:
@@ -201,18 +195,18 @@ def _heights(values: Complex, phase: Array) -> tuple[Array, Array]:
     return height[:, 0], height[:, 1]
 
 
-def _off(phase: Array, pairs: NDArray[np.intp]) -> Array:
+def _off(phase: Array, pairs: Places) -> Array:
     """θ_i + θ_j − 2πN of each resonance."""
     own = np.arange(len(pairs))
     return phase[own, pairs[:, 0]] + phase[own, pairs[:, 1]] - 2 * np.pi * pairs[:, 2]
 
 
-def _met(row: Row, stretches: Array) -> NDArray[np.bool_]:
+def _met(row: Row, stretches: Array) -> Flags:
     """Which intervals of a row meet which stretches (intervals, stretches)."""
     return (row.low[:, None] <= stretches[:, 1]) & (stretches[:, 0] <= row.high[:, None])
 
 
-def _attributed(row: Row, rows_alone: Row, which: NDArray[np.intp], stretches: Array, opened: NDArray[np.bool_]) -> Row:
+def _attributed(row: Row, rows_alone: Row, which: Places, stretches: Array, opened: Flags) -> Row:
     """The row with ``by`` and ``of``: which of its intervals each search found, and the resonances in each."""
     own = np.stack([rows_alone.low, rows_alone.high], axis=1)
     met = _met(row, stretches)

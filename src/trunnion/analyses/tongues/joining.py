@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import or_
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.rows import Row
+from trunnion.arrays import Array
 
-Array = NDArray[np.float64]
 Search = Callable[[Array], list[Row]]
 """The unstable intervals of rows v."""
 
@@ -28,47 +30,53 @@ FAR = 20.0
 """Nor does it where the nearest is farther than so many of their widths."""
 
 
-@dataclass
-class Strand:
-    """One tongue as intervals of consecutive rows: v, low and high (u), a point inside, kind; rising in v.
+class Held(NamedTuple):
+    """An interval of a row, as ``Row`` has them."""
 
-    ``below`` and ``above`` are the rows next to its ends in which it is missing (None at the edge of the box);
-    ``joins`` and ``parts`` are the strands it runs into or comes out of; ``by``: which searches found any of its
-    intervals, as ``Row.by``; ``of``: resonances in the last one.
+    v: float
+    low: float
+    high: float
+    inside: float
+    kind: int
+    clipped: list[bool]
+    by: int
+    of: frozenset[int]
+
+
+@dataclass(eq=False)
+class Strand:
+    """One tongue as intervals of consecutive rows, rising in v.
+
+    Below and above: ``beyond`` are the rows next to its ends in which it is missing (None at the edge of the box), and
+    ``into`` the strands it comes out of or runs into.
     """
 
-    v: list[float] = field(default_factory=list)
-    low: list[float] = field(default_factory=list)
-    high: list[float] = field(default_factory=list)
-    inside: list[float] = field(default_factory=list)
-    kind: list[int] = field(default_factory=list)
-    clipped: list[tuple[bool, bool]] = field(default_factory=list)
-    by: int = 0
-    of: frozenset[int] = frozenset()
-    below: Row | None = None
-    above: Row | None = None
-    joins: Strand | None = None
-    parts: Strand | None = None
+    beyond: list[Row | None]
+    into: list[Strand | None]
+    held: list[Held] = field(default_factory=list)
 
-    def take(self, row: Row, k: int) -> None:
-        """Add interval ``k`` of a row."""
-        self.v.append(row.v)
-        self.low.append(float(row.low[k]))
-        self.high.append(float(row.high[k]))
-        self.inside.append(float(row.inside[k]))
-        self.kind.append(int(row.kind[k]))
-        self.clipped.append((bool(row.clipped[k, 0]), bool(row.clipped[k, 1])))
-        self.by |= int(row.by[k])
-        self.of = row.of[k]
+    @property
+    def by(self) -> int:
+        """Which searches found any of its intervals, as ``Row.by``."""
+        return reduce(or_, (held.by for held in self.held))
 
     def moved(self, v: float) -> tuple[float, float]:
         """Its interval as it would be at ``v`` if it went on as it came: as the edge that moved less, since the other
         may have leapt where another tongue joined or parted."""
-        if len(self.v) < 2:
-            return self.low[-1], self.high[-1]
-        share = (v - self.v[-1]) / (self.v[-1] - self.v[-2])
-        shift = share * min(self.low[-1] - self.low[-2], self.high[-1] - self.high[-2], key=abs)
-        return self.low[-1] + shift, self.high[-1] + shift
+        last = self.held[-1]
+        if len(self.held) < 2:
+            return last.low, last.high
+        before = self.held[-2]
+        share = (v - last.v) / (last.v - before.v)
+        shift = share * min(last.low - before.low, last.high - before.high, key=abs)
+        return last.low + shift, last.high + shift
+
+
+def _held(row: Row, k: int) -> Held:
+    low, high, inside, kind, clipped, by = (
+        part[k].tolist() for part in (row.low, row.high, row.inside, row.kind, row.clipped, row.by)
+    )
+    return Held(row.v, low, high, inside, kind, clipped, by, row.of[k])
 
 
 def joined(
@@ -96,29 +104,25 @@ def _strung(rows: list[Row], *, final: bool) -> tuple[list[Strand], list[int]]:
         pairs, doubtful = _matched(
             [s.moved(row.v) for s in ends],
             list(zip(row.low.tolist(), row.high.tolist(), strict=True)),
-            [(a, b) for a, s in enumerate(ends) for b, of in enumerate(row.of) if s.of & of],
+            [(a, b) for a, s in enumerate(ends) for b, of in enumerate(row.of) if s.held[-1].of & of],
         )
         if doubtful and not final and before is not None:
             unclear.append(k - 1)
         following: list[Strand] = []
-        taken: dict[int, Strand] = {}
         for b in range(len(row)):
-            own = [a for a, other in pairs if other == b and ends[a] not in taken.values()]
+            own = [ends[a] for a, other in pairs if other == b]
             # The widest goes on where several join.
-            chosen = max(own, key=lambda a: ends[a].high[-1] - ends[a].low[-1], default=None)
-            strand = Strand(below=before) if chosen is None else ends[chosen]
-            if chosen is None:
+            free = [strand for strand in own if strand not in following]
+            strand = max(free, key=lambda s: s.held[-1].high - s.held[-1].low, default=None)
+            if strand is None:
+                strand = Strand([before, None], [own[0] if own else None, None])
                 strands.append(strand)
-                source = [a for a, other in pairs if other == b]
-                strand.parts = ends[source[0]] if source else None
-            taken[b] = strand
-            strand.take(row, b)
+            strand.held.append(_held(row, b))
             following.append(strand)
         for a, strand in enumerate(ends):
             if strand not in following:
-                strand.above = row
-                into = [b for own, b in pairs if own == a]
-                strand.joins = taken[into[0]] if into else None
+                into = [following[b] for own, b in pairs if own == a]
+                strand.beyond[1], strand.into[1] = row, into[0] if into else None
         ends = following
     return strands, unclear
 

@@ -14,11 +14,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Places = NDArray[np.intp]
+from trunnion.arrays import Array, Complex, Places
+
 Multipliers = Callable[[Array, Places], Complex]
 """Multipliers (points, m) at θ (points,) of rows (points,)."""
 

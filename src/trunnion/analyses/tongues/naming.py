@@ -15,20 +15,16 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.charts.stability_chart import Task
+from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.linear.mode_content import excited
 from trunnion.analyses.linear.resonance_speeds import Resonance, sources
 from trunnion.analyses.tongues.rows import Kind
+from trunnion.arrays import Array, Complex
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 STEPS = 160
 """Points of the way from straight joints to bent ones."""
@@ -40,34 +36,22 @@ NUDGE = 1e-3
 with."""
 
 
-def resonances(
-    task: Task, assembly: Assembly, x: Array, y: Array, kinds: Array, twisted: bool, threads: int
-) -> list[Resonance | None]:
+def resonances(family: LineFamily, x: Array, y: Array, kinds: Array, threads: int) -> list[Resonance | None]:
     """Names of tongues that begin at points (x, y) with these kinds of multipliers; None where a phase was lost."""
-    if not len(x):
-        return []
     share = np.linspace(0.0, 1.0, STEPS) ** 0.5  # angles act by their squares
     across, up, bends = np.repeat(x, STEPS), np.repeat(y, STEPS), np.tile(share, len(x))
-    every = partly_bent(task, assembly, across, up, bends, twisted, threads)
-    every = every.reshape(len(x), STEPS, -1)
-    modes, speed = straight_frequencies(task, assembly, x, y)
-    turns = require_period(assembly.line, assembly.topology)
-    return [_named(assembly, turns, float(speed[k]), modes[k], every[k], int(kinds[k])) for k in range(len(x))]
+    every = partly_bent(family, across, up, bends, threads).reshape(len(x), STEPS, 2 * family.size)
+    modes, speed = straight_frequencies(family, x, y)
+    return [_named(family, float(speed[k]), modes[k], every[k], int(kinds[k])) for k in range(len(x))]
 
 
-def partly_bent(
-    task: Task, assembly: Assembly, x: Array, y: Array, share: Array, twisted: bool, threads: int
-) -> Complex:
+def partly_bent(family: LineFamily, x: Array, y: Array, share: Array, threads: int) -> Complex:
     """Multipliers (points, 2n) at points (x, y) of the line bent by a share of its angles and mesh variations."""
-    table = _tables(task, assembly, x, y)
+    assembly, table = family.assembly, family.table(x, y)
     bent = [c for c, label in enumerate(assembly.packed.labels) if _bends(assembly, label)]
     table[:, bent] *= share[:, None]
-    topo = assembly.topology
-    coefficients = assembly.coefficients(table, statically_twisted=twisted)
-    by_speed = loaded_by_speed(topo, coefficients)
-    window = Window(0.0, 2 * np.pi * float(require_period(assembly.line, topo)), False)
-    lanes = chain_lanes(topo, coefficients, by_speed)
-    matrix, _, _ = chain_monodromy(chain_program(topo, coefficients, by_speed), lanes, window, TOLERANCE, threads)
+    window = Window(0.0, family.period, False)
+    matrix, _, _ = chain_monodromy(family.program, family.lanes_of(table), window, TOLERANCE, threads)
     return eigenvalues(matrix)
 
 
@@ -79,18 +63,11 @@ def eigenvalues(matrix: Array) -> Complex:
     )
 
 
-def straight_frequencies(task: Task, assembly: Assembly, x: Array, y: Array) -> tuple[Array, Array]:
+def straight_frequencies(family: LineFamily, x: Array, y: Array) -> tuple[Array, Array]:
     """Natural frequencies [rad/s] (points, n) of the straight line at points (x, y), and the speeds there."""
-    table = _tables(task, assembly, x, y)
-    modes = frequencies(aligned_matrices(assembly.topology, assembly.coefficients(table)), free=assembly.topology.free)
-    return modes, table[:, 0]
-
-
-def _tables(task: Task, assembly: Assembly, x: Array, y: Array) -> Array:
-    table = assembly.table(len(x), float("nan") if task.speed is None else task.speed)
-    task.x.columns.put(table, x)
-    task.y.columns.put(table, y)
-    return table
+    assembly, table = family.assembly, family.table(x, y)
+    matrices = aligned_matrices(assembly.topology, assembly.coefficients(table))
+    return frequencies(matrices, free=assembly.topology.free), table[:, 0]
 
 
 def _bends(assembly: Assembly, label: str) -> bool:
@@ -101,21 +78,19 @@ def _bends(assembly: Assembly, label: str) -> bool:
     return key.startswith(("stiffness_variation", "ripple")) and key.endswith(("share", "amplitude"))
 
 
-def _named(
-    assembly: Assembly, turns: Fraction, speed: float, modes: Array, every: Complex, kind: int
-) -> Resonance | None:
-    elastic = [i for i, w in enumerate(modes.tolist()) if w > 0]
-    period = 2 * np.pi * float(turns) / speed
-    phases = _followed(np.array([modes[i] * period for i in elastic]), every)
+def _named(family: LineFamily, speed: float, modes: Array, every: Complex, kind: int) -> Resonance | None:
+    elastic = np.flatnonzero(modes > 0)
+    turns = require_period(family.assembly.line, family.assembly.topology)
+    phases = _followed(modes[elastic] * (family.period / speed), every)
     last = every[-1][np.abs(every[-1]).argmax()]
     meeting = _meeting(phases, last, kind)
     if meeting is None:
         return None
     i, j, cycles = meeting
-    multiple, source = excited(Fraction(cycles) / turns, sources(assembly))
+    multiple, source = excited(Fraction(cycles) / turns, sources(family.assembly))
     if source is None:
         return None
-    first, second = sorted((elastic[i], elastic[j]))
+    first, second = sorted((int(elastic[i]), int(elastic[j])))
     at = float(modes[first] + modes[second]) / float(Fraction(cycles) / turns)
     if first != second:
         return Resonance(at, "sum", (first + 1, second + 1), multiple, source.rate, source.mesh)

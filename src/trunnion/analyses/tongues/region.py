@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.charts.chart_families import ChartFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, put_better
+from trunnion.analyses.charts.chart_pixels import Pixels, judge, judge_matrices, undamped
 from trunnion.analyses.tongues.boundaries import MOST, parted
+from trunnion.arrays import Array, Flags, Places
 from trunnion.numerics.chain.characteristic import without_ones
 from trunnion.numerics.patches import patches
 from trunnion.numerics.patches.patches import Box, Evaluate, Grid, Patch, PatchedFunction
-
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]
 
 SHARPEST = 1e-13
 """Error asked of single integrations, which settle what patches suggest."""
@@ -53,7 +51,7 @@ class Piece:
     u1: float
     series: Array
     errors: Array
-    undamped: NDArray[np.bool_]
+    undamped: Flags
 
     def u(self, theta: Array) -> Array:
         """θ → u."""
@@ -98,16 +96,14 @@ class Region:
         """Points integrated by themselves: radius, its error, critical multiplier, verdict, each (points,)."""
         x, y = self.x(u), self.y(v)
         if not len(x):
-            none = np.zeros(0)
-            return Pixels(none, none, none.astype(complex), none.astype(np.int8))
+            return Pixels.failed((0,))
         if (stepped := self.family.in_numpy(x, y)) is not None:
             return stepped
         if not self.family.set_aside:
             return self._judged(*self._matrices(x, y), x, y)
         order, back = _by_rows(v)
         values, bounds = self.family.evaluate(x[order], y[order], SHARPEST, self.threads)
-        found = judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside)
-        return Pixels(found.radius[back], found.error[back], found.critical[back], found.verdict[back])
+        return judge(values.T.copy(), bounds.T.copy(), self.family.size, self.family.set_aside).at(back)
 
     def _matrices(self, x: Array, y: Array) -> tuple[Array, Array, Array]:
         order, back = _by_rows(y)
@@ -115,27 +111,20 @@ class Region:
         return matrix[back], error[back], trace[back]
 
     def _judged(self, matrix: Array, error: Array, trace: Array, x: Array, y: Array) -> Pixels:
+        """Once more what the matrix leaves open: fast modes make its error far larger than that of ρ."""
         found = judge_matrices(matrix, error, trace)
-        self._settle(found, self._undamped(trace), x, y)
+        coarse = found.error > np.where(undamped(trace, self.family.size), UNDAMPED, COARSE)
+        open_ = np.flatnonzero((np.abs(found.radius - 1) <= found.error) & coarse)
+        if len(open_) and (better := self.family.settled(x[open_], y[open_])) is not None:
+            found.put_better(better, open_)
         return found
 
-    def undamped(self, u: Array, v: Array) -> NDArray[np.bool_]:
+    def undamped(self, u: Array, v: Array) -> Flags:
         """Where nothing damps (points,)."""
         x, y = self.x(u), self.y(v)
         if self.family.in_numpy(x, y) is not None:  # which damped lines alone are
             return np.zeros(len(x), dtype=bool)
-        return self._undamped(self._matrices(x, y)[2])
-
-    def _undamped(self, trace: Array) -> NDArray[np.bool_]:
-        """Where nothing damps, by ∫ tr(M⁻¹C) dτ (points,)."""
-        return np.abs(trace) < 1e-12 * self.family.size
-
-    def _settle(self, found: Pixels, undamped: NDArray[np.bool_], x: Array, y: Array) -> None:
-        """Once more, in place, what the matrix leaves open: fast modes make its error far larger than that of ρ."""
-        coarse = found.error > np.where(undamped, UNDAMPED, COARSE)
-        open_ = np.flatnonzero((np.abs(found.radius - 1) <= found.error) & coarse)
-        if len(open_) and (better := self.family.settled(x[open_], y[open_])) is not None:
-            put_better(better, found, open_)
+        return undamped(self._matrices(x, y)[2], self.family.size)
 
     def across(self, u: Array, v: Array) -> Array:
         """A function (points,) with a slope at the edges of regions: positive where unstable.
@@ -150,7 +139,7 @@ class Region:
         if self.family.set_aside:
             return _over(self.judged(u, v))
         matrix, error, trace = self._matrices(x, y)
-        damped = ~(self._undamped(trace) & np.isfinite(matrix).all(axis=(1, 2)))
+        damped = ~(undamped(trace, self.family.size) & np.isfinite(matrix).all(axis=(1, 2)))
         across = np.empty(len(u))
         across[~damped] = parted(np.asarray(np.linalg.eigvals(matrix[~damped]), dtype=complex))
         if damped.any():
@@ -164,17 +153,15 @@ class Region:
 
     def pieces(self, v: Array) -> Iterator[Piece]:
         """The rows at ``v`` (rows,), patch by patch; every row is covered from end to end."""
-        left = [np.ones(len(v), dtype=bool) for _ in self.function.direct]
         for patch in self.function.patches:
             inside = self._rows_of(patch.box, v)
             if len(inside):
                 yield self._along(patch, inside, v[inside])
-        for box, _ in zip(self.function.direct, left, strict=True):
+        for box in self.function.direct:
             inside = self._rows_of(box, v)
             edges = np.linspace(box.u0, box.u1, PIECES + 1)
-            for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
-                if len(inside):
-                    yield self._integrated(a, b, inside, v[inside])
+            for a, b in pairwise(edges.tolist() if len(inside) else []):
+                yield self._integrated(a, b, inside, v[inside])
 
     def _rows_of(self, box: Box, v: Array) -> Places:
         """Rows that belong to a box: those on an edge between two boxes to the upper one."""
@@ -202,14 +189,14 @@ class Region:
         return self._piece(rows, u0, u1, series, bounds.reshape(len(rows), NODES, -1).max(axis=1) + tail)
 
     def _piece(self, rows: Places, u0: float, u1: float, series: Array, errors: Array) -> Piece:
-        undamped = np.abs(series[:, -1]).sum(axis=1) < 1e-12 * self.family.size
+        still = undamped(np.abs(series[:, -1]).sum(axis=1), self.family.size)
         series, errors = series[:, :-1], errors[:, :-1]
         aside = self.family.set_aside
         if self.by_coefficients and aside:
             # (σ − 1) divides out of the polynomial, a linear operation: coefficient by coefficient of the series, where
             # e₀ = 1 stands in the constant term alone.
             series, errors = _set_aside(series, errors, aside)
-        return Piece(rows, u0, u1, series, errors, undamped)
+        return Piece(rows, u0, u1, series, errors, still)
 
 
 def _by_rows(v: Array) -> tuple[Places, Places]:
@@ -251,7 +238,7 @@ def patched(
     the first to leave the unit circle.
     """
     u, v = family.to_patch(x, True), family.to_patch(y, False)
-    box = _box(u, v)
+    box = Box.around(u, v)
     if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, tell)) is not None:
         return Region(family, few, box, threads)
     for share in EASIER:
@@ -287,12 +274,8 @@ def _at_most(most: float, evaluate: Evaluate) -> Evaluate:
 
 def unpatched(family: ChartFamily, x: Array, y: Array, threads: int) -> Region:
     """The same box without patches: every row is integrated piece by piece."""
-    box = _box(family.to_patch(x, True), family.to_patch(y, False))
+    box = Box.around(family.to_patch(x, True), family.to_patch(y, False))
     return Region(family, PatchedFunction((), (box,)), box, threads)
-
-
-def _box(u: Array, v: Array) -> Box:
-    return Box(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
 
 
 def turned(family: ChartFamily, function: PatchedFunction, threads: int) -> Region:

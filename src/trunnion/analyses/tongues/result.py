@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remark
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from trunnion.driveline.driveline import Driveline
 
-Array = NDArray[np.float64]
 Intervals = Callable[[float], Array]
 """y → unstable intervals (intervals, 2) in x of that row, found anew."""
 
@@ -256,8 +255,3 @@ def _tip_words(tongue: Tongue, across: QuantityAxis, up: QuantityAxis) -> str:
 
 def _place(point: tuple[float, float] | None) -> str:
     return "" if point is None else f"({point[0]:.6g}, {point[1]:.6g})"
-
-
-def by_growth(tongues: Sequence[Tongue]) -> tuple[Tongue, ...]:
-    """The fastest growth first."""
-    return tuple(sorted(tongues, key=lambda t: -t.growth_rate))

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.bracketing import bracketed
-from trunnion.analyses.tongues.region import Places, Region
-
-Array = NDArray[np.float64]
+from trunnion.analyses.tongues.region import Region
+from trunnion.arrays import Array, Flags, Places
 
 LOOKS = 9
 """Points across the window in each round."""
@@ -27,9 +25,9 @@ def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Arr
 
     The last round fits a quartic, so that the place is known far better than its points are apart.
     """
-    centre, half = (low + high) / 2, (high - low) / 2
-    best, top = centre, np.full(len(v), -np.inf)
-    for turn in range(ROUNDS + 1):
+    best, half = (low + high) / 2, 2 * (high - low)
+    for _ in range(ROUNDS + 1):
+        centre, half = best, half / 4
         u = np.clip(centre[:, None] + half[:, None] * _T, low[:, None], high[:, None])
         found = region.judged(u.ravel(), np.repeat(v, LOOKS))
         height = (found.radius - 1).reshape(u.shape)
@@ -37,10 +35,7 @@ def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Arr
         known = np.where(np.isfinite(height - error), height - error, -np.inf)
         here = known.argmax(axis=1)[:, None]
         best, top = np.take_along_axis(u, here, 1)[:, 0], np.take_along_axis(known, here, 1)[:, 0]
-        if turn == ROUNDS:
-            return _fitted(u, height, np.take_along_axis(error, here, 1)[:, 0], best, top, centre, half)
-        centre, half = best, half / 4
-    raise AssertionError
+    return _fitted(u, height, np.take_along_axis(error, here, 1)[:, 0], best, top, centre, half)
 
 
 def _fitted(
@@ -63,7 +58,7 @@ def _fitted(
 
 def tips(
     region: Region, outside: Array, inside: Array, centre: Array, slope: Array, width: Array, walls: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+) -> tuple[Array, Array, Flags]:
     """Where tongues close between a row without them, ``outside``, and one with them, ``inside`` (tongues,), in v.
 
     centre, slope, width: of each tongue at its row ``inside`` and how its middle moves with v; walls (tongues, 2):

@@ -10,21 +10,25 @@ radius comes near 1; and where two multipliers meet (``meetings``), however narr
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import partial
+from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.tongues.boundaries import boundary_functions, degree
+from trunnion.analyses.tongues.boundaries import boundary_functions
 from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.meetings import meetings
-from trunnion.analyses.tongues.region import Piece, Places, Region
+from trunnion.analyses.tongues.region import Piece, Region
 from trunnion.analyses.tongues.series_roots import row_roots
+from trunnion.arrays import Array, Codes, Complex, Flags, Places
 from trunnion.results.verdict import Verdict
 
-Array = NDArray[np.float64]
+Marks = tuple[Places, Array, Places, Array]
+"""Rows and places u of marks between which the verdict does not change; rows and ends (stretches, 2) of what is to be
+looked at closely."""
 
 TIGHT = 1e-7
 """Half of the first bracket about a zero of the patches, as a share of the box."""
@@ -52,7 +56,7 @@ class Kind(IntEnum):
         return {0: "real positive", 1: "real negative", 2: "complex pair"}[self]
 
 
-def kind_of(critical: NDArray[np.complex128]) -> NDArray[np.int8]:
+def kind_of(critical: Complex) -> Codes:
     """Kinds of critical multipliers."""
     real = np.abs(critical.imag) <= 1e-9 * np.abs(critical)
     return np.where(~real, Kind.COMPLEX, np.where(critical.real > 0, Kind.POSITIVE, Kind.NEGATIVE)).astype(np.int8)
@@ -73,10 +77,10 @@ class Row:
     low: Array
     high: Array
     inside: Array
-    kind: NDArray[np.int8]
-    clipped: NDArray[np.bool_]
+    kind: Codes
+    clipped: Flags
     unknown: Array
-    by: NDArray[np.int8]
+    by: Codes
     of: tuple[frozenset[int], ...]
 
     def __len__(self) -> int:
@@ -86,64 +90,37 @@ class Row:
 def unstable_intervals(region: Region, v: Array) -> list[Row]:
     """The unstable intervals of rows ``v``, each found from end to end."""
     v = np.atleast_1d(np.asarray(v, dtype=float))
-    marks = _Marks.none(len(v))
-    for piece in region.pieces(v):
-        marks.add(*(_zeros(piece) if region.by_coefficients else _sampled(region, piece, v)))
-    return _settled(region, v, marks)
+    found = (_zeros(piece) if region.by_coefficients else _sampled(region, piece) for piece in region.pieces(v))
+    row, at, close_row, close = (np.concatenate(part) for part in zip(*chain.from_iterable(found), strict=True))
+    return _settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
 
 
 def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
     """Rows with what lies in ``stretches`` (stretches, 2) of each row added to what was known of it."""
     known = [k for k, own in enumerate(stretches) if len(own)]
-    marks = _Marks.none(len(known))
-    for place, k in enumerate(known):
-        row = rows[k]
-        marks.at[place] += [*row.low[~row.clipped[:, 0]].tolist(), *row.high[~row.clipped[:, 1]].tolist()]
-        marks.peaks[place] += row.inside.tolist()
-        marks.close[place] += [(a, b) for a, b in stretches[k].tolist()]
-    found = (
-        dict(zip(known, _settled(region, np.array([rows[k].v for k in known]), marks), strict=True)) if known else {}
-    )
+    if not known:
+        return rows
+    ends = [np.concatenate([rows[k].low[~rows[k].clipped[:, 0]], rows[k].high[~rows[k].clipped[:, 1]]]) for k in known]
+    peaks, close = [rows[k].inside for k in known], [stretches[k] for k in known]
+    v = np.array([rows[k].v for k in known])
+    settled = _settled(region, v, _of_rows(ends), _of_rows(peaks), _of_rows(close))
+    found = dict(zip(known, settled, strict=True))
     return [replace(found[k], unknown=row.unknown) if k in found else row for k, row in enumerate(rows)]
 
 
-class _Marks:
-    """Places on rows between which the verdict does not change, points inside regions, and stretches to be looked at
-    closely."""
-
-    def __init__(self, rows: int) -> None:
-        self.at: list[list[float]] = [[] for _ in range(rows)]
-        self.peaks: list[list[float]] = [[] for _ in range(rows)]
-        self.close: list[list[tuple[float, float]]] = [[] for _ in range(rows)]
-
-    @classmethod
-    def none(cls, rows: int) -> _Marks:
-        return cls(rows)
-
-    def add(self, row: Places, u: Array, touched_row: Places, touched: Array) -> None:
-        for r, place in zip(row.tolist(), u.tolist(), strict=True):
-            self.at[r].append(place)
-        for r, ends in zip(touched_row.tolist(), touched.tolist(), strict=True):
-            self.close[r].append((min(ends), max(ends)))
+def _of_rows(parts: list[Array]) -> tuple[Places, Array]:
+    return np.repeat(np.arange(len(parts)), [len(part) for part in parts]), np.concatenate(parts)
 
 
-def _zeros(piece: Piece) -> tuple[Places, Array, Places, Array]:
+def _zeros(piece: Piece) -> Iterator[Marks]:
     """Rows and places of all zeros of boundary functions on a piece, and of stretches that may touch one."""
-    parts = []
     for undamped in (False, True):
         own = np.flatnonzero(piece.undamped == undamped)
         if len(own):
-            functions = _functions(undamped)
-            found = row_roots(piece.series[own], piece.errors[own], functions, degree(piece.series.shape[1]))
+            functions = partial(boundary_functions, undamped=undamped)
+            found = row_roots(piece.series[own], piece.errors[own], functions, piece.series.shape[1] - 1)
             touched = piece.u(found.touched)
-            parts.append(
-                (piece.rows[own[found.row]], piece.u(found.theta), piece.rows[own[found.touched_row]], touched)
-            )
-    return tuple(np.concatenate(part) for part in zip(*parts, strict=True))  # type: ignore[return-value]
-
-
-def _functions(undamped: bool):  # type: ignore[no-untyped-def]
-    return lambda e: boundary_functions(e, undamped)
+            yield piece.rows[own[found.row]], piece.u(found.theta), piece.rows[own[found.touched_row]], touched
 
 
 SAMPLES = 512
@@ -158,41 +135,30 @@ NEAR = 0.5
 """A local maximum of the radius is looked at closely where 1 − ρ there is below this share of its mean."""
 
 
-def _sampled(region: Region, piece: Piece, v: Array) -> tuple[Places, Array, Places, Array]:
+def _sampled(region: Region, piece: Piece) -> Iterator[Marks]:
     """The same from samples of the spectral radius: changes of sign of ρ − 1, and local maxima below it."""
     theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
-    rows, places, touched_rows, touched = [], [], [], []
     u = piece.u(theta)
 
-    def multipliers(at: Array, r: int) -> NDArray[np.complex128]:
+    def multipliers(at: Array, r: int) -> Complex:
         return _multipliers(region, np.cos(np.arange(piece.series.shape[2]) * at[:, None]) @ piece.series[r].T)
 
-    for r in range(len(piece.rows)):
+    for r, row in enumerate(piece.rows):
         values = multipliers(theta, r)
         over = np.abs(values).max(axis=1) - 1
         # Without damping ρ is 1 where stable: its rounding has either sign and would hide where regions begin.
         grows = over > ROUNDING
         changes = np.flatnonzero(grows[:-1] != grows[1:])
-        places += ((u[changes] + u[changes + 1]) / 2).tolist()
-        rows += [int(piece.rows[r])] * len(changes)
         top = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:])) + 1
         top = top[~grows[top] & (-over[top] < NEAR * np.abs(over).mean()) & ~piece.undamped[r]]
-        stretches = [(u[k - 1], u[k + 1]) for k in top]
         _, met = meetings(lambda at, own, r=r: multipliers(at, r), theta, values[None])  # type: ignore[misc]
-        at, reach = (
-            piece.u(met),
-            np.abs(piece.u(np.maximum(met - BESIDE, 0)) - piece.u(np.minimum(met + BESIDE, np.pi))),
-        )
-        stretches += zip(at - reach / 2, at + reach / 2, strict=True)
-        touched += stretches
-        touched_rows += [int(piece.rows[r])] * len(stretches)
-    return (
-        np.array(rows, dtype=np.intp), np.array(places),
-        np.array(touched_rows, dtype=np.intp), np.array(touched).reshape(-1, 2),
-    )  # fmt: skip
+        reach = np.abs(piece.u(np.maximum(met - BESIDE, 0)) - piece.u(np.minimum(met + BESIDE, np.pi)))
+        beside = [np.stack([u[top - 1], u[top + 1]], axis=1), piece.u(met)[:, None] + reach[:, None] * [-0.5, 0.5]]
+        close = np.concatenate(beside)
+        yield np.full(len(changes), row), (u[changes] + u[changes + 1]) / 2, np.full(len(close), row), close
 
 
-def _multipliers(region: Region, entries: Array) -> NDArray[np.complex128]:
+def _multipliers(region: Region, entries: Array) -> Complex:
     """Eigenvalues (points, m) of monodromy matrices by their entries (points, m²), those set aside left out."""
     m = 2 * region.family.size
     values = np.asarray(np.linalg.eigvals(entries.reshape(-1, m, m)), dtype=complex)
@@ -202,29 +168,28 @@ def _multipliers(region: Region, entries: Array) -> NDArray[np.complex128]:
     return values
 
 
-def _settled(region: Region, v: Array, marks: _Marks) -> list[Row]:
-    """Verdicts of the gaps between marks, then edges where they change."""
-    row, stretch = _flat(marks.close)
-    best, top = _highest(region, v[row], stretch) if len(row) else (np.zeros(0), np.zeros(0))
-    for r, place, ends, height in zip(row.tolist(), best.tolist(), stretch.tolist(), top.tolist(), strict=True):
-        # A stretch whose highest point is unstable is a gap of its own with that point in it.
-        if height > 0:
-            marks.peaks[r].append(place)
-            wide = ends[1] - ends[0]  # where the top is an end, the region goes on beyond it
-            marks.at[r] += [ends[0] - wide * (place == ends[0]), ends[1] + wide * (place == ends[1])]
-    gaps = [_gaps(region, at, peak) for at, peak in zip(marks.at, marks.peaks, strict=True)]
-    which = np.concatenate([np.full(len(g), r) for r, g in enumerate(gaps)]).astype(np.intp)
-    probes = np.concatenate([g[:, 2] for g in gaps])
-    found = region.judged(probes, v[which])
+def _settled(
+    region: Region, v: Array, marks: tuple[Places, Array], peaks: tuple[Places, Array], close: tuple[Places, Array]
+) -> list[Row]:
+    """Verdicts of the gaps between marks, then edges where they change.
+
+    Each of rows and places: ``marks``, between which the verdict does not change, ``peaks``, points inside regions, and
+    ``close``, stretches (stretches, 2) to be looked at closely.
+    """
+    row, ends = close[0], np.sort(close[1], axis=1)
+    best, top = _highest(region, v[row], ends)
+    # A stretch whose highest point is unstable is a gap of its own with that point in it; where the top is an end, the
+    # region goes on beyond it.
+    beyond = ends + (ends[:, 1:] - ends[:, :1]) * (best[:, None] == ends) * [-1.0, 1.0]
+    row, best, beyond = row[top > 0], best[top > 0], beyond[top > 0]
+    owner, at = np.concatenate([marks[0], np.repeat(row, 2)]), np.concatenate([marks[1], beyond.ravel()])
+    peaked, peak = np.concatenate([peaks[0], row]), np.concatenate([peaks[1], best])
+    gaps = [_gaps(region, at[owner == r], peak[peaked == r]) for r in range(len(v))]
+    which, every = _of_rows(gaps)
+    found = region.judged(every[:, 2], v[which])
     unstable = found.radius - 1 > found.error
-    kinds = kind_of(found.critical)
     told = (found.verdict != Verdict.UNDECIDED) | (found.error < UNTOLD)
-    return _edges(region, v, gaps, which, unstable, np.where(told, found.radius, np.nan), kinds)
-
-
-def _flat(close: Iterable[list[tuple[float, float]]]) -> tuple[Places, Array]:
-    pairs = [(r, ends) for r, own in enumerate(close) for ends in own]
-    return np.array([r for r, _ in pairs], dtype=np.intp), np.array([e for _, e in pairs]).reshape(-1, 2)
+    return _edges(region, v, every, which, unstable, np.where(told, found.radius, np.nan), kind_of(found.critical))
 
 
 def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
@@ -252,62 +217,47 @@ def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
     return best, top
 
 
-def _gaps(region: Region, at: list[float], peaks: list[float]) -> Array:
+def _gaps(region: Region, at: Array, peaks: Array) -> Array:
     """Gaps (gaps, 3) of a row: ends and a point inside, by rising u."""
-    places = np.unique(np.clip([region.box.u0, *at, region.box.u1], region.box.u0, region.box.u1))
+    low, high = region.box.u0, region.box.u1
+    places = np.unique(np.clip(np.concatenate([[low, high], at]), low, high))
     gaps = np.stack([places[:-1], places[1:], (places[:-1] + places[1:]) / 2], axis=1)
-    for peak in peaks:
-        k = int(np.clip(np.searchsorted(places, peak) - 1, 0, len(gaps) - 1))
-        gaps[k, 2] = peak
+    gaps[np.clip(np.searchsorted(places, peaks) - 1, 0, len(gaps) - 1), 2] = peaks
     return gaps
 
 
 def _edges(
     region: Region,
     v: Array,
-    gaps: list[Array],
+    gaps: Array,
     which: Places,
-    unstable: NDArray[np.bool_],
+    unstable: Flags,
     radius: Array,
-    kinds: NDArray[np.int8],
+    kinds: Codes,
 ) -> list[Row]:
     """Rows from gaps and their verdicts: neighbouring unstable gaps are one interval, their ends are solved for."""
-    every = np.concatenate(gaps)
-    changes = np.flatnonzero((which[1:] == which[:-1]) & (unstable[1:] != unstable[:-1]))
-    edge = dict(
-        zip(changes.tolist(), solved(region, v[which[changes]], every, changes, unstable).tolist(), strict=True)
-    )
+    same = which[1:] == which[:-1]
+    changes = np.flatnonzero(same & (unstable[1:] != unstable[:-1]))
+    edge = np.full(len(gaps), np.nan)  # behind each gap
+    edge[changes] = solved(region, v[which[changes]], gaps, changes, unstable)
+    # Intervals by their first and last gap, and whether those are the first and last of the row.
+    first = np.flatnonzero(unstable & ~np.append(False, same & unstable[:-1]))
+    last = np.flatnonzero(unstable & ~np.append(same & unstable[1:], False))
+    clipped = np.stack([np.append(True, ~same)[first], np.append(~same, True)[last]], axis=1)
+    low = np.where(clipped[:, 0], region.box.u0, edge[first - 1])
+    high = np.where(clipped[:, 1], region.box.u1, edge[last])
+    top = np.array([a + radius[a : b + 1].argmax() for a, b in zip(first, last, strict=True)], dtype=np.intp)
     rows = []
     for r in range(len(v)):
-        own = np.flatnonzero(which == r)
-        low, high, inside, kind, clipped = [], [], [], [], []
-        k = 0
-        while k < len(own):
-            if not unstable[own[k]]:
-                k += 1
-                continue
-            first = k
-            while k + 1 < len(own) and unstable[own[k + 1]]:
-                k += 1
-            members = own[first : k + 1]
-            top = members[int(np.argmax(radius[members]))]
-            clipped.append((first == 0, k == len(own) - 1))
-            low.append(region.box.u0 if first == 0 else edge[int(own[first - 1])])
-            high.append(region.box.u1 if k == len(own) - 1 else edge[int(own[k])])
-            inside.append(every[top, 2])
-            kind.append(kinds[top])
-            k += 1
-        rows.append(
-            Row(
-                float(v[r]), np.array(low), np.array(high), np.array(inside), np.array(kind, dtype=np.int8),
-                np.array(clipped, dtype=bool).reshape(-1, 2), every[own[np.isnan(radius[own])], :2],
-                np.full(len(low), BY_ROWS, dtype=np.int8), (frozenset(),) * len(low),
-            )
-        )  # fmt: skip
+        own = which[first] == r
+        unknown = gaps[(which == r) & np.isnan(radius), :2]
+        by, of = np.full(own.sum(), BY_ROWS, dtype=np.int8), (frozenset[int](),) * int(own.sum())
+        inside, kind = gaps[top[own], 2], kinds[top[own]]
+        rows.append(Row(float(v[r]), low[own], high[own], inside, kind, clipped[own], unknown, by, of))
     return rows
 
 
-def solved(region: Region, v: Array, gaps: Array, changes: Places, unstable: NDArray[np.bool_]) -> Array:
+def solved(region: Region, v: Array, gaps: Array, changes: Places, unstable: Flags) -> Array:
     """Where ρ passes 1 between gap ``changes`` and the next, near the mark between them."""
     guess = gaps[changes, 1]
     a, b = gaps[changes, 2], gaps[changes + 1, 2]

@@ -13,13 +13,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct
 
 from trunnion.analyses.tongues.bracketing import bracketed
+from trunnion.arrays import Array, Places
 
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]
 Functions = Callable[[Array], Array]
 """Quantities (q, …) → functions (f, …)."""
 
@@ -35,8 +33,8 @@ class RowRoots:
     """Zeros ``theta`` of function ``which`` on row ``row``, each (zeros,); and stretches in which one may be
     touched."""
 
-    row: NDArray[np.intp]
-    which: NDArray[np.intp]
+    row: Places
+    which: Places
     theta: Array
     touched_row: Places
     touched: Array
@@ -103,7 +101,7 @@ class _Search:
     functions: Functions
     rounding: Array
 
-    def quantities(self, row: NDArray[np.intp], theta: Array) -> Array:
+    def quantities(self, row: Places, theta: Array) -> Array:
         """Quantities (q, points) at points of rows."""
         terms = np.arange(self.series.shape[2])
         step = max(1, AT_ONCE // (self.series.shape[1] * len(terms)))
@@ -113,11 +111,11 @@ class _Search:
         ]
         return np.concatenate(parts, axis=1) if parts else np.zeros((self.series.shape[1], 0))
 
-    def at(self, which: NDArray[np.intp], row: NDArray[np.intp], theta: Array) -> Array:
+    def at(self, which: Places, row: Places, theta: Array) -> Array:
         """The function of each point."""
         return np.asarray(self.functions(self.quantities(row, theta))[which, np.arange(len(row))])
 
-    def noise(self, which: NDArray[np.intp], row: NDArray[np.intp], theta: Array) -> Array:
+    def noise(self, which: Places, row: Places, theta: Array) -> Array:
         """What errors of the quantities do to the function at each point."""
         e, points = self.quantities(row, theta), np.arange(len(row))
         base = self.functions(e)[which, points]

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.analyses.tongues.joining import Strand
 from trunnion.analyses.tongues.region import FAINT, Region
 from trunnion.analyses.tongues.ridges import TIP, ridge, tips
+from trunnion.arrays import Array, Places
 
-Array = NDArray[np.float64]
-Points = tuple[Array, Array, Array, Array]
-"""v, low, high and a point inside, each (rows,)."""
+End = tuple[Strand, int]
+"""A strand and which of its ends, 0 below and −1 above."""
+Point = tuple[float, float]
 NEAR_TIP = (1 / 64, 1 / 16, 1 / 4)
 """Shares of the way from a tip to the next row at which its edges are solved for: edges part there like a square
 root."""
@@ -22,16 +22,15 @@ root."""
 
 @dataclass
 class Shape:
-    """A strand with its tips (u, v), and its intervals with those near the tips added; rising in v.
+    """A strand with its tips (u, v) below and above, and its intervals with those near the tips added; rising in v.
 
-    fades: ends, 0 below and 1 above, at which it does not close: without damping the growth there has only become too
-    small to be told from none.
+    fades: ends at which it does not close: without damping the growth there has only become too small to be told from
+    none.
     """
 
     strand: Strand
-    below: tuple[float, float] | None
-    above: tuple[float, float] | None
-    fades: tuple[bool, bool]
+    tips: tuple[Point | None, ...]
+    fades: tuple[bool, ...]
     v: Array
     low: Array
     high: Array
@@ -40,26 +39,24 @@ class Shape:
 
 def shapes(region: Region, strands: list[Strand]) -> list[Shape]:
     """Close every strand that ends inside the box at its tip."""
-    ends = [(k, end) for k, s in enumerate(strands) for end in (0, -1) if _ends_alone(s, end)]
-    undamped = _undamped(region, [(strands[k], end) for k, end in ends])
+    ends = [(strand, end) for strand in strands for end in (0, -1) if _ends_alone(strand, end)]
+    undamped = dict(zip(ends, _undamped(region, ends), strict=True))
     # Without damping one that was cut off by a side of the box before leaves through it.
-    fades = {
-        (k, end): faint and not any(strands[k].clipped[end]) for (k, end), faint in zip(ends, undamped, strict=True)
-    }
-    found = dict(zip(ends, _tips(region, [(strands[k], end) for k, end in ends]), strict=True))
-    found |= {key: None for key, faint in zip(ends, undamped, strict=True) if faint and not fades[key]}
-    closed = [(key, tip) for key, tip in found.items() if tip is not None]
-    rows = [(tip, strands[k].v[end], strands[k].low[end], strands[k].high[end]) for (k, end), tip in closed]
-    near = dict(zip([key for key, _ in closed], _near_tips(region, rows), strict=True))
-    at_sides = [key for key, tip in found.items() if tip is None]
-    near |= dict(zip(at_sides, _corners(region, [(strands[k], end) for k, end in at_sides]), strict=True))
-    every = [
-        _closed(
-            s, [found.get((k, end)) for end in (0, -1)], [fades.get((k, end), False) for end in (0, -1)],
-            [near[k, end] for end in (0, -1) if (k, end) in near],
-        )
-        for k, s in enumerate(strands)
-    ]  # fmt: skip
+    fades = {(s, end): faint and not any(s.held[end].clipped) for (s, end), faint in undamped.items()}
+    found = dict(zip(ends, _tips(region, ends), strict=True))
+    found |= {end: None for end in ends if undamped[end] and not fades[end]}
+    closed = {end: tip for end, tip in found.items() if tip is not None}
+    at_sides = [end for end in ends if found[end] is None]
+    near = dict(zip(closed, _near_tips(region, closed), strict=True))
+    near |= dict(zip(at_sides, _corners(region, at_sides), strict=True))
+    every = []
+    for strand in strands:
+        own = [(strand, end) for end in (0, -1)]
+        rows = np.array([(held.v, held.low, held.high, held.inside) for held in strand.held]).T
+        whole = np.concatenate([rows, *(near[end] for end in own if end in near)], axis=1)
+        faint = tuple(fades.get(end, False) for end in own)
+        tops = tuple(None if fades.get(end) else found.get(end) for end in own)
+        every.append(Shape(strand, tops, faint, *whole[:, np.argsort(whole[0], kind="stable")]))
     return [shape for shape in every if not _too_faint(region, shape)]
 
 
@@ -68,18 +65,17 @@ def lost(shaped: list[Shape]) -> Array:
     another tongue, joined or parted, that stands in its place."""
     between = []
     for shape in shaped:
-        s = shape.strand
-        for end, tip in ((0, shape.below), (-1, shape.above)):
-            missing = s.below if end == 0 else s.above
-            if tip is None and _ends_alone(s, end) and not any(s.clipped[end]) and not shape.fades[end]:
-                assert missing is not None
-                between.append((s.v[end] + missing.v) / 2)
+        for end in (0, -1):
+            last, missing = shape.strand.held[end], shape.strand.beyond[end]
+            closes = shape.tips[end] is not None or shape.fades[end] or any(last.clipped)
+            if missing is not None and _ends_alone(shape.strand, end) and not closes:
+                between.append((last.v + missing.v) / 2)
     return np.unique(between)
 
 
-def _undamped(region: Region, ends: list[tuple[Strand, int]]) -> list[bool]:
+def _undamped(region: Region, ends: list[End]) -> list[bool]:
     """Whether nothing damps where strands end."""
-    u, v = (np.array([getattr(s, part)[end] for s, end in ends]) for part in ("inside", "v"))
+    u, v = (np.array([getattr(s.held[end], part) for s, end in ends]) for part in ("inside", "v"))
     return region.undamped(u, v).tolist() if ends else []
 
 
@@ -92,72 +88,64 @@ def _too_faint(region: Region, shape: Shape) -> bool:
 
 def _ends_alone(strand: Strand, end: int) -> bool:
     """Whether the strand simply ends there: not at the box, and not in another tongue."""
-    return (
-        strand.below is not None and strand.parts is None
-        if end == 0
-        else strand.above is not None and strand.joins is None
-    )
+    return strand.beyond[end] is not None and strand.into[end] is None
 
 
-def _tips(region: Region, ends: list[tuple[Strand, int]]) -> list[tuple[float, float] | None]:
+def _tips(region: Region, ends: list[End]) -> list[Point | None]:
     if not ends:
         return []
-    outside, inside, centre, slope, width, walls = [], [], [], [], [], []
+    known = []
     for strand, end in ends:
-        missing = strand.below if end == 0 else strand.above
+        missing, last = strand.beyond[end], strand.held[end]
         assert missing is not None
-        at, further = (0, min(1, len(strand.v) - 1)) if end == 0 else (-1, max(-2, -len(strand.v)))
-        outside.append(missing.v)
-        inside.append(strand.v[at])
-        centre.append((strand.low[at] + strand.high[at]) / 2)
-        beyond = (strand.low[further] + strand.high[further]) / 2
-        run = strand.v[further] - strand.v[at]
-        slope.append((beyond - centre[-1]) / run if run else 0.0)
-        width.append(strand.high[at] - strand.low[at])
-        left = [float(h) for h in missing.high if h <= centre[-1]]
-        right = [float(a) for a in missing.low if a >= centre[-1]]
-        walls.append((max(left, default=region.box.u0), min(right, default=region.box.u1)))
-    u, v, good = tips(region, *(np.array(part) for part in (outside, inside, centre, slope, width, walls)))
+        step = min(1, len(strand.held) - 1)
+        further = strand.held[step if end == 0 else -1 - step]
+        centre, run = (last.low + last.high) / 2, further.v - last.v
+        slope = ((further.low + further.high) / 2 - centre) / run if run else 0.0
+        left = max(missing.high[missing.high <= centre], default=region.box.u0)
+        right = min(missing.low[missing.low >= centre], default=region.box.u1)
+        known.append((missing.v, last.v, centre, slope, last.high - last.low, left, right))
+    outside, inside, centre_at, slope_at, width, *walls = np.array(known).T
+    u, v, good = tips(region, outside, inside, centre_at, slope_at, width, np.stack(walls, axis=1))
     # A tongue that shrinks to nothing at a side of the box goes on outside.
     edge = 1e-9 * (region.box.u1 - region.box.u0)
     good &= (u > region.box.u0 + edge) & (u < region.box.u1 - edge)
     return [(a, b) if ok else None for a, b, ok in zip(u.tolist(), v.tolist(), good.tolist(), strict=True)]
 
 
-def _corners(region: Region, ends: list[tuple[Strand, int]]) -> list[Points]:
-    """Where strands that leave through a side of the box cross it, beyond their last row; nothing for the others."""
-    sides = [(k, side) for k, (strand, end) in enumerate(ends) for side in (0, 1) if strand.clipped[end][side]]
+def _corners(region: Region, ends: list[End]) -> list[Array]:
+    """Where strands that leave through a side of the box cross it, beyond their last row; nothing for the others.
+
+    As rows v, low, high and a point inside, all (4, points).
+    """
+    sides = [(k, side) for k, (strand, end) in enumerate(ends) for side in (0, 1) if strand.held[end].clipped[side]]
     u = np.array([region.box.u1 if side else region.box.u0 for _, side in sides])
-    inside = np.array([ends[k][0].v[ends[k][1]] for k, _ in sides])
-    missing = [ends[k][0].below if ends[k][1] == 0 else ends[k][0].above for k, _ in sides]
+    leaving = [ends[k] for k, _ in sides]
+    inside = np.array([strand.held[end].v for strand, end in leaving])
+    missing = [strand.beyond[end] for strand, end in leaving]
     outside = np.array([row.v for row in missing if row is not None])
     exact = TIP * (region.box.v1 - region.box.v0)
     v = bracketed(lambda at, own: region.across(u[own], at), outside, inside, exact) if sides else inside
-    crossed: list[Points] = []
+    crossed = np.array([v, u, u, u])
+    found = []
     for k in range(len(ends)):
         own = [place for place, (end, _) in enumerate(sides) if end == k]
         # Of two sides, the one that it crosses further out.
-        best = max(own, key=lambda place: abs(v[place] - inside[place]), default=None)
-        at, place = (v[[best]], u[[best]]) if best is not None else (np.zeros(0), np.zeros(0))
-        crossed.append((at, place, place, place))
-    return crossed
+        found.append(crossed[:, sorted(own, key=lambda place: -abs(v[place] - inside[place]))[:1]])
+    return found
 
 
-def _closed(strand: Strand, tips: list[tuple[float, float] | None], fades: list[bool], near: list[Points]) -> Shape:
-    own = tuple(np.array(part) for part in (strand.v, strand.low, strand.high, strand.inside))
-    whole = [np.concatenate(column) for column in zip(own, *near, strict=True)]
-    order = np.argsort(whole[0], kind="stable")
-    below, above = (None if faint else tip for tip, faint in zip(tips, fades, strict=True))
-    return Shape(strand, below, above, (fades[0], fades[1]), *(column[order] for column in whole))
+def _near_tips(region: Region, closed: dict[End, Point]) -> list[Array]:
+    """Edges between tips (u, v) and the rows next to them, where they can be bracketed; tip included.
 
-
-def _near_tips(region: Region, ends: list[tuple[tuple[float, float], float, float, float]]) -> list[Points]:
-    """Edges between tips (u, v) and the rows next to them (v, low, high), where they can be bracketed; tip included."""
-    if not ends:
+    As rows v, low, high and a point inside, all (4, points).
+    """
+    if not closed:
         return []
-    tip = np.repeat(np.array([end[0] for end in ends]), len(NEAR_TIP), axis=0)
-    v, low, high = np.repeat(np.array([end[1:] for end in ends]), len(NEAR_TIP), axis=0).T
-    share = np.tile(NEAR_TIP, len(ends))
+    beside = [strand.held[end] for strand, end in closed]
+    tip = np.repeat(np.array(list(closed.values())), len(NEAR_TIP), axis=0)
+    v, low, high = np.repeat(np.array([(held.v, held.low, held.high) for held in beside]), len(NEAR_TIP), axis=0).T
+    share = np.tile(NEAR_TIP, len(closed))
     at = tip[:, 1] + share * (v - tip[:, 1])
     middle = tip[:, 0] + share * ((low + high) / 2 - tip[:, 0])
     reach = 0.75 * np.sqrt(share) * (high - low) + 2 * np.abs(middle - tip[:, 0])
@@ -167,14 +155,13 @@ def _near_tips(region: Region, ends: list[tuple[tuple[float, float], float, floa
     good = np.flatnonzero((height > 0) & (over < 0).all(axis=0))
     exact = 1e-13 * (region.box.u1 - region.box.u0)
 
-    def above(u: Array, own: NDArray[np.intp]) -> Array:
+    def above(u: Array, own: Places) -> Array:
         return region.above_one(u, at[good[own]])
 
     left, right = (bracketed(above, side[good], top[good], exact) for side in outer)
     found = []
-    for k, end in enumerate(ends):
-        own = np.flatnonzero(good // len(NEAR_TIP) == k)
-        rows = (at[good[own]], left[own], right[own], top[good[own]])
-        point = (end[0][1], end[0][0], end[0][0], end[0][0])
-        found.append(tuple(np.append(row, place) for row, place in zip(rows, point, strict=True)))
-    return found  # type: ignore[return-value]
+    for k, (u0, v0) in enumerate(closed.values()):
+        own = good // len(NEAR_TIP) == k
+        rows = np.stack([at[good[own]], left[own], right[own], top[good[own]]])
+        found.append(np.append(rows, [[v0], [u0], [u0], [u0]], axis=1))
+    return found

@@ -12,26 +12,26 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.charts.stability_chart import Task, line_task, own_task
+from trunnion.analyses.charts.chart_families import LineFamily
+from trunnion.analyses.charts.stability_chart import Task, chart_task
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.analyses.tongues.from_resonances import followed, in_words
 from trunnion.analyses.tongues.joining import HALVINGS, Search, Strand, joined
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import FAINT, Region, patched
-from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown, by_growth
+from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown
 from trunnion.analyses.tongues.ridges import ridge
 from trunnion.analyses.tongues.rows import Kind, Row, unstable_intervals
 from trunnion.analyses.tongues.shapes import Shape, lost, shapes
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.systems.family import PeriodicLinearFamily
 
-Array = NDArray[np.float64]
 Range = Sequence[object]
 Progress = Callable[[float], None]
 
@@ -76,7 +76,7 @@ def tongues(
     workers, tell = threads or os.cpu_count() or 1, progress or (lambda share: None)
     region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
     levels = np.sort(task.family.to_patch(np.linspace(task.y.values[0], task.y.values[-1], int(rows)), False))
-    search, words = _search(task, region, line, statically_twisted)
+    search, words = _search(region)
     strands, searched = joined(search, levels, lambda s: tell(0.3 + 0.5 * s))
     shaped = shapes(region, strands)
     for _ in range(HALVINGS):
@@ -85,8 +85,8 @@ def tongues(
         strands, searched = joined(search, between, lambda s: None, searched)
         shaped = shapes(region, strands)
     tell(0.9)
-    places = {id(s.strand): k for k, s in enumerate(shaped)}
-    growths, names = _growths(task, region, shaped), _names(task, region, shaped, line, statically_twisted)
+    places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
+    growths, names = _growths(region, shaped), _names(region, shaped)
     find = _finder(region, search)
     found = [_tongue(task, region, find, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
     tell(1.0)
@@ -130,13 +130,7 @@ def task_of(
         if isinstance(request, str) or not isinstance(request, Sequence) or len(request) != 3:
             remedy = f'write {key}=("speed", 10, 200)'
             raise InputError("must be (parameter, low, high)", key=key, value=request, remedy=remedy)
-    across, up = (*x, 2), (*y, 2)
-    if isinstance(line, PeriodicLinearFamily):
-        if speed is not None:
-            remedy = "a family has its own parameters"
-            raise InputError("belongs to drivelines", key="speed", value=speed, remedy=remedy)
-        return own_task(line, across, up)
-    return line_task(line, across, up, speed, twisted, analysis)
+    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis)
 
 
 def _search_words(region: Region, rows: int, step: str) -> str:
@@ -179,18 +173,15 @@ def _faint_words(shaped: list[Shape]) -> str:
     return f"; without damping, what grows by less than {FAINT:g} a period cannot be told from what does not grow"
 
 
-def _search(
-    task: Task, region: Region, line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
-) -> tuple[Search, Callable[[list[Strand]], str]]:
+def _search(region: Region) -> tuple[Search, Callable[[list[Strand]], str]]:
     """How rows are searched, and what there is to say of it when tongues are known."""
-    if not region.by_coefficients and not isinstance(line, PeriodicLinearFamily):
-        assembly = assemble(line)
-        found = followed(task, assembly, region, twisted)
-        if found is not None:
-            return found.rows, lambda strands: "; " + in_words(found, [s.by for s in strands])
     alone = ""
     if not region.by_coefficients:
-        why = "a family of your own has no straight line" if isinstance(line, PeriodicLinearFamily) else "x is no speed"
+        found = followed(region)
+        if found is not None:
+            return found.rows, lambda strands: "; " + in_words(found, [s.by for s in strands])
+        line = isinstance(region.family, LineFamily)
+        why = "x is no speed" if line else "a family of your own has no straight line"
         alone = f"; resonances were not followed, as {why}"
     return lambda v: unstable_intervals(region, v), lambda strands: alone
 
@@ -204,17 +195,17 @@ def _finder(region: Region, search: Search) -> Callable[[float], Array]:
     return find
 
 
-def _growths(task: Task, region: Region, shapes: list[Shape]) -> list[tuple[float, tuple[float, float]]]:
+def _growths(region: Region, shapes: list[Shape]) -> list[tuple[float, tuple[float, float]]]:
     """The largest growth rate on the rows of each tongue and where it is."""
     owner = np.concatenate([np.full(len(s.v), k) for k, s in enumerate(shapes)] or [np.zeros(0)])
     v, low, high = (
         np.concatenate([getattr(s, part) for s in shapes] or [np.zeros(0)]) for part in ("v", "low", "high")
     )
-    rough = _rate(task, region, (low + high) / 2, v, np.maximum(region.above_one((low + high) / 2, v), 0.0))
+    rough = _rate(region, (low + high) / 2, v, np.maximum(region.above_one((low + high) / 2, v), 0.0))
     own = [np.flatnonzero(owner == k) for k in range(len(shapes))]
     pick = np.concatenate([o[np.argsort(-rough[o])[:FASTEST]] for o in own] or [np.zeros(0, dtype=np.intp)])
     u, top = ridge(region, low[pick], high[pick], v[pick])
-    rate, x, y = _rate(task, region, u, v[pick], top), region.x(u), region.y(v[pick])
+    rate, x, y = _rate(region, u, v[pick], top), region.x(u), region.y(v[pick])
     found = []
     for k in range(len(shapes)):
         mine = np.flatnonzero(owner[pick] == k)
@@ -223,9 +214,11 @@ def _growths(task: Task, region: Region, shapes: list[Shape]) -> list[tuple[floa
     return found
 
 
-def _rate(task: Task, region: Region, u: Array, v: Array, over: Array) -> Array:
+def _rate(region: Region, u: Array, v: Array, over: Array) -> Array:
     """Growth rates [1/s] at points where ρ − 1 is ``over``."""
-    return np.asarray(np.log1p(over) / region.family.period * _speed(task, region.x(u), region.y(v)))
+    family = region.family
+    speed = family.table(region.x(u), region.y(v))[:, 0] if isinstance(family, LineFamily) else 1.0
+    return np.asarray(np.log1p(over) / family.period * speed)
 
 
 def _tongue(
@@ -235,19 +228,19 @@ def _tongue(
     shape: Shape,
     growth: tuple[float, tuple[float, float]],
     named: Resonance | None,
-    places: dict[int, int],
+    places: dict[Strand | None, int],
 ) -> Tongue:
     strand = shape.strand
     y = _snapped(region.y(shape.v), task.y.values)
     ends = _snapped(np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0), task.x.values)
-    tip, top = (_point(region, t) for t in (shape.below, shape.above))
+    tip, top = (_point(region, t) for t in shape.tips)
     order = np.argsort(y, kind="stable")
     falling = bool(y[0] > y[-1])
     if falling:
         tip, top = top, tip
     return Tongue(
-        places[id(strand)],
-        str(Kind(strand.kind[0])),
+        places[strand],
+        str(Kind(strand.held[0].kind)),
         named,
         y[order],
         ends[0][order],
@@ -255,8 +248,8 @@ def _tongue(
         tip if tip is not None else top,
         top if tip is not None else None,
         *growth,
-        places.get(id(strand.joins)),
-        places.get(id(strand.parts)),
+        places.get(strand.into[1]),
+        places.get(strand.into[0]),
         _cut(task, region, strand),
         _fades(shape, falling),
         find,
@@ -280,43 +273,29 @@ def _point(region: Region, place: tuple[float, float] | None) -> tuple[float, fl
 
 
 def _cut(task: Task, region: Region, strand: Strand) -> tuple[str, ...]:
-    clipped = np.array(strand.clipped, dtype=bool).reshape(-1, 2).max(axis=0)
+    clipped = [any(held.clipped[side] for held in strand.held) for side in (0, 1)]
     falling = float(region.x(np.array(region.box.u0))) > float(region.x(np.array(region.box.u1)))
     left, right = clipped[::-1] if falling else clipped
     sides = {
         f"low {task.x.label}": left, f"high {task.x.label}": right,
-        f"low {task.y.label}": strand.below is None and strand.parts is None,
-        f"high {task.y.label}": strand.above is None and strand.joins is None,
+        f"low {task.y.label}": strand.beyond[0] is None and strand.into[0] is None,
+        f"high {task.y.label}": strand.beyond[1] is None and strand.into[1] is None,
     }  # fmt: skip
     return tuple(name for name, is_cut in sides.items() if is_cut)
 
 
-def _speed(task: Task, x: Array, y: Array) -> Array | float:
-    if task.line is None:
-        return 1.0
-    if task.speed is not None:
-        return task.speed
-    own, values = (task.x, x) if task.x.is_speed else (task.y, y)
-    table = np.zeros((len(values), int(own.columns.index.max()) + 1))
-    own.columns.put(table, values)
-    return np.asarray(table[:, 0])
-
-
-def _names(
-    task: Task, region: Region, shapes: list[Shape], line: Driveline | Assembly | PeriodicLinearFamily, twisted: bool
-) -> list[Resonance | None]:
+def _names(region: Region, shapes: list[Shape]) -> list[Resonance | None]:
     """The resonance of each tongue, at its tip where it has one."""
-    if isinstance(line, PeriodicLinearFamily):
+    if not isinstance(region.family, LineFamily) or not shapes:
         return [None] * len(shapes)
-    assembly = assemble(line)
-    begins = np.array([s.below or s.above or (s.strand.inside[0], s.strand.v[0]) for s in shapes]).reshape(-1, 2)
-    kinds = np.array([s.strand.kind[0 if s.below or not s.above else -1] for s in shapes])
-    return resonances(task, assembly, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, twisted, region.threads)
+    begins = np.array([s.tips[0] or s.tips[1] or (s.strand.held[0].inside, s.strand.held[0].v) for s in shapes])
+    kinds = np.array([s.strand.held[0 if s.tips[0] or not s.tips[1] else -1].kind for s in shapes])
+    return resonances(region.family, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, region.threads)
 
 
 def _numbered(found: list[Tongue]) -> tuple[Tongue, ...]:
     """By falling growth rate, numbered from 1, references to others with them."""
-    ordered = by_growth(found)
+    ordered = sorted(found, key=lambda t: -t.growth_rate)
     number = {t.number: k for k, t in enumerate(ordered, start=1)}
     return tuple(
         replace(

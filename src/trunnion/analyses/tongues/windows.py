@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.tongues import ROWS, tongues
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -29,7 +29,6 @@ from trunnion.results.speeds import show_speed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
 """Numbers of a description that damp."""
@@ -240,7 +239,7 @@ def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None]
     windows: list[tuple[float, float]] = []
     ends: list[tuple[End | None, End | None]] = []
     at, below = low, None
-    for begin, end, first, last in sorted([*_covered(found), *_untold(found)], key=lambda part: part[0]):
+    for begin, end, first, last in sorted(_unfit(found), key=lambda part: part[0]):
         if begin > at:
             windows.append((at, begin))
             ends.append((below, first))
@@ -252,12 +251,10 @@ def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None]
     return np.array(windows).reshape(-1, 2), tuple(ends)
 
 
-def _covered(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
+def _unfit(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
+    """Ranges that a tongue covers or of which nothing is known, and what is at either end of each."""
     for tongue in found:
         yield float(tongue.y[0]), float(tongue.y[-1]), _end(tongue, 0), _end(tongue, -1)
-
-
-def _untold(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
     for place in found.unknown:
         end = End(sum(place.x) / 2, UNKNOWN)
         yield *place.between, end, end

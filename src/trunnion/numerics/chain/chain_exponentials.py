@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Places
 from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.chain.exponential_lanes import TOGETHER, integrate_exponentials
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class ChainExponentials:
         """Size of the matrices."""
         return 2 * int(self.lanes.stiffness.shape[0])
 
-    def monodromies(self, which: NDArray[np.intp], steps: int) -> tuple[Array, Array]:
+    def monodromies(self, which: Places, steps: int) -> tuple[Array, Array]:
         """Z (lane, m, m) in scaled units and ∫ tr(M⁻¹C) dτ (lane,) of the lanes ``which``, by so many steps."""
         matrix, trace = np.empty((len(which), self.states, self.states)), np.empty(len(which))
         integrate_exponentials(self.program, self.lanes, which, self.period, steps, matrix, trace)

@@ -13,15 +13,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Places
 from trunnion.numerics.chain.chain_tables import LANES, ChainLanes, ChainProgram
 from trunnion.numerics.chain.half_period import whole_periods
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.threads import on_threads
 
-Array = NDArray[np.float64]
 MOST_STEPS = 200_000
 SMALL = 3
 """Unknowns up to which a block of lanes takes less time than starting a thread."""
@@ -61,7 +60,7 @@ def chain_propagator(
     n, count = lanes.stiffness.shape
     matrix = np.empty((count, 2 * n, 2 * n))
     error, trace = np.empty(count), np.empty(count)
-    order = _fast_ones_together(lanes.frequency)
+    order = _alike_together(lanes)
     integrate = integrate_stages if has_extra(program, lanes) else integrate_series
 
     def run(first: int, last: int) -> None:
@@ -92,13 +91,22 @@ def complete(
     return matrix, error, 2 * trace
 
 
-def _fast_ones_together(frequency: Array) -> NDArray[np.int64]:
-    """An order in which lanes of about the same frequency stand together, to a factor of two.
+def _alike_together(lanes: ChainLanes) -> Places:
+    """An order in which lanes of about the same frequency stand together, to a factor of two, and within those, where
+    that is not so already, lanes with equal joint angles and phases.
 
-    A block steps as its fastest lane does, so a slow speed beside a fast one would be integrated in needlessly
-    short steps. Within the factor the lanes keep their places: neighbours of a chart share their joints' series.
+    A block steps as its fastest lane does, so a slow speed beside a fast one would be integrated in needlessly short
+    steps. Lanes with equal angles and phases share the joints' laws.
     """
-    return np.argsort(np.frexp(frequency)[1], kind="stable")
+    octave = np.frexp(lanes.frequency)[1]
+    rows = [*lanes.cosine, *lanes.phase, *lanes.ripple, *lanes.ripple_phase]
+    moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
+    changes = sum(np.count_nonzero(np.diff(row)) for row in moving)
+    if changes >= max(1, len(octave) / 4):
+        by_joints = np.lexsort((1 / lanes.frequency, *moving))
+        if sum(np.count_nonzero(np.diff(row[by_joints])) for row in moving) < changes / 4:
+            return by_joints[np.argsort(octave[by_joints], kind="stable")]
+    return np.argsort(octave, kind="stable")
 
 
 def _in_pieces(run: Callable[[int, int], None], count: int, threads: int, few: int) -> None:

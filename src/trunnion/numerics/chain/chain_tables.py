@@ -15,12 +15,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.numerics.jit import njit
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 LANES = 16
 
@@ -136,14 +133,9 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
     joints, n = lanes.cosine.shape[0], len(program.parent)
     joint = np.zeros(max(1, joints) * PER_JOINT)
     unknown = np.zeros(n * PER_UNKNOWN)
-    members = lanes.member_inertia.shape[0]
-    inertia, load = np.zeros((members, LANES)), np.zeros((members, LANES))
-    viscous, quadratic = np.zeros((members, LANES)), np.zeros((members, LANES))
     waves = len(program.wave_unknown)
     wave_cosine, wave_sine = np.zeros((waves, LANES)), np.zeros((waves, LANES))
-    ripples = len(program.ripple_order)
-    ripple, ripple_phase = np.zeros((ripples, LANES)), np.zeros((ripples, LANES))
-    alike = ripples == 0
+    alike = len(program.ripple_order) == 0
     for lane in range(LANES):
         at, first = picked[lane], picked[0]
         nu = lanes.frequency[at]
@@ -168,17 +160,25 @@ def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
             unknown[o + SLOPE_SCALE * LANES] = scale * program.near_speed[i] / nu
             unknown[o + TORQUE * LANES] = lanes.torque[i, at] * program.near_ratio[i] / nu
             unknown[o + FREQUENCY * LANES] = nu
-        for k in range(members):
-            inertia[k, lane] = lanes.member_inertia[k, at]
-            load[k, lane] = lanes.member_load[k, at]
-            viscous[k, lane] = lanes.member_viscous[k, at]
-            quadratic[k, lane] = lanes.member_quadratic[k, at]
         for k in range(waves):
             wave_cosine[k, lane] = lanes.wave_share[k, at] * math.cos(lanes.wave_phase[k, at])
             wave_sine[k, lane] = lanes.wave_share[k, at] * math.sin(lanes.wave_phase[k, at])
-        for k in range(ripples):
-            ripple[k, lane], ripple_phase[k, lane] = lanes.ripple[k, at], lanes.ripple_phase[k, at]
-    return Block(joint, unknown, inertia, load, viscous, quadratic, wave_cosine, wave_sine, ripple, ripple_phase, alike)
+    return Block(
+        joint, unknown,
+        _picked(lanes.member_inertia, picked), _picked(lanes.member_load, picked),
+        _picked(lanes.member_viscous, picked), _picked(lanes.member_quadratic, picked),
+        wave_cosine, wave_sine, _picked(lanes.ripple, picked), _picked(lanes.ripple_phase, picked), alike,
+    )  # fmt: skip
+
+
+@njit(nogil=True, inner=True)
+def _picked(rows, picked):  # type: ignore[no-untyped-def]
+    """Rows of the lanes ``picked``."""
+    out = np.empty((len(rows), LANES))
+    for k in range(len(rows)):
+        for lane in range(LANES):
+            out[k, lane] = rows[k, picked[lane]]
+    return out
 
 
 @njit(nogil=True, inner=True)

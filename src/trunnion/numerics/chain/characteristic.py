@@ -13,14 +13,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex
 from trunnion.numerics.chain.quartic import CHUNK, ERROR, IMAGINARY, LEFT, RADIUS, REAL, ROWS, SETTLED, quartic_chunk
 from trunnion.numerics.jit import njit
 from trunnion.numerics.patches.chebyshev_rows import weighted_sum
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 LARGEST = 6
 """Largest matrix treated by coefficients; beyond, they are too ill-conditioned (interpolate Z itself)."""
 
@@ -132,7 +130,7 @@ def _one_radius(values, bounds, p, warm, roots, radius, error, critical):  # typ
     for k in range(m):
         e[k] = values[k, p]
     if m == 2:
-        _quadratic(e[0], e[1], roots, 0)
+        _quadratic(e[0], e[1], roots)
     elif m == 4 or not _aberth(e, roots, warm and math.isfinite(roots[0].real)):
         _companion(e, roots)
     which = 0
@@ -221,17 +219,16 @@ def _bound(roots, size, i, bounds, b):  # type: ignore[no-untyped-def]
 
 
 @njit(nogil=True, inner=True)
-def _quadratic(total, product, roots, at):  # type: ignore[no-untyped-def]
-    """Roots of x² − total x + product into two places of ``roots``."""
+def _quadratic(total, product, roots):  # type: ignore[no-untyped-def]
+    """Roots of x² − total x + product."""
     half = total / 2
     under = half * half - product
     if under >= 0:
         far = half + math.copysign(math.sqrt(under), half)
-        roots[at] = far
-        roots[at + 1] = product / far if far != 0 else 0.0
+        roots[0], roots[1] = far, product / far if far != 0 else 0.0
     else:
         rise = math.sqrt(-under)
-        roots[at], roots[at + 1] = complex(half, rise), complex(half, -rise)
+        roots[0], roots[1] = complex(half, rise), complex(half, -rise)
 
 
 @njit(nogil=True, inner=True)

@@ -16,14 +16,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex
 from trunnion.errors import ComputationError
 from trunnion.numerics.integration.runge_kutta import STAGES, A, B, C
 from trunnion.numerics.jit import njit
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 FEWEST_STEPS, MOST_STEPS = 16, 1 << 15
 EVEN = 32
 """Times at which units and a first number of steps are found."""
@@ -79,15 +77,15 @@ def propagate(
     ------
     ComputationError : the coefficients are not finite or M is singular; no agreement in 32768 steps.
     """
-    looked = _first_look(coefficients, period, size, max(FEWEST_STEPS, least_steps))
-    scale, steps = _scales(looked.even, period, size)
+    even, looked = _first_look(coefficients, period, size, max(FEWEST_STEPS, least_steps))
+    scale, steps = _scales(even, period, size)
     steps = max(steps, least_steps)
     if steps >= MOST_STEPS:
         raise ComputationError(
             f"the fastest motion needs {steps:.3g} steps a period, more than {MOST_STEPS}: a stiffness is very large "
             "or an inertia very small beside the others; join the parts rigidly, or raise the speed"
         )
-    problem = _Problem(coefficients, period, size, scale, looked.at_stages)
+    problem = _Problem(coefficients, period, size, scale, looked)
     everything = np.concatenate([np.eye(2 * size), np.zeros((2 * size, 1))], axis=1)
     coarse = problem.march(everything, steps)
     while steps < MOST_STEPS:
@@ -115,25 +113,22 @@ def propagate(
     )
 
 
-@dataclass(frozen=True)
-class _Look:
-    """Coefficients at 32 even times, and at all stages by a number of steps."""
+def _first_look(
+    coefficients: CoefficientFunction, period: float, size: int, steps: int
+) -> tuple[Parts, dict[int, Parts]]:
+    """Coefficients at ``EVEN`` times, and at all stages by a number of steps.
 
-    even: Parts
-    at_stages: dict[int, Parts]
-
-
-def _first_look(coefficients: CoefficientFunction, period: float, size: int, steps: int) -> _Look:
-    """At all times that ``steps`` steps and twice as many need, which most often are all, in one call: of a small
-    system a call costs more than its times. At 32 times where that would be much memory."""
+    At all times that ``steps`` steps and twice as many need, which most often are all, in one call: of a small system a
+    call costs more than its times. At 32 times where that would be much memory.
+    """
     if 24 * steps * STAGES * size**2 > KEPT:
-        return _Look(coefficients(period * np.arange(EVEN) / EVEN), {})
+        return coefficients(period * np.arange(EVEN) / EVEN), {}
     stages = [_stages(0, count, period / count) for count in (steps, 2 * steps)]
     every = coefficients(np.concatenate(stages))
     cut = len(stages[0])
     coarse, fine = _part(every, slice(cut)), _part(every, slice(cut, None))
     even = slice(None, None, STAGES * max(1, 2 * steps // EVEN))  # the first stage stands where its step begins
-    return _Look(_part(fine, even), {steps: coarse, 2 * steps: fine})
+    return _part(fine, even), {steps: coarse, 2 * steps: fine}
 
 
 def _part(every: Parts, times: slice) -> Parts:
@@ -279,7 +274,7 @@ class _Problem:
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True)
 def _march(q, d, g, frequency, step, a, b, states, kept):  # type: ignore[no-untyped-def]
     """Carry each of ``states`` (part, 2n, columns) in place over as many of the steps, one part after the other.
 

@@ -61,7 +61,6 @@ def eigenvalues_in_rows(matrices, size, values, hessenberg):
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _reduce(h, size, work):
     """Hessenberg form in place."""
-    zero = spread(0.0)
     for c in range(size - 2):
         first, count = c + 1, size - c - 1
         for l in range(LANES):
@@ -81,23 +80,23 @@ def _reduce(h, size, work):
                 work[(i - first + 1) * LANES + l] = h[(i * size + c) * LANES + l]
                 h[(i * size + c) * LANES + l] = 0.0
             h[(first * size + c) * LANES + l] = beta if square > 0.0 else head
-        weight = load(work, 0, zero)
         for j in range(c + 1, size):
-            dot = zero
-            for i in range(count):
-                dot = dot + load(work, (i + 1) * LANES, zero) * load(h, ((first + i) * size + j) * LANES, zero)
-            dot = dot * weight
-            for i in range(count):
-                to = ((first + i) * size + j) * LANES
-                store(h, to, load(h, to, zero) - load(work, (i + 1) * LANES, zero) * dot)
+            _reflect(h, (first * size + j) * LANES, size * LANES, count, work)
         for i in range(size):
-            dot = zero
-            for j in range(count):
-                dot = dot + load(work, (j + 1) * LANES, zero) * load(h, (i * size + first + j) * LANES, zero)
-            dot = dot * weight
-            for j in range(count):
-                to = (i * size + first + j) * LANES
-                store(h, to, load(h, to, zero) - load(work, (j + 1) * LANES, zero) * dot)
+            _reflect(h, (i * size + first) * LANES, LANES, count, work)
+
+
+@njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
+def _reflect(h, at, stride, count, work):
+    """Reflect ``count`` numbers of every lane, ``stride`` apart from ``at`` on, by weight and vector in ``work``."""
+    zero = spread(0.0)
+    dot = zero
+    for i in range(count):
+        dot = dot + load(work, (i + 1) * LANES, zero) * load(h, at + i * stride, zero)
+    dot = dot * load(work, 0, zero)
+    for i in range(count):
+        to = at + i * stride
+        store(h, to, load(h, to, zero) - load(work, (i + 1) * LANES, zero) * dot)
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
@@ -192,37 +191,31 @@ def _sweep(h, size, first, last, low, high, work):
             work[5 * LANES + l] = z * over if live else 0.0
         weight, y, z = load(work, 3 * LANES, zero), load(work, 4 * LANES, zero), load(work, 5 * LANES, zero)
         for j in range(max(first, k - 1), last + 1):
-            one, two = (k * size + j) * LANES, ((k + 1) * size + j) * LANES
-            p, q = load(h, one, zero), load(h, two, zero)
-            if three:
-                end = ((k + 2) * size + j) * LANES
-                r = load(h, end, zero)
-                dot = weight * (p + y * q + z * r)
-                store(h, end, r - z * dot)
-            else:
-                dot = weight * (p + y * q)
-            store(h, one, p - dot)
-            store(h, two, q - y * dot)
+            _reflect_few(h, (k * size + j) * LANES, size * LANES, three, weight, y, z)
         for i in range(k + 1, min(k + 2, last) + 1):
             if k > first:
                 store(h, (i * size + k - 1) * LANES, zero)
         for i in range(min(k + 3, last) + 1):
-            one = (i * size + k) * LANES
-            two = one + LANES
-            p, q = load(h, one, zero), load(h, two, zero)
-            if three:
-                end = two + LANES
-                r = load(h, end, zero)
-                dot = weight * (p + y * q + z * r)
-                store(h, end, r - z * dot)
-            else:
-                dot = weight * (p + y * q)
-            store(h, one, p - dot)
-            store(h, two, q - y * dot)
+            _reflect_few(h, (i * size + k) * LANES, LANES, three, weight, y, z)
         for m in range(3):
             i = k + 1 + m
             if i <= last:
                 store(work, m * LANES, load(h, (i * size + k) * LANES, zero))
+
+
+@njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
+def _reflect_few(h, at, stride, three, weight, y, z):
+    """The same of two numbers or ``three``, by the vector (1, y, z)."""
+    zero = spread(0.0)
+    p, q = load(h, at, zero), load(h, at + stride, zero)
+    if three:
+        r = load(h, at + 2 * stride, zero)
+        dot = weight * (p + y * q + z * r)
+        store(h, at + 2 * stride, r - z * dot)
+    else:
+        dot = weight * (p + y * q)
+    store(h, at, p - dot)
+    store(h, at + stride, q - y * dot)
 
 
 @njit(nogil=True, error_model="numpy")

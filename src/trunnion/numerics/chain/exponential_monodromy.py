@@ -16,14 +16,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex, Places
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Rates = Callable[[NDArray[np.intp], Array], Array]
-March = Callable[[NDArray[np.intp], int], Array]
+Rates = Callable[[Places, Array], Array]
+March = Callable[[Places, int], Array]
 FIRST_STEPS = 8
 MOST_STEPS = 1 << 12
 CHUNK = 1 << 21
@@ -47,7 +45,7 @@ class Monodromies:
     radius: Array
     error: Array
     critical: Complex
-    steps: NDArray[np.intp]
+    steps: Places
 
 
 def exponential_monodromies(
@@ -58,7 +56,7 @@ def exponential_monodromies(
     *,
     tolerance: float = 1e-9,
     least_steps: int = FIRST_STEPS,
-    aside: Callable[[NDArray[np.intp], Array], Array] | None = None,
+    aside: Callable[[Places, Array], Array] | None = None,
 ) -> Monodromies:
     """Monodromy matrices of ``cases`` systems x′ = A(τ)x over one period.
 
@@ -71,7 +69,7 @@ def exponential_monodromies(
     aside : (case numbers, matrices) → matrices without what is no disturbance, for the radius.
     """
 
-    def march(which: NDArray[np.intp], count: int) -> Array:
+    def march(which: Places, count: int) -> Array:
         return marched(rates, which, size, period, count)
 
     return by_halving(march, cases, size, tolerance=tolerance, least_steps=least_steps, aside=aside)
@@ -85,7 +83,7 @@ def by_halving(
     *,
     tolerance: float = 1e-9,
     least_steps: int = FIRST_STEPS,
-    aside: Callable[[NDArray[np.intp], Array], Array] | None = None,
+    aside: Callable[[Places, Array], Array] | None = None,
 ) -> Monodromies:
     """The same of whatever ``march`` steps: (case numbers, number of steps) → matrices (case, size, size)."""
     matrix = np.full((cases, size, size), np.nan)
@@ -128,7 +126,7 @@ def _radius(fine: Array, coarse: Array) -> tuple[Array, Array, Complex]:
     return np.where(finite, radius, np.nan), error, critical
 
 
-def marched(rates: Rates, which: NDArray[np.intp], size: int, period: float, steps: int) -> Array:
+def marched(rates: Rates, which: Places, size: int, period: float, steps: int) -> Array:
     """Monodromy matrices of the systems ``which`` as products of ``steps`` exponentials."""
     out = np.empty((len(which), size, size))
     at_once = max(1, CHUNK // (3 * min(steps, 16) * size**2))

@@ -21,6 +21,7 @@ import numpy as np
 
 from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, LANES, NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ROWS, couplings, empty_series
+from trunnion.numerics.chain.lane_blocks import pick
 from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
 
@@ -33,10 +34,9 @@ def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):
     size = wide * wide * LANES
     half_phi, b, c, z = np.empty(size), np.empty(size), np.empty(size), np.empty(size)
     ends, factor, picked = np.empty(2 * n * LANES), np.empty(LANES), np.empty(LANES, np.int64)
+    every = np.arange(last)
     for at in range(first, last, LANES):
-        count = min(LANES, last - at)
-        for lane in range(LANES):
-            picked[lane] = at + min(lane, count - 1)
+        count = pick(every, at, last, picked)
         block = gather(program, lanes, picked)
         _at_both_ends(program, block, begin, half, ends)
         for lane in range(LANES):

@@ -1,11 +1,16 @@
-"""Which lanes go together in a block, and where their results go."""
+"""Which lanes go together in a block, how their propagators begin and end, and where they go."""
 
 # mypy: ignore-errors
 # Types are inferred by the compiler of this code, from its arguments.
 from __future__ import annotations
 
-from trunnion.numerics.chain.chain_tables import LANES
+import numpy as np
+
+from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES
 from trunnion.numerics.jit import njit
+
+ROUNDING = 2e-15
+"""Of each step."""
 
 
 @njit(nogil=True, inner=True)
@@ -15,6 +20,36 @@ def pick(order, at, last, picked):
     for l in range(LANES):
         picked[l] = order[min(at + l, last - 1)]
     return min(LANES, last - at)
+
+
+@njit(nogil=True, inner=True)
+def begin_block(unknown, propagators, wide, apart, error, trace):
+    """Identities (column, state, …, lane), ``apart`` numbers from state to state, without error and trace; returns the
+    largest ν."""
+    fastest = 0.0
+    for l in range(LANES):
+        error[l] = trace[l] = 0.0
+        fastest = max(fastest, unknown[FREQUENCY * LANES + l])
+        for c in range(wide):
+            for i in range(wide):
+                propagators[(c * wide + i) * apart + l] = 1.0 if i == c else 0.0
+    return fastest
+
+
+@njit(nogil=True, inner=True)
+def end_block(propagators, wide, apart, reached, steps, largest, error, trace):
+    """Errors of whole propagators from the sums of those of their steps and the largest norm (lane,) on the way; NaN
+    unless the end was ``reached``."""
+    for l in range(LANES):
+        square = 0.0
+        for at in range(l, len(propagators), apart):
+            if not reached:
+                propagators[at] = np.nan
+            square += propagators[at] * propagators[at]
+        # An early error grows with Φ; one made where Φ is largest can grow by as much again.
+        norm = np.sqrt(square / wide)
+        error[l] = (error[l] + ROUNDING * steps) * max(largest[l], norm) * max(1.0, norm)
+        trace[l] = trace[l] if reached else np.nan
 
 
 @njit(nogil=True, inner=True)

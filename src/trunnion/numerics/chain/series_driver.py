@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES, NEAR_SCALE, PER_UNKNOWN, gather
+from trunnion.numerics.chain.chain_tables import LANES, NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ORDER, ROWS, couplings, empty_series
-from trunnion.numerics.chain.lane_blocks import give_back, pick
+from trunnion.numerics.chain.lane_blocks import ROUNDING, begin_block, end_block, give_back, pick
 from trunnion.numerics.chain.rows import spread
 from trunnion.numerics.chain.series_step import (
     LAST,
@@ -23,7 +23,6 @@ from trunnion.numerics.chain.series_step import (
 )
 from trunnion.numerics.jit import njit
 
-ROUNDING = 2e-15
 LONGEST, STEEPEST = 4.0, 0.7
 
 
@@ -51,17 +50,12 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
     wide = 2 * n
     joints, start = empty_series(program)
     near, spare, squares = np.zeros(n * ROWS), np.zeros(n * PER_SPARE), np.zeros((LAST + 1) * LANES)
-    sizes, bent = np.ones(3 * LANES), np.zeros(n, np.bool_)
-    fastest = 0.0
-    for l in range(LANES):
-        error[l] = trace[l] = 0.0
-        fastest = max(fastest, block.unknown[FREQUENCY * LANES + l])
-        for i in range(n):
-            bent[i] = parent[i] >= 0 and program.near_source[i] >= 0
+    last, grown, largest, bent = np.empty(LANES), np.empty(LANES), np.ones(LANES), np.zeros(n, np.bool_)
+    fastest = begin_block(block.unknown, w, wide, ROWS, error, trace)
+    for i in range(n):
+        bent[i] = parent[i] >= 0 and program.near_source[i] >= 0
+        for l in range(LANES):
             near[i * ROWS + l] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + l]
-        for c in range(wide):
-            for i in range(wide):
-                w[(c * wide + i) * ROWS + l] = 1.0 if i == c else 0.0
     done, count = 0.0, 0
     h = min(length, 1.0 / fastest)
     while done < length and count < most_steps:
@@ -76,7 +70,7 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
             pair_series(parent, bent, block.unknown, near, w, column, column + wide * ROWS, spare, squares, h)
         # No step is asked for less than its own rounding; otherwise steps would shrink for ever.
         asked = max(tolerance * h / length, ROUNDING)
-        s, fall = _length_of_step(squares, n, asked, sizes)
+        s, fall = _length_of_step(squares, n, asked, last, grown)
         if not s == s:
             h *= 0.1
             if h < 1e-7 * length:
@@ -90,29 +84,18 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
         rest = 1.0 - min(fall * s, STEEPEST) ** 2
         power = 1.5 * fall * fall * s ** (ORDER + 1) / rest
         for l in range(LANES):
-            last, grown = sizes[l], sizes[LANES + l]
-            error[l] += power * last / grown
-            sizes[2 * LANES + l] = max(sizes[2 * LANES + l], grown)
+            error[l] += power * last[l] / grown[l]
+            largest[l] = max(largest[l], grown[l])
         add_damping_trace(parent, bent, block.unknown, near, h, s, trace)
         evaluate(w, s)
         done = length if s == left else done + s * h
         h *= s
-    reached = done >= length
-    for l in range(LANES):
-        square = 0.0
-        for at in range(l, len(w), ROWS):
-            if not reached:
-                w[at] = np.nan
-            square += w[at] * w[at]
-        norm, largest = np.sqrt(square / wide), sizes[2 * LANES + l]
-        # An early error grows with Φ; one made where Φ is largest can grow by as much again.
-        error[l] = (error[l] + ROUNDING * count) * max(largest, norm) * max(1.0, norm)
-        trace[l] = trace[l] if reached else np.nan
+    end_block(w, wide, ROWS, done >= length, count, largest, error, trace)
     return count
 
 
 @njit(nogil=True, inner=True)
-def _length_of_step(squares, n, asked, sizes):
+def _length_of_step(squares, n, asked, last, grown):
     """The step, in units, after which the neglected terms reach ``asked`` per unit; their sizes and that of Φ are kept.
 
     They fall at least as fast as the last four computed ones do, two by two because even and odd orders do not
@@ -120,12 +103,11 @@ def _length_of_step(squares, n, asked, sizes):
     """
     fall, worst = 0.0, 0.0
     for l in range(LANES):
-        last = np.sqrt(squares[2 * LANES + l] + squares[3 * LANES + l])
+        last[l] = np.sqrt(squares[2 * LANES + l] + squares[3 * LANES + l])
         before = np.sqrt(squares[l] + squares[LANES + l])
-        grown = max(1.0, np.sqrt(squares[4 * LANES + l] / (2 * n)))
-        sizes[l], sizes[LANES + l] = last, grown
-        fall = max(fall, np.sqrt(last / (before + 1e-300)))
-        worst = max(worst, last / grown) if last == last else np.inf
+        grown[l] = max(1.0, np.sqrt(squares[4 * LANES + l] / (2 * n)))
+        fall = max(fall, np.sqrt(last[l] / (before + 1e-300)))
+        worst = max(worst, last[l] / grown[l]) if last[l] == last[l] else np.inf
     if not worst < np.inf:
         return np.nan, fall
     if worst * LONGEST**ORDER < asked and fall * LONGEST < STEEPEST:

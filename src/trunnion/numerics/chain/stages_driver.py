@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES, add_damping_trace, empty_table, fill, gather
-from trunnion.numerics.chain.lane_blocks import give_back, pick
+from trunnion.numerics.chain.chain_tables import LANES, add_damping_trace, empty_table, fill, gather
+from trunnion.numerics.chain.lane_blocks import ROUNDING, begin_block, end_block, give_back, pick
 from trunnion.numerics.chain.stages_step import step_by_stages
 from trunnion.numerics.integration.runge_kutta import STAGES, B, C
 from trunnion.numerics.jit import njit
 
 LOCAL_TO_TRUE = 0.1
-ROUNDING = 2e-15
 
 
 @njit(nogil=True)
@@ -47,13 +46,7 @@ def _propagate(program, block, begin, length, tolerance, most_steps, u, un, spar
     """Carry the identity (column, state, lane) over the stretch: whether the result stands in ``un``, and steps."""
     table, wide = empty_table(program, block), 2 * len(program.parent)
     squares, local, largest = np.empty(3 * LANES), np.empty(LANES), np.ones(LANES)
-    fastest, swapped = 0.0, False
-    for l in range(LANES):
-        error[l] = trace[l] = 0.0
-        fastest = max(fastest, block.unknown[FREQUENCY * LANES + l])
-        for c in range(wide):
-            for i in range(wide):
-                u[(c * wide + i) * LANES + l] = 1.0 if i == c else 0.0
+    fastest, swapped = begin_block(block.unknown, u, wide, LANES, error, trace), False
     # A step that leaps over cycles of a stiffness or a joint could find its two orders agree by accident.
     longest = length
     for cycles in program.wave_cycles:
@@ -80,22 +73,12 @@ def _propagate(program, block, begin, length, tolerance, most_steps, u, un, spar
         if worst <= 1.0:
             u, un, swapped = un, u, not swapped
             for l in range(LANES):
-                error[l] += local[l]
+                error[l] += LOCAL_TO_TRUE * local[l]
                 largest[l] = max(largest[l], np.sqrt(squares[2 * LANES + l] / wide))
             add_damping_trace(program.parent, block.unknown, table, B, h, trace)
             done = length if done + h > length * (1 - 1e-12) else done + h
         elif not worst < np.inf and h < 1e-7 * length:
             break
         h = min(h * min(3.0, max(0.1, 0.9 * (worst + 1e-30) ** (-1 / 7.0))), longest)
-    reached = done >= length
-    for l in range(LANES):
-        square = 0.0
-        for at in range(l, len(u), LANES):
-            if not reached:
-                u[at] = np.nan
-            square += u[at] * u[at]
-        # An early error grows with Φ; one made where Φ is largest can grow by as much again.
-        norm = np.sqrt(square / wide)
-        error[l] = (LOCAL_TO_TRUE * error[l] + ROUNDING * count) * largest[l] * max(1.0, norm)
-        trace[l] = trace[l] if reached else np.nan
+    end_block(u, wide, LANES, done >= length, count, largest, error, trace)
     return swapped, count

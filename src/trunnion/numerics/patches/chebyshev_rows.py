@@ -10,7 +10,7 @@ from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(nogil=True, fastmath=True, error_model="numpy")
 def weighted_sum(weights, rows, at, end, out):  # type: ignore[no-untyped-def]
     """out[u − at] = Σ_i weights[i] rows[i, u] for at ≤ u < end.
 

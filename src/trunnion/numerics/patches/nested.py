@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct
 
+from trunnion.arrays import Array, Flags
 from trunnion.numerics.patches.patches import BLOCKS, Box, Patch
 
-Array = NDArray[np.float64]
 FIRST_DEGREES = (8, 4)
 """Of u and v."""
 HIGHEST_DEGREE = 128
@@ -41,7 +40,7 @@ class Grid:
         u, v = _places(b.u0, b.u1, self.along_u), _places(b.v0, b.v1, self.along_v)
         return np.tile(u, len(v)), np.repeat(v, len(u))
 
-    def refined(self, of_u: bool, of_v: bool) -> tuple[Grid, NDArray[np.bool_]]:
+    def refined(self, of_u: bool, of_v: bool) -> tuple[Grid, Flags]:
         """A grid of twice the degree, and which of its nodes (all, rows slow) stood in this one."""
         finer = Grid(self.box, self.along_u * (1 + of_u), self.along_v * (1 + of_v))
         known = np.zeros(finer.shape, dtype=bool)

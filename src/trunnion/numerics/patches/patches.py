@@ -12,13 +12,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct
 
+from trunnion.arrays import Array, Places
 from trunnion.numerics.patches.chebyshev_rows import weighted_sums
 
-Array = NDArray[np.float64]
-Blocks = NDArray[np.intp]
 Grid = tuple[Array, Array]
 Evaluate = Callable[[list[Grid]], list[tuple[Array, Array]]]
 """Grids (u (columns,), v (rows,)) → values and error bounds on each, (rows · columns, quantities), rows slow."""
@@ -47,6 +45,11 @@ class Box:
     u1: float
     v0: float
     v1: float
+
+    @classmethod
+    def around(cls, u: Array, v: Array) -> Box:
+        """The rectangle that values of u and v span."""
+        return cls(float(u.min()), float(u.max()), float(v.min()), float(v.max()))
 
     def halves(self, along_u: bool, along_v: bool) -> Iterator[Box]:
         """The two or four parts, or the whole."""
@@ -95,7 +98,7 @@ class Patch:
         weighted_sums(self.weights(v), columns, out)
         return out
 
-    def blocks(self, u: Array, v: Array) -> tuple[Blocks, Blocks]:
+    def blocks(self, u: Array, v: Array) -> tuple[Places, Places]:
         """The blocks of errors that columns ``u`` and rows ``v`` fall into."""
         return _block(_to_unit(u, self.box.u0, self.box.u1)), _block(_to_unit(v, self.box.v0, self.box.v1))
 
@@ -114,9 +117,29 @@ class PatchedFunction:
     evaluations: int = 0
     stubborn: int = field(default=0)
 
+    def parts(self, u: Array, v: Array) -> Iterator[tuple[Patch, slice, slice]]:
+        """Every patch that holds any of the grid ``u`` × ``v``, with the rows and columns that lie in it."""
+        for patch in self.patches:
+            rows, columns = between(v, patch.box.v0, patch.box.v1), between(u, patch.box.u0, patch.box.u1)
+            if rows.stop > rows.start and columns.stop > columns.start:
+                yield patch, rows, columns
+
     def find(self, u: float, v: float) -> Patch | None:
         """The patch that contains a point, or None."""
         return next((p for p in self.patches if p.box.contains(u, v)), None)
+
+
+def grid_by_grid(function: Callable[[Array, Array], tuple[Array, Array]]) -> Evaluate:
+    """``function`` of points (u, v) on several grids, by one call for all their points."""
+
+    def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
+        u = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
+        v = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
+        values, bounds = function(u, v)
+        cuts = np.cumsum([len(gu) * len(gv) for gu, gv in grids])[:-1]
+        return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
+
+    return evaluate
 
 
 def build(
@@ -255,7 +278,7 @@ def _from_unit(t: Array, low: float, high: float) -> Array:
     return (low + high) / 2 + (high - low) / 2 * t
 
 
-def _block(t: Array) -> Blocks:
+def _block(t: Array) -> Places:
     """The block of nodes that a coordinate in [−1, 1] falls into; nodes run from +1 to −1."""
     return np.minimum((np.arccos(t) / np.pi * BLOCKS).astype(np.intp), BLOCKS - 1)
 

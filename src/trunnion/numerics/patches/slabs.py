@@ -11,15 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.numerics.chain.chain_tables import LANES
 from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
-from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, between, build
-from trunnion.numerics.threads import on_threads
+from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, build, grid_by_grid
 
-Array = NDArray[np.float64]
 Propagate = Callable[[Array, Array, float, float], tuple[Array, Array, Array]]
 """(u, v, begin, length) → propagators (points, m, m), errors (points,), ∫tr(M⁻¹C)dτ (points,)."""
 
@@ -71,27 +69,19 @@ def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, toleran
     count = len(edges) - 1
     for at, end in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
 
-        def evaluate(grids: list[Grid], at: float = at, end: float = end) -> list[tuple[Array, Array]]:
-            shapes = [(len(gu), len(gv)) for gu, gv in grids]
-            us = np.concatenate([np.tile(gu, len(gv)) for gu, gv in grids])
-            vs = np.concatenate([np.repeat(gv, len(gu)) for gu, gv in grids])
-            phi, error, trace = propagate(us, vs, at, end - at)
+        def sampled(u: Array, v: Array, at: float = at, end: float = end) -> tuple[Array, Array]:
+            phi, error, trace = propagate(u, v, at, end - at)
             values = np.concatenate([phi.reshape(len(phi), -1), trace[:, None]], axis=1)
-            bounds = np.repeat(error[:, None] / size, values.shape[1], axis=1)
-            cuts = np.cumsum([a * b for a, b in shapes])[:-1]
-            return list(zip(np.split(values, cuts), np.split(bounds, cuts), strict=True))
+            return values, np.repeat(error[:, None] / size, values.shape[1], axis=1)
 
         # What had to be divided for one slab has to be for its neighbour.
         boxes = [patch.box for patch in functions[-1].patches] if functions else [box]
-        functions.append(build(evaluate, boxes, nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1))
+        functions.append(
+            build(grid_by_grid(sampled), boxes, nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1)
+        )
         if functions[-1].stubborn:
             return None
     return Slabs(tuple(functions), size)
-
-
-def on_grids(slabs: Slabs, grids: list[Grid], threads: int) -> list[tuple[Array, Array, Array]]:
-    """``Slabs.propagators`` of several grids in parallel."""
-    return on_threads(slabs.propagators, grids, threads)
 
 
 def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Array, Array]:
@@ -99,13 +89,10 @@ def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Ar
     u, v = grid
     values = np.full((quantities, len(v), len(u)), np.nan)
     bounds = np.full((len(v), len(u)), np.nan)
-    for patch in function.patches:
-        rows, columns = between(v, patch.box.v0, patch.box.v1), between(u, patch.box.u0, patch.box.u1)
-        here = (rows, columns)
-        if len(v[rows]) and len(u[columns]):
-            values[:, *here] = patch.grid(u[columns], v[rows])
-            of_u, of_v = patch.blocks(u[columns], v[rows])
-            bounds[here] = np.sqrt(np.sum(patch.error[:-1] ** 2, axis=0))[of_v[:, None], of_u]
+    for patch, rows, columns in function.parts(u, v):
+        values[:, rows, columns] = patch.grid(u[columns], v[rows])
+        of_u, of_v = patch.blocks(u[columns], v[rows])
+        bounds[rows, columns] = np.sqrt(np.sum(patch.error[:-1] ** 2, axis=0))[of_v[:, None], of_u]
     return values.reshape(quantities, -1), bounds.ravel()
 
 
