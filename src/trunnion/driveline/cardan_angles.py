@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import Disk
 from trunnion.driveline.joints import HookeJoint
+from trunnion.driveline.layout import jointed
 from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, Kind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
@@ -56,14 +57,14 @@ def cardan_line(
     given: Sequence[Any] = alpha  # as written, so that a refusal shows "95 deg"
     first, load = _numbers([start], "start")[0], _numbers([load_torque], "load_torque", TORQUE)[0]
     rigid = RIGID * max(c, default=1.0)
-    elements: list[Element] = [ConstantSpeed(), Shaft(stiffness=rigid, fork_offset=first, name="input shaft")]
-    for i in range(n):
-        plane = -inclined[i - 1] if i else 0.0
-        elements.append(HookeJoint(angle=given[i], plane=plane))
-        if i < n - 1:
-            elements.append(Shaft(stiffness=c[i], fork_offset=-turned[i], name=f"intermediate shaft {i + 1}"))
-    elements += [Shaft(stiffness=rigid, name="output shaft"), Disk(inertia=1.0, load_torque=load)]
-    return Driveline(elements, name=name)
+    planes = [0.0, *(-angle for angle in inclined)]
+    joints = [HookeJoint(angle=angle, plane=plane) for angle, plane in zip(given, planes, strict=True)]
+    shafts = [
+        Shaft(stiffness=rigid, fork_offset=first, name="input shaft"),
+        *(Shaft(stiffness=c[i], fork_offset=-turned[i], name=f"intermediate shaft {i + 1}") for i in range(n - 1)),
+        Shaft(stiffness=rigid, name="output shaft"),
+    ]
+    return jointed(joints, shafts, Disk(inertia=1.0, load_torque=load), name)
 
 
 def _one_per_shaft(values: object, key: str, joints: int, kind: Kind = ANGLE) -> list[float]:

@@ -28,7 +28,7 @@ from trunnion.errors import InputError, short
 COLUMNS: dict[str, Kind] = {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE}
 LARGEST_TABLE = 1_000_000
 """Bytes; a table of 20 orders at 50 speeds has 30 000."""
-_HEAD = re.compile(r"([a-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
+_HEAD = re.compile(r"([A-Za-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
 
 
 def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
@@ -77,12 +77,11 @@ def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
     """Place and unit of every column."""
     found: dict[str, tuple[int, str]] = {}
     for i, cell in enumerate(head):
-        match = _HEAD.fullmatch(cell.lower().strip())
-        name = match.group(1) if match else cell
+        match = _HEAD.fullmatch(cell.strip())
+        name = match.group(1).lower() if match else cell
         if name not in COLUMNS:
             raise InputError("is not a column of such a table", element=source, key=cell, remedy=nearest(name, COLUMNS))
-        given = _HEAD.fullmatch(cell.strip().replace(cell.strip()[: len(name)], name, 1))
-        unit = (given.group(2) if given else None) or ""
+        unit = (match.group(2) if match else None) or ""
         if not unit and COLUMNS[name] is not RATIO:
             remedy = f'write "{name} [{_usual(COLUMNS[name])}]" in the first line'
             raise InputError("has no unit", element=source, key=name, remedy=remedy)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from math import cos
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -18,11 +18,14 @@ from trunnion.driveline.quantities import (
     MeshDamping,
     MeshStiffness,
 )
-from trunnion.driveline.record import Record, listed
+from trunnion.driveline.record import Record, listed, one_of
 from trunnion.errors import InputError
 
-DampingLaw = Literal["always", "in contact", "never pulling"]
 LAWS = ("always", "in contact", "never pulling")
+DampingLaw = Annotated[
+    Literal["always", "in contact", "never pulling"],
+    BeforeValidator(one_of(LAWS, "is unknown", 'write one of "always", "in contact", "never pulling"')),
+]
 COARSEST, WIDEST = 0.2, 0.1
 """Modules [m] and shares of the smaller base radius beyond which a unit was probably left out."""
 STEEPEST = 45 * DEGREE
@@ -124,14 +127,6 @@ class GearPair(Element):
     stiffness_variation: Annotated[
         tuple[StiffnessVariation, ...], BeforeValidator(listed(StiffnessVariation, "harmonic"))
     ] = Field(default=(), description="harmonics of the mesh stiffness over its mean")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _law_in_words(cls, data: Any) -> Any:
-        if isinstance(data, dict) and "damping_law" in data and data["damping_law"] not in LAWS:
-            words = ", ".join(f'"{law}"' for law in LAWS)
-            raise InputError("is unknown", key="damping_law", value=data["damping_law"], remedy=f"write one of {words}")
-        return data
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

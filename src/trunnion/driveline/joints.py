@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, positive
 from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Length
+from trunnion.driveline.record import one_of
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,16 +121,10 @@ class TripodJoint(Joint):
     radius: Length = Field(description="of the rollers about the spider's centre")
     length: Length = Field(description="of the shaft that carries the spider, up to the joint at its far end")
     plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
-    spider: Literal["input", "output"] = Field(
-        default="output", description='side the spider is on: "input" or "output"'
-    )
-
-    @field_validator("spider", mode="before")
-    @classmethod
-    def _a_side(cls, side: object) -> object:
-        if side in ("input", "output"):
-            return side
-        raise InputError("is not a side of the joint", value=side, remedy='write "input" or "output"')
+    spider: Annotated[
+        Literal["input", "output"],
+        BeforeValidator(one_of(("input", "output"), "is not a side of the joint", 'write "input" or "output"')),
+    ] = Field(default="output", description='side the spider is on: "input" or "output"')
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.quantities import ANGLE, DEGREE, LENGTH, Kind, parse
 from trunnion.driveline.shafts import Shaft
@@ -98,14 +98,9 @@ class Layout:
                 value=list(offsets.ravel()),
                 remedy=f"give {n - 1}",
             )
-        elements: list[Element] = [ConstantSpeed(), given[0]]
-        for j in range(n):
-            elements.append(HookeJoint(angle=float(self.angles[j]), plane=float(self.planes[j])))
-            shaft = given[j + 1]
-            if j < n - 1:
-                shaft = shaft.but(fork_offset=float(offsets[j]))
-            elements.append(shaft)
-        return Driveline([*elements, Disk(inertia=inertia, load_torque=load_torque)])
+        joints = [HookeJoint(angle=float(a), plane=float(p)) for a, p in zip(self.angles, self.planes, strict=True)]
+        between = [shaft.but(fork_offset=float(x)) for shaft, x in zip(given[1:-1], offsets, strict=True)]
+        return jointed(joints, [given[0], *between, given[-1]], Disk(inertia=inertia, load_torque=load_torque))
 
     def shaft_lengths(self, line: Driveline) -> dict[str, float]:
         """Length [m] of each shaft between two joints by its name in ``line``, for ``kinetostatics``."""
@@ -128,6 +123,12 @@ class Layout:
         return "\n".join(rows)
 
     __repr__ = __str__
+
+
+def jointed(joints: Sequence[HookeJoint], shafts: Sequence[Shaft], load: Disk, name: str | None = None) -> Driveline:
+    """A driven line of a shaft before, between and behind its joints, and a load at its end."""
+    bends = [element for pair in zip(joints, shafts[1:], strict=True) for element in pair]
+    return Driveline([ConstantSpeed(), shafts[0], *bends, load], name=name)
 
 
 def layout(

@@ -33,8 +33,7 @@ from trunnion.driveline.quantities import (
     Torque,
     shown,
 )
-from trunnion.driveline.record import listed
-from trunnion.driveline.refusals import nearest
+from trunnion.driveline.record import listed, one_of
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
@@ -68,11 +67,7 @@ _TUBE = {"max_stress": ("outer_diameter",), "ship_shaft": ("outer_diameter", "te
 """What of a shaft a limit needs besides."""
 
 
-def _ship_shaft(value: object) -> object:
-    if value is None or (isinstance(value, str) and value in SHIP_SHAFTS):
-        return value
-    remedy = nearest(value, SHIP_SHAFTS) if isinstance(value, str) else 'write "flange", say'
-    raise InputError("is not a design feature of a ship's shaft", value=value, remedy=remedy)
+_FEATURES = one_of(SHIP_SHAFTS, "is not a design feature of a ship's shaft", 'write "flange", say', near=True)
 
 
 class Limit(Addressed):
@@ -113,7 +108,7 @@ class Limit(Addressed):
     margin: Dimensionless = Field(default=0.0, description="share of each limit here that must stay free")
     temperature_factor: Dimensionless = Field(default=1.0, description="S_t of a coupling's ratings")
     starting_factor: Dimensionless = Field(default=1.0, description="S_z of a coupling's ratings")
-    ship_shaft: Annotated[str | None, BeforeValidator(_ship_shaft)] = Field(
+    ship_shaft: Annotated[str, BeforeValidator(_FEATURES)] | None = Field(
         default=None,
         json_schema_extra={"enum": list(SHIP_SHAFTS)},
         description="judge the shaft by IACS UR M68, as one with this design feature",

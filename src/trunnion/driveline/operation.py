@@ -20,7 +20,7 @@ from trunnion.driveline.quantities import (
     json_schema_of,
     parse,
 )
-from trunnion.driveline.record import Name, Named, Record, by_name
+from trunnion.driveline.record import Name, Named, Record, by_name, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.schedules import Schedule
 from trunnion.errors import InputError
@@ -50,13 +50,6 @@ _READ_SPEEDS, _SPEEDS_SCHEMA = _range_of(SPEED, '["300 rpm", "2400 rpm"]')
 _READ_ANGLES, _ANGLES_SCHEMA = _range_of(ANGLE, '["0 deg", "15 deg"]')
 SpeedRange = Annotated[tuple[Speed, Speed], _READ_SPEEDS, _SPEEDS_SCHEMA]
 AngleRange = Annotated[tuple[Angle, Angle], _READ_ANGLES, _ANGLES_SCHEMA]
-
-
-def _speed_unit(value: object) -> object:
-    if value not in SPEED_UNITS:
-        remedy = nearest(value, SPEED_UNITS) if isinstance(value, str) else 'write "rpm"'
-        raise InputError("is not a speed unit", value=value, remedy=remedy)
-    return value
 
 
 _TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }')
@@ -99,9 +92,10 @@ class Operation(Record):
     speed: Speed | None = Field(default=None, description="input speed")
     speed_range: SpeedRange | None = Field(default=None, description="lowest and highest input speed")
     angle_range: AngleRange | None = Field(default=None, description="smallest and largest joint angle of interest")
-    speed_unit: Annotated[Literal["rpm", "Hz", "rad/s"], BeforeValidator(_speed_unit)] = Field(
-        default="rpm", description="unit that speeds are printed in"
-    )
+    speed_unit: Annotated[
+        Literal["rpm", "Hz", "rad/s"],
+        BeforeValidator(one_of(SPEED_UNITS, "is not a speed unit", 'write "rpm"', near=True)),
+    ] = Field(default="rpm", description="unit that speeds are printed in")
     load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = Field(default=(), description="angles over travel and torques over speed")
 

@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from trunnion.driveline.quantities import Kind, Quantity
-from trunnion.driveline.refusals import numbered, refuse
+from trunnion.driveline.refusals import nearest, numbered, refuse
 from trunnion.errors import InputError, all_made
 
 LONGEST_NAME = 80
@@ -134,6 +134,19 @@ def as_tuple(members: str, remedy: str) -> Callable[[object], object]:
         if isinstance(value, str | dict) or not isinstance(value, Iterable):
             raise InputError(f"is not a list of {members}", value=value, remedy=remedy)
         return tuple(value)
+
+    return read
+
+
+def one_of(words: Iterable[str], problem: str, remedy: str, near: bool = False) -> Callable[[object], object]:
+    """Reads one of ``words``, or else says the ``problem``; where ``near``, another word is answered by the nearest."""
+    known = tuple(words)
+
+    def read(value: object) -> object:
+        if value in known:
+            return value
+        offered = nearest(value, known) if near and isinstance(value, str) else remedy
+        raise InputError(problem, value=value, remedy=offered)
 
     return read
 

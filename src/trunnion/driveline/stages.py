@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, not_negative
 from trunnion.driveline.quantities import ANGLE, Angle, Damping, Stiffness, parse
-from trunnion.driveline.record import as_tuple
+from trunnion.driveline.record import as_tuple, one_of
 from trunnion.errors import InputError
 
 LAWS = ("always", "in contact")
@@ -52,9 +52,10 @@ class PiecewiseShaft(Element):
         description="below, between and above the breakpoints"
     )
     damping: Damping = Field(default=0.0, description="viscous damping")
-    damping_law: Literal["always", "in contact"] = Field(
-        default="always", description='when it damps: "always", or "in contact", not in the softest stage'
-    )
+    damping_law: Annotated[
+        Literal["always", "in contact"],
+        BeforeValidator(one_of(LAWS, "is unknown", 'write "always" or "in contact"')),
+    ] = Field(default="always", description='when it damps: "always", or "in contact", not in the softest stage')
     fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
 
     @classmethod
@@ -70,14 +71,6 @@ class PiecewiseShaft(Element):
         slopes = tuple(slope for slope, _ in found)
         both = (*(-e for e in reversed(ends)), *ends)
         return cls(breakpoints=both, stiffnesses=(*reversed(slopes[1:]), *slopes), **more)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _law_in_words(cls, data: Any) -> Any:
-        if isinstance(data, dict) and "damping_law" in data and data["damping_law"] not in LAWS:
-            remedy = 'write "always" or "in contact"'
-            raise InputError("is unknown", key="damping_law", value=data["damping_law"], remedy=remedy)
-        return data
 
     def doubts(self) -> Iterator[Doubt]:
         widest = max(self.breakpoints, key=abs, default=0.0)

@@ -9,14 +9,13 @@ from trunnion.analyses.assessment.bending import bending
 from trunnion.analyses.assessment.check import Check, in_order, worst
 from trunnion.analyses.assessment.couplings import coupling_ratings
 from trunnion.analyses.assessment.gear_hammer import gear_hammer
-from trunnion.analyses.assessment.joint_angles import joint_angles
+from trunnion.analyses.assessment.joint_angles import joint_angles, uniformity
 from trunnion.analyses.assessment.own_limits import own_limits
 from trunnion.analyses.assessment.parametric import parametric_stability
 from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.ship_shafts import ship_shafts
 from trunnion.analyses.assessment.subject import POINTS, Case, Subject, cases_of
-from trunnion.analyses.assessment.uniformity import uniformity
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.driveline.arguments import numbers
 from trunnion.driveline.driveline import Driveline

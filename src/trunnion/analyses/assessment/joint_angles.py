@@ -1,9 +1,10 @@
-"""Angles of propeller-shaft joints, after the makers' rules of practice.
+"""Angles of propeller-shaft joints and how evenly the line turns, after the makers' rules of practice.
 
     every working angle at least 0.5°                           so that needle bearings turn
     up to 3° without concern; at most 3.2° at 5000, 3.7° at 4500, 4.2° at 4000, 5.0° at 3500 rpm
     two joints: both angles equal within 1°
     angular acceleration behind the last joint ≤ 300 rad/s², of a shaft between joints ≤ 1000 rad/s²
+    U = (largest − smallest output speed)/mean ≤ 0.0027     (Elbe), the irregularity of one joint of 2.98°, sin β tan β
 
 The angles are those of Spicer's operating-angle calculator; below 3500 rpm the acceleration judges instead. The two
 accelerations are usual acceptance values. All are taken at the highest speed of the range.
@@ -19,6 +20,7 @@ from trunnion.analyses.assessment.check import Check, Rule, Status, above, judge
 from trunnion.analyses.assessment.compared import guideline
 from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.kinetostatics import Kinetostatics
+from trunnion.analyses.kinetostatics.limits import EVEN_RUNNING
 from trunnion.analyses.kinetostatics.measures import ROUNDING, largest
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.quantities import DEGREE, RPM
@@ -33,6 +35,7 @@ LEAST = Rule("β ≥ 0.5°", SPICER, "typical")
 MOST = Rule("β ≤ 5.0° at 3500, 4.2° at 4000, 3.7° at 4500, 3.2° at 5000 rpm; 3° always", SPICER, "typical")
 EQUAL = Rule("|β₁ − β₂| ≤ 1°", SPICER, "typical")
 SHAKES = Rule("acceleration behind the last joint ≤ 300 rad/s²", "usual acceptance", "typical")
+EVEN = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical")
 TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", "usual acceptance", "typical")
 
 
@@ -104,3 +107,20 @@ def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit:
     value = value if value > ROUNDING * subject.high**2 else 0.0
     numbers = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}"
     return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
+
+
+def uniformity(subject: Subject, turn: Kinetostatics | None) -> Iterator[Check]:
+    """U at the end of every branch, shafts rigid."""
+    if not hooke_joints(subject.line):
+        yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the line has no Hooke's joint")
+        return
+    if turn is None:
+        yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the output is prescribed")
+        return
+    for branch in turn.branches:
+        end = turn.on_branch(branch)
+        u = end.irregularity
+        angle = end.equivalent_angle / DEGREE
+        numbers = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg"
+        title = "uniformity" if len(turn.branches) == 1 else f"uniformity of {branch}"
+        yield guideline(title, EVEN, (u, EVEN_RUNNING, "1"), numbers, inputs="rigid shafts")
