@@ -22,7 +22,7 @@ from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
-from trunnion.equations.loads import by_station, mean_load, static_torque, station_loads
+from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
@@ -227,13 +227,11 @@ def _stiffness(stiffness: list[Array]) -> Array:
 
 def _station_inertia(assembly: Assembly, table: Array) -> Array:
     topo, column = assembly.topology, assembly.packed.column
-    given = {e: c for _, e in topo.disks if (c := column(e, "inertia")) >= 0}
-    at = [station for station, element in topo.disks if element in given]
-    inertia = by_station(topo, at, table, list(given.values()))
+    inertia = np.zeros((len(table), len(topo.stations)))
     for station, element in topo.disks:
-        if element in given:
-            continue
-        if column(element, "mass") >= 0:
+        if (given := column(element, "inertia")) >= 0:
+            inertia[:, station] += table[:, given]
+        elif column(element, "mass") >= 0:
             inertia[:, station] += table[:, column(element, "mass")] * table[:, column(element, "radius")] ** 2
         else:
             keys = ("outer_diameter", "inner_diameter", "thickness", "density")

@@ -45,19 +45,10 @@ def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
 
 def _of_disks(topo: Topology, column: Column, table: Array, key: str) -> Array:
     """One number of the disks added up by station (case, station)."""
-    stations = [station for station, _ in topo.disks]
-    return by_station(topo, stations, table, [column(element, key) for _, element in topo.disks])
-
-
-def by_station(topo: Topology, stations: list[int], table: Array, columns: list[int]) -> Array:
-    """Numbers of ``table`` (case, column) in the given columns, added up by station (case, station)."""
-    found = np.zeros((len(table), len(topo.stations)))
-    if len(set(stations)) == len(stations):
-        found[:, stations] = table[:, columns]
-    else:
-        for station, place in zip(stations, columns, strict=True):
-            found[:, station] += table[:, place]
-    return found
+    found = np.zeros((len(topo.stations), len(table)))
+    columns = [column(element, key) for _, element in topo.disks]
+    np.add.at(found, [station for station, _ in topo.disks], table[:, columns].T)
+    return np.ascontiguousarray(found.T)
 
 
 def accelerating_loads(

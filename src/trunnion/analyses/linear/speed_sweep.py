@@ -24,7 +24,6 @@ from trunnion.results.declared import Described, Held, axis, fields_over, over, 
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
-from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +43,7 @@ class SpeedSweep(Described):
     to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
     stays within the range in which the linear response can be trusted; cut_off (speed,): size of the
     outermost harmonics kept, of the largest torque; ``findings`` say what of the line is left out.
-    ``judged`` gives the stability of the motion at every speed, None where it is not judged.
+    ``judged`` gives the stability of the motion at every speed.
     """
 
     speed: Array
@@ -54,15 +53,15 @@ class SpeedSweep(Described):
     joint_rotation: Array
     cut_off: Array
     shafts: tuple[str, ...]
-    findings: tuple[Finding, ...] = ()
-    unit: str = "rad/s"
-    judged: Callable[[], Codes] | None = None
-    lossy: bool = False
+    findings: tuple[Finding, ...]
+    unit: str
+    judged: Callable[[], Codes]
+    lossy: bool
 
     @cached_property
     def verdict(self) -> Codes:
         """Stability of the motion (speed,), codes of ``Verdict``; FAILED where it is not judged."""
-        return np.full(len(self.speed), Verdict.FAILED, dtype=np.int8) if self.judged is None else self.judged()
+        return self.judged()
 
     @property
     def linear(self) -> Flags:

@@ -11,7 +11,6 @@ sidebands turn its sign, which equations in time cannot do.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -33,28 +32,6 @@ ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
 
 
-@dataclass(frozen=True)
-class Nodes:
-    """Speeds at which the equations are written out, and ``weights`` (case, node) that carry them to every case.
-
-    None where each case is its own node.
-    """
-
-    speed: Array
-    weights: Array | None
-
-    def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Values (node, …) of second degree in the speed, at every case (case, …)."""
-        if self.weights is None:
-            return values
-        flat = np.ascontiguousarray(values).reshape(len(values), -1)
-        if np.iscomplexobj(flat):  # weights are real: half the multiplications
-            found = (self.weights @ flat.view(float)).view(complex)
-        else:
-            found = self.weights @ flat
-        return np.asarray(found.reshape(-1, *values.shape[1:]))
-
-
 def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
     """Three speeds (3,) that stand for all where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
     None where each case has to stand for itself."""
@@ -67,12 +44,25 @@ def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
     return np.array([low, (low + high) / 2, high])
 
 
-def nodes_at(few: Array | None, speed: Array) -> Nodes:
-    """What carries the equations at ``few`` speeds, or each by itself, to those of ``speed`` (case,)."""
+def weights_at(few: Array | None, speed: Array) -> Array | None:
+    """What carries the equations at ``few`` speeds to those of ``speed`` (case,): weights (case, node); None where each
+    case stands for itself."""
     if few is None:
-        return Nodes(speed, None)
+        return None
     a, b, c = (speed[:, None] - few).T / (few[-1] - few[0])
-    return Nodes(few, np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1))
+    return np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1)
+
+
+def carried(weights: Array | None, values: NDArray[Any]) -> NDArray[Any]:
+    """Values (node, …) of second degree in the speed, at every case (case, …)."""
+    if weights is None:
+        return values
+    flat = np.ascontiguousarray(values).reshape(len(values), -1)
+    if np.iscomplexobj(flat):  # weights are real: half the multiplications
+        found = (weights @ flat.view(float)).view(complex)
+    else:
+        found = weights @ flat
+    return np.asarray(found.reshape(-1, *values.shape[1:]))
 
 
 class HillBlocks:
@@ -102,8 +92,8 @@ class HillBlocks:
         parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
         self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
 
-    def solve(self, nodes: Nodes, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
-        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n), of the cases that ``nodes`` carry to; ``carrier``
+    def solve(self, weights: Array | None, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
+        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n), of the cases that ``weights`` carry to; ``carrier``
         (node,) is ω₀ [rad/s].
 
         Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
@@ -119,7 +109,7 @@ class HillBlocks:
         if self.topo.free and not carrier.any():
             self._hold(matrix, np.flatnonzero(harmonics == 0))
         if not self.linearised:
-            return _with_rim(matrix, rim, nodes.everywhere(right), nodes)
+            return _with_rim(matrix, rim, carried(weights, right), weights)
         first = _with_rim(matrix[:1], rim, right[:1])
         rest = right - _times(matrix, rim, first)
         size = np.abs(right).max() + np.abs(matrix[0]).max() * np.abs(first).max()
@@ -151,26 +141,22 @@ class HillBlocks:
 
 
 def _with_rim(
-    matrix: Complex, rim: Flags, right: Complex, nodes: Nodes | None = None, *, bounded: bool = True
+    matrix: Complex, rim: Flags, right: Complex, weights: Array | None = None, *, bounded: bool = True
 ) -> Complex:
-    """X (case, h, n) of matrices (node, h, n, h, n), which are those of the cases without ``nodes``; harmonics on the
+    """X (case, h, n) of matrices (node, h, n, h, n), which are those of the cases without ``weights``; harmonics on the
     rim by their own diagonal blocks; ``bounded`` as of ``_solve``."""
     cases, count, n = right.shape
     inner = np.flatnonzero(~rim)
     inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
     size = len(inner) * n
     x = np.zeros((cases, count, n), dtype=complex)
-    whole = _carried(nodes, inside.reshape(-1, size, size))
+    whole = carried(weights, inside.reshape(-1, size, size))
     x[:, inner] = _solve(whole, right[:, inner].reshape(cases, size), bounded=bounded).reshape(cases, len(inner), n)
     for end in np.flatnonzero(rim):
-        row = _carried(nodes, np.ascontiguousarray(matrix[:, end]))
+        row = carried(weights, np.ascontiguousarray(matrix[:, end]))
         known = (row.reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
         x[:, end] = _solve(row[:, :, end], right[:, end] - known, bounded=False)
     return x
-
-
-def _carried(nodes: Nodes | None, values: Complex) -> Complex:
-    return values if nodes is None else nodes.everywhere(values)
 
 
 def _times(matrix: Complex, rim: Flags, x: Complex) -> Complex:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from trunnion.analyses.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.analyses.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.analyses.orders.groups import OWN, Group, groups_of, offsets
-from trunnion.analyses.orders.hill import HillBlocks, few_nodes, nodes_at
+from trunnion.analyses.orders.hill import HillBlocks, carried, few_nodes, weights_at
 from trunnion.analyses.orders.straight import straight_about_first, straight_response
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.aligned import aligned_matrices
@@ -80,15 +80,12 @@ def order_spectrum(
         assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough, motions
     )
     parts: list[tuple[OrderSum, Array]] = []
-    done = 0
-    while done < len(speed):
-        chunk = case.numbers[done : done + case.batch]
-        parts.append(case.solved(chunk))
-        done += len(chunk)
-        if len(parts) == 1:
+    for done in range(0, len(speed), case.batch):
+        parts.append(case.solved(case.numbers[done : done + case.batch]))
+        if not done:
             _require_room(assembly, parts[0][0], len(speed))
         if progress:
-            progress(done / len(speed))
+            progress(min(done + case.batch, len(speed)) / len(speed))
     channels = channels_of(assembly.topology)
     keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
     amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
@@ -277,7 +274,7 @@ class _Case:
 
     def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
         topo, speed = self.topo, cases[:, 0]
-        nodes, out = nodes_at(self.few, speed), self._written(reach, cases)
+        weights, out = weights_at(self.few, speed), self._written(reach, cases)
         every = self.springs if self.few is not None else out.co
         alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
         ratio, relative, wave = (part[alike] for part in (out.matrices.ratio, out.base.relative, out.matrices.wave))
@@ -290,10 +287,10 @@ class _Case:
             right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
             if group.own:
                 right += self._harmonics(out.matrices.forcing, h)
-            least = np.maximum(least, 1e-6 * np.abs(nodes.everywhere(right)).max(axis=(1, 2)))
-            x = out.blocks.solve(nodes, carrier, h, rim, right)
+            least = np.maximum(least, 1e-6 * np.abs(carried(weights, right)).max(axis=(1, 2)))
+            x = out.blocks.solve(weights, carrier, h, rim, right)
             seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
-            self._gather(total, group, h, seen, nodes.everywhere(error), nodes.everywhere(nu), every, wave)
+            self._gather(total, group, h, seen, carried(weights, error), carried(weights, nu), every, wave)
             last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
         self._add_base(total, out.base.rotation[alike], max(out.layers))
         self._add_static(total, every)

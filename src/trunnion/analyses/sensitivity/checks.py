@@ -22,7 +22,7 @@ from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.subject import Case, Subject, cases_of
 from trunnion.analyses.orders.response import response_of_spectrum
 from trunnion.analyses.sensitivity.differences import slope
-from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
 from trunnion.analyses.sensitivity.growth import radius_slope
 from trunnion.analyses.sensitivity.responses import SpectrumSlope, spectrum_slope
 from trunnion.arrays import Array
@@ -71,10 +71,8 @@ def check_slopes(
         else:
             here[c] = values.here(case, float(speeds[c]), check)
             exact[c] = values.exact(case, check)
-            for d, one in enumerate(directions):
-                found = values.slope(case, float(speeds[c]), check, one)
-                if found is not None:
-                    slopes[c, :, d], errors[c, :, d] = (part / one.size for part in found)
+            look = partial(values.slope, case, float(speeds[c]), check)
+            slopes[c], errors[c] = along_each(directions, look, (2,))
         if progress:
             progress((c + 1) / len(checks))
     return CheckSlopes(slopes, errors, speeds, here, tuple(exact), tuple(refused))

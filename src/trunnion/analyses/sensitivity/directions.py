@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -94,6 +94,24 @@ def _usual(assembly: Assembly, unit: str) -> float:
         "kg*m^2": inertia,
         "m": 1e-3,
     }.get(unit, 1.0)
+
+
+def along_each(
+    directions: Sequence[Direction],
+    look: Callable[[Direction], tuple[Array, Array] | None],
+    shape: tuple[int, ...],
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Array, Array]:
+    """Derivatives (…, direction) per unit of every direction and their errors, of what ``look`` finds of ``shape`` per
+    share of its size; NaN where it finds none."""
+    found = np.full((2, *shape, len(directions)), np.nan)
+    for d, one in enumerate(directions):
+        both = look(one)
+        if both is not None:
+            found[..., d] = np.array(both) / one.size
+        if progress:
+            progress((d + 1) / len(directions))
+    return found[0], found[1]
 
 
 class Neighbourhood:

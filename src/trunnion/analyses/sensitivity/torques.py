@@ -16,7 +16,7 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.totals import extremes_at
 from trunnion.analyses.sensitivity.differences import slope
-from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours
+from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
 from trunnion.analyses.sensitivity.responses import spectrum_slope
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
@@ -35,24 +35,23 @@ def exact_torque_slopes(
 ) -> tuple[Array, Array, Array]:
     """Peak and vibratory torque (2, speed, spring) [N m], their derivatives (…, direction) and errors, through the
     equations of the response; NaN where no line lies beside."""
-    springs = len(near.assembly.topology.compliances)
-    here = np.full((2, len(speeds), springs), np.nan)
-    found, errors = np.full((*here.shape, len(directions)), np.nan), np.full((*here.shape, len(directions)), np.nan)
+    here = np.full((2, len(speeds), len(near.assembly.topology.compliances)), np.nan)
+    found, errors = np.full((2, *here.shape, len(directions)), np.nan)
     for v, speed in enumerate(speeds.tolist()):
-        here[:, v] = torques(np.array([speed]), near.assembly)[:, 0]
-        every = [spectrum_slope(near, speed, one) for one in directions]
-        pace = max((around.pace for around in every if around is not None), default=0.0)
-        for d, (one, around) in enumerate(zip(directions, every, strict=True)):
-            beside = around is None or all(lines.line(one, side * around.step) is None for side in (1, -1))
-            if around is None or beside:
-                both = slope(partial(_beside, partial(torques, np.array([speed])), lines, here[:, [v]], one))
-                both = both and (both[0][:, 0], both[1][:, 0])
-            else:
-                both = around.slope(lambda share, around=around: _extremes(around.moved(share)), pace)  # type: ignore[misc]
-            if both is not None:
-                found[:, v, :, d], errors[:, v, :, d] = both[0] / one.size, both[1] / one.size
-            if progress:
-                progress((v + (d + 1) / len(directions)) / len(speeds))
+        values = partial(torques, speeds[[v]])
+        here[:, v] = values(near.assembly)[:, 0]
+        every = {one.label: spectrum_slope(near, speed, one) for one in directions}
+        pace = max((around.pace for around in every.values() if around is not None), default=0.0)
+
+        def look(one: Direction, v=v, values=values, every=every, pace=pace) -> tuple[Array, Array] | None:  # type: ignore[no-untyped-def]
+            around = every[one.label]
+            if around is None or all(lines.line(one, side * around.step) is None for side in (1, -1)):
+                both = slope(partial(_beside, values, lines, here[:, [v]], one))
+                return both and (both[0][:, 0], both[1][:, 0])
+            return around.slope(lambda share: _extremes(around.moved(share)), pace)
+
+        tell = progress and (lambda share, v=v: progress((v + share) / len(speeds)))  # type: ignore[misc]
+        found[:, v], errors[:, v] = along_each(directions, look, (2, here.shape[2]), tell)
     return here, found, errors
 
 
@@ -79,14 +78,7 @@ def slopes(
 ) -> tuple[Array, Array]:
     """Derivatives (…, direction) of ``values(line)`` and their errors; NaN where lines beside it are refused."""
     here = values(near.assembly.line)
-    found, errors = np.full((*here.shape, len(directions)), np.nan), np.full((*here.shape, len(directions)), np.nan)
-    for d, one in enumerate(directions):
-        both = slope(partial(_beside, values, near, here, one))
-        if both is not None:
-            found[..., d], errors[..., d] = both[0] / one.size, both[1] / one.size
-        if progress:
-            progress((d + 1) / len(directions))
-    return found, errors
+    return along_each(directions, lambda one: slope(partial(_beside, values, near, here, one)), here.shape, progress)
 
 
 def _beside(values: Values, near: Neighbours, here: Array, one: Direction, share: float) -> Array | None:
