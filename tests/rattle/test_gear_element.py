@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from line_energy import energy
 from typer.testing import CliRunner
 
 import trunnion as tn
@@ -301,7 +302,7 @@ def test_energy_is_conserved_through_a_geared_line() -> None:
     start = np.array([0.01, -0.02, 0.015, 0.03, 3.0, -2.0, 1.0, 4.0])
     run = simulate_system(prepared.system, 0.3, start=start, tolerance=1e-12)
     times = np.linspace(0, 0.3, 60)
-    kinetic, potential = prepared.energy(prepared.system, times, run.at(times))
+    kinetic, potential = energy(prepared, prepared.system, times, run.at(times))
     assert potential.max() > 5.0 and run.outcome.ok
     np.testing.assert_allclose(kinetic + potential, kinetic[0] + potential[0], rtol=1e-10)
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
@@ -24,8 +24,7 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
-from trunnion.equations.stage_laws import has_stages, stage_law
-from trunnion.equations.topology import LONGEST_PERIOD, Link, common_rate
+from trunnion.equations.topology import LONGEST_PERIOD, common_rate
 from trunnion.errors import InputError
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
@@ -55,14 +54,40 @@ class Course:
     angle: float = 0.0
 
 
-@dataclass(frozen=True)
-class LineMotion:
+class LineMotion(NamedTuple):
     """Twist [rad] and torque [N m] of every shaft, (time, shaft), positive with the twist; and the deviation of
     every station from its uniform rotation [rad], (time, station)."""
 
     twist: Array
     torque: Array
     rotation: Array
+
+
+class HarmonicTorque(NamedTuple):
+    """One harmonic torque: the station and place among the elements of its disk, its number there, the disk's name, and
+    what the description says of it."""
+
+    station: int
+    element: int
+    number: int
+    name: str
+    law: Excitation
+
+    @property
+    def key(self) -> str:
+        """What the line calls it."""
+        return f"excitation {self.number}"
+
+    def at(self, course: Course, row: Array) -> Array:
+        """The packed numbers (1, column) at the speed that it has its amplitude at."""
+        if not self.law.varies:
+            return row[None]
+        if course.acceleration:
+            raise InputError(
+                "has an amplitude that depends on the speed, which changes here", element=self.name, key="excitation",
+                remedy="give it an amplitude, or use tn.order_response",
+            )  # fmt: skip
+        return np.concatenate([[course.speed], row[1:]])[None]
 
 
 @dataclass(frozen=True)
@@ -89,15 +114,23 @@ class LineSystem:
         return tuple(" + ".join(names[i] for i in c.shafts) for c in self.assembly.topology.compliances)
 
     @cached_property
+    def harmonics(self) -> tuple[HarmonicTorque, ...]:
+        """The harmonic torques of all disks."""
+        names, elements = self.assembly.line.names, self.assembly.line.elements
+        return tuple(
+            HarmonicTorque(station, i, h, names[i], harmonic)
+            for station, i in self.assembly.topology.disks
+            for h, harmonic in enumerate(getattr(elements[i], "excitation", ()), start=1)
+        )
+
+    @cached_property
     def period_turns(self) -> Fraction | None:
         """Period of everything that depends on the input's rotation, in turns; None where there is none."""
         topo = self.assembly.topology
         rates = [*topo.rates, *(rate for mesh in topo.meshes for rate in mesh.rates)]
-        stations = {element: s for s, element in topo.disks}
-        for i, element in enumerate(self.assembly.line.elements):
-            for harmonic in element.excitation if isinstance(element, Disk) else ():
-                if harmonic.order is not None:
-                    rates.append(Fraction(str(harmonic.order)) * abs(topo.speed_ratio[stations[i]]))
+        for one in self.harmonics:
+            if one.law.order is not None:
+                rates.append(Fraction(str(one.law.order)) * abs(topo.speed_ratio[one.station]))
         turns = 1 / common_rate(rates) if any(rates) else Fraction(1, 2)
         return turns if turns <= LONGEST_PERIOD else None
 
@@ -148,41 +181,23 @@ class LineSystem:
             period *= ratio.denominator
         return period
 
-    @cached_property
-    def time_harmonics(self) -> tuple[str, ...]:
+    @property
+    def time_harmonics(self) -> list[str]:
         """Parameters that are frequencies of torques harmonic in time."""
-        names, elements = self.assembly.line.names, self.assembly.line.elements
-        return tuple(
-            f"{name}.excitation {h} frequency"
-            for name, element in zip(names, elements, strict=True)
-            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1)
-            if harmonic.frequency is not None
-        )
+        return [f"{one.name}.{one.key} frequency" for one in self.harmonics if one.law.frequency is not None]
 
     @property
     def _turning(self) -> bool:
         """Whether anything depends on the input's rotation."""
         topo = self.assembly.topology
-        disks = [e for e in self.assembly.line.elements if isinstance(e, Disk)]
-        shaken = any(h.order is not None for d in disks for h in d.excitation)
-        return bool(topo.joints or topo.meshes) or shaken
+        return bool(topo.joints or topo.meshes) or any(one.law.order is not None for one in self.harmonics)
 
-    def _numbers(self, values: Mapping[str, float]) -> Array:
-        return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]))
-
-    @property
-    def excited(self) -> bool:
-        """Whether any disk carries a harmonic torque."""
-        return any(isinstance(e, Disk) and e.excitation for e in self.assembly.line.elements)
+    def _numbers(self, values: Mapping[str, float], drive: float = 0.0) -> Array:
+        return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]), drive=drive)
 
     def with_drive(self, torque: float) -> System:
         """The system with ``torque`` [N m at the input] more from its drives than balances the loads."""
-
-        def numbers(values: Mapping[str, float]) -> Array:
-            row = np.array([values[label] for label in self.assembly.packed.labels])
-            return self.numbers(row, drive=torque)
-
-        return replace(self.system, numbers_of=numbers)
+        return self.system.with_fields(numbers_of=partial(self._numbers, drive=torque))
 
     def untwisted(self, table: Array) -> LineCoefficients:
         """Coefficients about zero twist: what the nonlinear equations stand on."""
@@ -202,85 +217,102 @@ class LineSystem:
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
         number ``case``, where they are at hand.
         """
-        assembly, topo = self.assembly, self.assembly.topology
-        table = row[None]
-        co = known or self.untwisted(table)
-        ratios, mean = topo.ratio_values.tolist(), topo.mean_speeds
-        load, by_speed, by_square = co.load[case], np.zeros(len(topo.stations)), np.zeros(len(topo.stations))
-        if course is not None and topo.free and given_shares(topo, assembly.packed.column, table).any():
-            load, by_speed, by_square = accelerating_loads(
-                topo, assembly.packed.column, row, co.inertia[case], course.acceleration
-            )
-        course, core = course or Course(float(row[0])), kernel()
-        if drive:
-            share = drive_places(topo, assembly.packed.column, table)
-            load = load + drive_torques(topo, share, np.array([drive]))[0]
-        stations = self._stations.copy()
-        stations[:, core.INERTIA], sense_of = co.inertia[case], np.sign(mean)
-        for place, part in ((core.LOAD, load), (core.BY_SPEED, by_speed), (core.BY_SQUARE, by_square)):
-            stations[:, place] = part * sense_of
+        topo, core = self.assembly.topology, kernel()
+        co, on = known or self.untwisted(row[None]), course or Course(float(row[0]))
+        sense, rubbing, laws = (
+            np.sign(topo.mean_speeds),
+            sliders(self.assembly.packed, topo, row),
+            staged_springs(self.assembly, row),
+        )
+        stations, compliances = self._stations.copy(), self._compliances.copy()
+        stations[:, core.INERTIA] = co.inertia[case]
         stations[:, core.VISCOUS], stations[:, core.QUADRATIC] = co.viscous[case], co.quadratic[case]
-        phase, joints = [0.0] * len(topo.stations), dict(zip(topo.joints, co.joints, strict=True))
-        shifts, column = co.shift[case].tolist(), assembly.packed.column
-        for s, station in enumerate(topo.stations):
-            before = phase[station.before] if station.before >= 0 else 0.0
-            if station.link is Link.SHAFT:
-                phase[s] = before + shifts[s]
-            elif station.link is Link.RATIO:
-                phase[s] = before / ratios[s]
-            elif station.link is Link.JOINT:
-                chi = before + shifts[s]
-                stations[s, core.PHASE], phase[s] = chi, chi + joints[s].turned
-        harmonics = []
-        for s, i in topo.disks:
-            element = assembly.line.elements[i]
-            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
-                torque = harmonic_torque(
-                    assembly.packed, topo, s, i, h, _at(course, row, harmonic, assembly.line.names[i])
-                )
-                amplitude, angle = float(np.abs(torque[0])), float(np.angle(torque[0]))
-                place = column(i, f"excitation {h} frequency")
-                frequency = row[place] if place >= 0 else 0.0
-                sense = float(np.sign(mean[s]))
-                order = sense * (harmonic.order or 0.0)
-                harmonics.append([s, sense * amplitude, order, frequency, angle])
-        laws = staged_springs(assembly, row)
-        begin = core.HEAD + stations.size + len(topo.compliances) * core.PER_COMPLIANCE
-        begin += len(harmonics) * core.PER_HARMONIC + len(self.sliders) * core.PER_SLIDER
-        compliances = []
-        for e, c in enumerate(topo.compliances):
-            ends = [c.near, topo.reference[c.far_group]]
-            ends += [topo.coordinate[topo.group_of(c.near)], topo.coordinate[c.far_group]]
-            law = [0.0] * 5
-            if e in laws:
-                law = [begin, laws[e].stride, laws[e].stages, len(laws[e].error), len(laws[e].wave)]
-                begin += laws[e].numbers.size
-            compliances.append([*ends, co.stiffness[case, e], co.damping[case, e], *law])
-        law_numbers = np.concatenate([law.numbers for law in laws.values()] or [np.zeros(0)])
-        for s, joint in joints.items():
-            ripple = _put_joint(core, joint, case, stations[s], begin)
-            law_numbers, begin = np.append(law_numbers, ripple), begin + ripple.size
-        head = [topo.size, len(stations), len(compliances), len(harmonics), float(not topo.free)]
-        rubbing = sliders(assembly.packed, assembly.topology, row)
+        loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
+        for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
+            stations[:, place] = part * sense
+        harmonics = [self._harmonic(one, on, row) for one in self.harmonics]
         strides = slider_strides(laws, len(rubbing))
         friction = [[s.compliance, s.stiffness, s.reach, step] for s, step in zip(rubbing, strides, strict=True)]
-        head += [course.angle, course.speed, course.acceleration, course.since, law_numbers.size, len(rubbing)]
+        # Behind them the laws of springs with stages and of joints that are Fourier series.
+        begin = core.HEAD + stations.size + compliances.size
+        begin += len(harmonics) * core.PER_HARMONIC + len(rubbing) * core.PER_SLIDER
+        behind = []
+        compliances[:, core.STIFFNESS], compliances[:, core.DAMPING] = co.stiffness[case], co.damping[case]
+        for e, law in laws.items():
+            compliances[e, core.LAW :] = begin, law.stride, law.stages, len(law.error), len(law.wave)
+            behind.append(law.numbers)
+            begin += law.numbers.size
+        added = co.shift[case].copy()
+        for s, joint in zip(topo.joints, co.joints, strict=True):
+            stations[s, core.PHASE] = self._carried[s] @ added
+            added[s] += joint.turned
+            behind.append(_put_joint(core, joint, case, stations[s], begin))
+            begin += behind[-1].size
+        head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
+        head += [on.acceleration, on.since, sum(part.size for part in behind), len(rubbing)]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 3 * len(compliances))
-        parts = [np.array(head), stations.ravel(), np.ravel(compliances), np.ravel(harmonics)]
-        parts += [np.ravel(friction), law_numbers, scratch]
+        parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+
+    def _loads(
+        self, row: Array, course: Course | None, drive: float, load: Array, inertia: Array
+    ) -> tuple[Array | float, ...]:
+        """Loads (station,) against the mean sense of rotation: constant, and by the input's speed and its square."""
+        topo, column = self.assembly.topology, self.assembly.packed.column
+        by_speed: Array | float = 0.0
+        by_square: Array | float = 0.0
+        if course is not None and topo.free and given_shares(topo, column, row[None]).any():
+            load, by_speed, by_square = accelerating_loads(topo, column, row, inertia, course.acceleration)
+        if drive:
+            load = load + drive_torques(topo, drive_places(topo, column, row[None]), np.array([drive]))[0]
+        return load, by_speed, by_square
+
+    def _harmonic(self, one: HarmonicTorque, course: Course, row: Array) -> list[float]:
+        """What the right-hand side reads of one harmonic torque."""
+        packed, topo = self.assembly.packed, self.assembly.topology
+        torque = harmonic_torque(packed, topo, one.station, one.element, one.number, one.at(course, row))[0]
+        place, sense = packed.column(one.element, f"{one.key} frequency"), float(np.sign(topo.mean_speeds[one.station]))
+        frequency = float(row[place]) if place >= 0 else 0.0
+        return [
+            one.station, sense * float(np.abs(torque)), sense * (one.law.order or 0.0), frequency,
+            float(np.angle(torque)),
+        ]  # fmt: skip
 
     @cached_property
     def _stations(self) -> Array:
         """What the compiled right-hand side reads of every station, without what depends on the line's numbers."""
         topo, core = self.assembly.topology, kernel()
         stations = np.zeros((len(topo.stations), core.PER_STATION))
-        for s, (station, ratio) in enumerate(zip(topo.stations, topo.ratio_values, strict=True)):
-            out, group = stations[s], station.group
-            out[core.BEFORE], out[core.LINK] = station.before, getattr(core, station.link.name, core.ROOT)
-            out[core.COORDINATE], out[core.REFERENCE] = topo.coordinate[group], topo.reference[group]
-            out[core.MEAN], out[core.OVER] = topo.mean_speeds[s], 1 / ratio
+        for s, station in enumerate(topo.stations):
+            stations[s, core.BEFORE], stations[s, core.LINK] = (
+                station.before,
+                getattr(core, station.link.name, core.ROOT),
+            )
+            stations[s, core.REFERENCE] = topo.reference[station.group]
+        stations[:, core.COORDINATE], stations[:, core.MEAN] = topo.unknown_of, topo.mean_speeds
+        stations[:, core.OVER] = 1 / topo.ratio_values
         return stations
+
+    @cached_property
+    def _compliances(self) -> Array:
+        """The same of every compliance."""
+        topo, core = self.assembly.topology, kernel()
+        compliances = np.zeros((len(topo.compliances), core.PER_COMPLIANCE))
+        for e, c in enumerate(topo.compliances):
+            compliances[e, core.NEAR], compliances[e, core.FAR] = c.near, topo.reference[c.far_group]
+            compliances[e, core.NEAR_COORDINATE] = topo.unknown_of[c.near]
+            compliances[e, core.FAR_COORDINATE] = topo.coordinate[c.far_group]
+        return compliances
+
+    @cached_property
+    def _carried(self) -> Array:
+        """By how much every station turns on with what is added to the rotation of another (station, station)."""
+        topo = self.assembly.topology
+        carried = np.eye(len(topo.stations))
+        for s, station in enumerate(topo.stations):
+            if station.before >= 0:
+                carried[s] += carried[station.before] * (topo.mean_speeds[s] / topo.mean_speeds[station.before])
+        return carried
 
     def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
         """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters)."""
@@ -295,19 +327,6 @@ class LineSystem:
         stages = np.zeros(twist.shape, dtype=np.int64)
         kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, stages)
         return LineMotion(twist, torque, rotation)
-
-    def energy(self, system: System, time: ArrayLike, state: ArrayLike) -> tuple[Array, Array]:
-        """Kinetic and elastic energy [J] along a motion, (time,) each."""
-        t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
-        kinetic, potential = np.empty(len(t)), np.empty(len(t))
-        kernel().energy(t, np.ascontiguousarray(x), system.numbers, kinetic, potential)
-        packed, line = self.assembly.packed, self.assembly.line
-        table = np.array([[system.parameters[label] for label in packed.labels]])
-        for e, compliance in enumerate(self.assembly.topology.compliances):
-            if has_stages(line.elements[compliance.shafts[0]]):
-                law = stage_law(line, compliance.shafts[0], packed.column, table)
-                potential += law.first.energy(self.observe(system, t, x).twist[:, e])
-        return kinetic, potential
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
         """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the
@@ -325,42 +344,19 @@ class LineSystem:
 
     def rest(self) -> Array:
         """The state without twist: every disk where rigid shafts would hold it at t = 0."""
-        return self.rigid(0.0)
-
-    def rigid(self, theta: float) -> Array:
-        """State of the line with rigid shafts, the input standing at ``theta`` [rad]."""
-        topo = self.assembly.topology
-        co = self.assembly.coefficients(self.assembly.table(1, self.speed), statically_twisted=False, free_play=True)
-        base = base_motion(topo, co, np.array([theta]))
-        plain = base_motion(topo, co.straight, np.array([theta]))
-        d = (base.angle - plain.angle)[0, 0, topo.firsts]
-        v = (base.speed - plain.speed)[0, 0, topo.firsts] * self.speed
-        return np.concatenate([d, v, np.zeros(len(self.sliders))])
+        return self._held(self.untwisted(self.assembly.table(1, self.speed)))
 
     def twisted(self) -> Array:
         """State of the line with rigid shafts, each twisted by the torque it carries on average; sliders at rest."""
-        topo, table = self.assembly.topology, self.assembly.table(1, self.speed)
-        plain = self.assembly.coefficients(table, statically_twisted=False, free_play=True)
-        held = self.assembly.coefficients(table, free_play=True)
-        motions = [base_motion(topo, co, np.zeros(1)) for co in (held, plain.straight)]
-        d, v = ((motions[0].angle - motions[1].angle)[0, 0], (motions[0].speed - motions[1].speed)[0, 0])
-        return np.concatenate([d[topo.firsts], v[topo.firsts] * self.speed, np.zeros(len(self.sliders))])
+        return self._held(self.assembly.coefficients(self.assembly.table(1, self.speed), free_play=True))
 
-
-def _at(course: Course, row: Array, harmonic: Excitation, name: str) -> Array:
-    """The packed numbers at the speed that a harmonic has its amplitude at."""
-    if not harmonic.varies:
-        return row[None]
-    if course.acceleration:
-        raise InputError(
-            "has an amplitude that depends on the speed, which changes here",
-            element=name,
-            key="excitation",
-            remedy="give it an amplitude, or use tn.order_response",
-        )
-    table = row[None].copy()
-    table[:, 0] = course.speed
-    return table
+    def _held(self, coefficients: LineCoefficients) -> Array:
+        """State at t = 0 of the line with rigid shafts, twisted as the coefficients say."""
+        topo = self.assembly.topology
+        plain = self.untwisted(self.assembly.table(1, self.speed)).straight
+        held, straight = (base_motion(topo, co, np.zeros(1)) for co in (coefficients, plain))
+        d, v = (held.angle - straight.angle)[0, 0, topo.firsts], (held.speed - straight.speed)[0, 0, topo.firsts]
+        return np.concatenate([d, v * self.speed, np.zeros(len(self.sliders))])
 
 
 def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: int) -> Array:

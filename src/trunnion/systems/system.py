@@ -276,11 +276,19 @@ class System:
         for key, value in changed.items():
             if not math.isfinite(value):
                 raise InputError("must be a finite number", element=self.name, key=key, value=value)
-        # What the two share is checked already: along a branch a system is made for every period that is integrated.
-        made = object.__new__(type(self))
-        made.__dict__.update({name: self.__dict__[name] for name in type(self).__dataclass_fields__})
-        made.__dict__["parameters"] = {**self.parameters, **changed}
+        made = self.with_fields(parameters={**self.parameters, **changed})
         _ = made.forcing_period
+        return made
+
+    def reading(self, numbers: Array) -> System:
+        """The same right-hand side reading ``numbers``, whatever the parameters, and without a period."""
+        return self.with_fields(numbers_of=lambda _: numbers, period=None)
+
+    def with_fields(self, **changes: Any) -> System:
+        """As ``dataclasses.replace``, without checking again: a system is made for every period that is integrated
+        along a branch."""
+        made = object.__new__(type(self))
+        made.__dict__.update({name: self.__dict__[name] for name in type(self).__dataclass_fields__}, **changes)
         return made
 
     def rate_at(self, time: float, state: ArrayLike, regime: int = 0) -> Array:

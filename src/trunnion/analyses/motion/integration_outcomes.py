@@ -19,11 +19,11 @@ TINY = 1e-5
 def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[str, ...]) -> Outcome:
     """The outcome of ``run``; ``guards`` name the system's guards and then the caller's events."""
     _pass_on_interrupt(system)
+    if run.end is End.REACHED:
+        return Outcome(True, "reached", f"reached t = {run.time:.6g} s in {run.steps} steps")
     at = f"at t = {run.time:.6g} s"
     largest = int(np.argmax(np.abs(np.nan_to_num(run.final[0], nan=np.inf)) / np.asarray(system.scale)))
     value = f"{system.states[largest]} = {run.final[0, largest]:.3g}"
-    if run.end is End.REACHED:
-        return Outcome(True, "reached", f"reached t = {run.time:.6g} s in {run.steps} steps")
     if run.end is End.STOPPED:
         return Outcome(True, "stopped", f"stopped {at} by the event {guards[int(run.event_which[-1])]}")
     if run.end is End.STEP_LIMIT:

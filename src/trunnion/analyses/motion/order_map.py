@@ -68,7 +68,7 @@ def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.
     shape = np.hanning(count + 1)[:-1]
     starts = np.arange(0, turns * per_turn - count + 1, count // 2)
     times = times_at_angles(run, 2 * np.pi * np.arange(turns * per_turn) / per_turn)
-    torque = run.motion_at(times).torque
+    torque = run.torque_at(times)
     kept = int(np.floor(highest * window + 1e-9)) + 1
     amplitude = np.empty((len(starts), kept, torque.shape[1]))
     for row, at in zip(amplitude, starts, strict=True):

@@ -272,7 +272,7 @@ def run_up(
     quasi_static, count = _quasi_static(prepared.assembly, profile, length, first, last), len(run.shafts)
 
     def curves(times: Array) -> Array:
-        torque = run.motion_at(times).torque
+        torque = run.torque_at(times)
         return np.hstack([torque, torque - quasi_static(times)])
 
     seen = extremes_in(curves, run.cuts, edges)

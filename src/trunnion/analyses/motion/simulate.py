@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,7 @@ from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import Extremes, extremes_in
-from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, joined
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
@@ -53,6 +53,11 @@ class LineSimulation(Result):
         """How it ended."""
         return self.pieces[-1].outcome
 
+    @cached_property
+    def _run(self) -> Simulation:
+        """All pieces as one, but for its system: that of the last."""
+        return replace(self.pieces[-1], trajectory=joined([piece.trajectory for piece in self.pieces]))
+
     @property
     def end(self) -> float:
         """The last time [s]."""
@@ -71,41 +76,45 @@ class LineSimulation(Result):
     @property
     def steps(self) -> int:
         """Steps taken."""
-        return sum(piece.trajectory.steps for piece in self.pieces)
+        return self._run.trajectory.steps
 
     @property
     def event_time(self) -> Array:
         """Times of all events (events,) [s]."""
-        return np.concatenate([piece.event_time for piece in self.pieces])
+        return self._run.trajectory.event_time
+
+    @property
+    def cuts(self) -> Array:
+        """Times (steps + 1,) [s] between which the motion is smooth."""
+        return self._run.trajectory.time_of_state
 
     def at(self, time: ArrayLike) -> Array:
         """States (…, 2n) at any times of the run; NaN outside it."""
-        times = np.asarray(time, dtype=float)
-        out = np.full((*times.shape, self.pieces[0].system.size), np.nan)
-        for piece in self.pieces:
-            low, high = piece.time_range
-            inside = (times >= low) & (times <= high)
-            if inside.any():
-                out[inside] = piece.at(times[inside])
-        return out
+        return self._run.at(time)
 
     def motion_at(self, time: ArrayLike) -> LineMotion:
         """Twists, torques and rotations at times (m,) of the run."""
+        return LineMotion(*self._observed(time, LineMotion._fields))
+
+    def torque_at(self, time: ArrayLike) -> Array:
+        """Torque (m, shaft) [N m] of every shaft at times (m,) of the run."""
+        return self._observed(time, ("torque",))[0]
+
+    def _observed(self, time: ArrayLike, names: tuple[str, ...]) -> list[Array]:
         times = np.atleast_1d(np.asarray(time, dtype=float))
-        states = self.at(times)
-        shape = (len(times), len(self.shafts))
-        stations = len(self.line.assembly.topology.stations)
-        found = LineMotion(np.full(shape, np.nan), np.full(shape, np.nan), np.full((len(times), stations), np.nan))
-        for piece in self.pieces:
-            low, high = piece.time_range
-            inside = (times >= low) & (times <= high)
-            if inside.any():
-                part = self.line.observe(piece.system, times[inside], states[inside])
-                for whole, some in zip(
-                    (found.twist, found.torque, found.rotation), (part.twist, part.torque, part.rotation), strict=True
-                ):
-                    whole[inside] = some
-        return found
+        order = np.argsort(times, kind="stable")
+        states, times = self.at(times[order]), times[order]
+        ends = np.searchsorted(times, [*(piece.time_range[0] for piece in self.pieces), np.nextafter(self.end, np.inf)])
+        parts = [
+            self.line.observe(piece.system, times[i:j], states[i:j])
+            for piece, i, j in zip(self.pieces, ends, ends[1:], strict=False)
+        ]
+        whole = []
+        for columns in ([getattr(part, name) for part in parts] for name in names):
+            found = np.full((len(times), columns[0].shape[1]), np.nan)
+            found[order[ends[0] : ends[-1]]] = np.concatenate(columns)
+            whole.append(found)
+        return whole
 
     @cached_property
     def _motion(self) -> LineMotion:
@@ -140,15 +149,7 @@ class LineSimulation(Result):
     def torque_extremes(self) -> Extremes:
         """Lowest and highest torque of every shaft [N m] from the first to the last of ``time``, and when; found on the
         dense output, whose error is about ten times the tolerance."""
-        return extremes_in(self._torque_at, self.cuts, self.time[[0, -1]]).of(0)
-
-    @property
-    def cuts(self) -> Array:
-        """Times (steps + 1,) [s] between which the motion is smooth."""
-        return np.unique(np.concatenate([piece.trajectory.time_of_state for piece in self.pieces]))
-
-    def _torque_at(self, times: Array) -> Array:
-        return self.motion_at(times).torque
+        return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
 
     def declared(self) -> Iterator[Held]:
         """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
@@ -324,11 +325,11 @@ def simulate_line(
         require_share(prepared.assembly)
     row = prepared.assembly.table(1, profile.speed[0])[0]
     pieces: list[Simulation] = []
+    known = prepared.untwisted(row[None])
     for end, course in profile.courses(duration):
         system = prepared.system
         if len(profile.time) > 1:
-            numbers = prepared.numbers(row, course, drive)
-            system = replace(system, numbers_of=_constant(numbers), period=None)
+            system = system.reading(prepared.numbers(row, course, drive, known))
         pieces.append(
             simulate_system(
                 system, end - course.since, start=state, start_time=course.since, events=events,
@@ -344,7 +345,3 @@ def simulate_line(
         count = int(np.clip(PER_TURN * turned, 256, MOST_SAMPLES))
         wanted = np.linspace(0.0, reached, count + 1) if dense else np.array([reached])
     return LineSimulation(prepared, profile, tuple(pieces), wanted[wanted <= reached])
-
-
-def _constant(numbers: Array) -> Any:
-    return lambda parameters: numbers

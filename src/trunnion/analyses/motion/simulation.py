@@ -200,8 +200,7 @@ def simulate_system(
 def _regimes(run: Trajectory, time: Array, first: int) -> Integers:
     if not run.steps:
         return np.full(len(time), first, dtype=np.int64)
-    place = np.clip(np.searchsorted(run.start, time, side="right") - 1, 0, run.steps - 1)
-    return run.regime[place]
+    return run.regime[np.searchsorted(run.start[1:], time, side="right")]
 
 
 def _span(

@@ -6,11 +6,13 @@ works, and what was computed before a failure is kept.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +30,8 @@ class End(IntEnum):
     """How an integration ended; the codes of the compiled core."""
 
     REACHED = 0
+    FULL = 1
+    """The room for its steps is; between two calls of the core only."""
     STOPPED = 2
     STEP_LIMIT = 3
     NOT_FINITE = 4
@@ -37,7 +41,10 @@ class End(IntEnum):
     BEYOND = 8
 
 
-_FULL = 1
+_ALONG = (
+    "start", "length", "regime", "state", "coefficients", "event_time", "event_which", "event_before", "event_after",
+)  # fmt: skip
+"""What a trajectory holds of every step or event, in the order in which the compiled core takes room for it."""
 
 
 @cache
@@ -163,58 +170,37 @@ def integrate(
     numbers = equations.numbers.copy()  # a right-hand side may work in them
     sides = np.zeros(own + len(watch.directions))
     watched = watch.directions if len(sides) else None
-    parts: list[tuple[Array, ...]] = []
+    first = y[:n].reshape(1, n).copy()
+    parts: list[Trajectory] = []
     size = 256
     while True:
-        buffer = _Buffer.of(size, n, dense, bool(len(sides)))
+        room, events = size if dense else 0, size + 128 if len(sides) else 64
+        kept = (
+            np.empty(size), np.empty(size), np.empty(size, dtype=np.int64), np.empty((size, n)), np.empty((room, 8, n)),
+            np.empty(events), np.empty(events, dtype=np.int64), np.empty((events, n)), np.empty((events, n)),
+        )  # fmt: skip
         code = core.advance(
             functions, numbers, watch.numbers, y, n, count, equations.transitions, equations.directions,
             watched, watch.stops, clock, whole, sides, float(end), float(tolerance), equations.weight,
-            float(longest_step), most_steps, dense, *buffer.arrays,
+            float(longest_step), most_steps, dense, *kept,
         )  # fmt: skip
-        parts.append(buffer.filled(int(whole[5]), int(whole[4])))
-        if code != _FULL:
-            break
+        found: dict[str, Any] = {
+            name: part[: whole[4] if name.startswith("event") else whole[5]].copy()
+            for name, part in zip(_ALONG, kept, strict=True)
+        }
+        found["state"] = np.concatenate([parts[-1].state[-1:] if parts else first, found["state"]])
+        found["final_regime"], found["rejected"], found["next_step"] = int(whole[0]), int(whole[3]), float(clock[1])
+        reached = float(end) if code == End.REACHED else float(clock[0])
+        parts.append(Trajectory(**found, final=y.reshape(1 + count, n), time=reached, end=End(code)))
+        if code != End.FULL:
+            return joined(parts)
         size = CHUNK
-    joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    first = np.array(state, dtype=float).reshape(-1, n)[:1]
-    return Trajectory(
-        start=joined[0],
-        length=joined[1],
-        regime=joined[2],
-        state=np.concatenate([first, joined[3]]),
-        coefficients=joined[4],
-        event_time=joined[5],
-        event_which=joined[6],
-        event_before=joined[7],
-        event_after=joined[8],
-        final=y.reshape(1 + count, n),
-        time=float(clock[0]) if code != End.REACHED else float(end),
-        final_regime=int(whole[0]),
-        end=End(code),
-        rejected=int(whole[3]),
-        next_step=float(clock[1]),
-    )
 
 
-@dataclass(frozen=True)
-class _Buffer:
-    """Room for a chunk of steps and events, in the order the compiled core takes it."""
-
-    arrays: tuple[Array, ...]
-
-    @classmethod
-    def of(cls, size: int, n: int, dense: bool, watching: bool) -> _Buffer:
-        events = size + 128 if watching else 64
-        whole = np.int64
-        return cls(
-            (
-                np.empty(size), np.empty(size), np.empty(size, dtype=whole), np.empty((size, n)),
-                np.empty((size if dense else 0, 8, n)),
-                np.empty(events), np.empty(events, dtype=whole), np.empty((events, n)), np.empty((events, n)),
-            )
-        )  # fmt: skip
-
-    def filled(self, steps: int, events: int) -> tuple[Array, ...]:
-        a = self.arrays
-        return (*(part[:steps] for part in a[:5]), *(part[:events] for part in a[5:]))
+def joined(parts: Sequence[Trajectory]) -> Trajectory:
+    """Stretches of one motion, each beginning where the one before ended, as one."""
+    if len(parts) == 1:
+        return parts[0]
+    along: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ALONG}
+    along["state"] = np.concatenate([parts[0].state, *(part.state[1:] for part in parts[1:])])
+    return replace(parts[-1], **along)
