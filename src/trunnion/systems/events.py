@@ -115,7 +115,7 @@ def _functions(functions: tuple[Any, ...], size: int, names: tuple[str, ...], sc
         return [one(t, x, p) for one in plain]
 
     machine = _together([one if hasattr(one, "py_func") else njit(one) for one in every])
-    return guard_function(called, len(every), size, names, np.array(scale), machine=machine)
+    return guard_function(called, len(every), size, names, scale, machine=machine)
 
 
 def _coordinate(place: int, level: float) -> Callable[..., Any]:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.errors import InputError
-from trunnion.systems.jump_functions import jump_function
-from trunnion.systems.user_functions import CFunction, guard_function
+from trunnion.systems.user_functions import CFunction, guard_function, jump_function, parameter_tuple
 
 if TYPE_CHECKING:
     from trunnion.systems.system import System
@@ -98,17 +96,12 @@ class Regimes:
 
     def compiled(self, system: System) -> tuple[CFunction, CFunction | None, Integers, Integers]:
         """Guard and jump as C functions, transitions and directions."""
-        names, scale = tuple(system.parameters), tuple(map(float, system.scale))  # type: ignore[arg-type]
-        guard = (
-            self.guard
-            if isinstance(self.guard, CFunction)
-            else _guard(self.guard, len(self.guards), system.size, names, scale, system.compiled)
-        )
-        jump = (
-            self.jump
-            if isinstance(self.jump, CFunction) or self.jump is None
-            else _jump(self.jump, system.size, names, scale, system.compiled)
-        )
+        given = system.size, tuple(system.parameters), tuple(map(float, system.scale))  # type: ignore[arg-type]
+        guard, jump = self.guard, self.jump
+        if not isinstance(guard, CFunction):
+            guard = guard_function(guard, len(self.guards), *given, compiled=system.compiled)
+        if not (jump is None or isinstance(jump, CFunction)):
+            jump = jump_function(jump, *given, compiled=system.compiled)
         return (guard, jump, *self.tables())
 
     def at(self, system: System, time: float, state: Array) -> int:
@@ -118,8 +111,6 @@ class Regimes:
         ------
         InputError : ``locate`` gives no regime there.
         """
-        from trunnion.systems.user_functions import parameter_tuple
-
         found = self.locate(time, state, parameter_tuple(tuple(system.parameters))(*system.parameters.values()))
         if isinstance(found, bool) or int(found) != found or not 0 <= found < len(self.names):
             raise InputError(
@@ -129,22 +120,3 @@ class Regimes:
                 value=found,
             )
         return int(found)
-
-
-@cache
-def _guard(
-    function: Callable[..., Any],
-    guards: int,
-    size: int,
-    names: tuple[str, ...],
-    scale: tuple[float, ...],
-    compiled: bool,
-) -> CFunction:
-    return guard_function(function, guards, size, names, np.array(scale), compiled=compiled)
-
-
-@cache
-def _jump(
-    function: Callable[..., Any], size: int, names: tuple[str, ...], scale: tuple[float, ...], compiled: bool
-) -> CFunction:
-    return jump_function(function, size, names, np.array(scale), compiled=compiled)

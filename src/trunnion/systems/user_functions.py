@@ -12,17 +12,20 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import sys
 from collections import namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import carray, cfunc, literal_unroll, njit, types
 from numba.core.errors import NumbaError
+from numba.core.typing.ctypes_utils import to_ctypes
 from numba.extending import overload
 from numba.np.unsafe.ndarray import to_fixed_tuple
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from trunnion.errors import InputError
 
@@ -38,6 +41,10 @@ REACH = 1e-6
 POINTER = types.CPointer(types.float64)
 RATE = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, POINTER)
 GUARD = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, POINTER, POINTER)
+JUMP = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, types.int64, POINTER)
+
+INNER = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Compiles what compiled code alone calls: entrances for Python take longer to compile than a short function does."""
 
 
 @dataclass(frozen=True)
@@ -105,32 +112,40 @@ def takes(function: Callable[..., Any], counts: tuple[int, ...], what: str) -> i
 
 
 def parameter_tuple(names: tuple[str, ...]) -> Callable[..., Any]:
-    """The type of ``p``: a named tuple where the names allow it."""
-    if names and all(n.isidentifier() for n in names) and len(set(names)) == len(names):
-        return namedtuple("Parameters", names, rename=True)
-    return lambda *values: tuple(values)
+    """The type of ``p``: a named tuple; what is no name in Python is there by its place alone."""
+    return namedtuple("Parameters", names, rename=True)
+
+
+class Mode(NamedTuple):
+    """How C functions are made: of machine code, or of what the interpreter calls.
+
+    jit : compiles a function, or leaves it as it is.
+    uniform : of a user's function f(t, x, p) or, the second argument says so, f(t, x, p, regime), one that takes all
+        four as numbers and arrays. ``machine``: what is compiled in its place; ``arrays``: x is never a tuple.
+    array : of a pointer and a shape.
+    caught : the answer where a function raised.
+    """
+
+    jit: Callable[..., Any]
+    uniform: Callable[..., Any]
+    array: Any
+    caught: Any
 
 
 def wrap(
-    function: Callable[..., Any],
-    size: int,
-    names: tuple[str, ...],
-    *,
-    regimes: bool,
-    build: Callable[..., Any],
-    kind: Any,
-    call_back: Callable[..., Any],
-    compiled: bool = True,
-    machine: Callable[..., Any] | None = None,
+    build: Callable[[Mode], Any], kind: Any, size: int, names: tuple[str, ...], *, compiled: bool = True
 ) -> CFunction:
-    """``function`` as a C function of the signature ``kind``; see ``rate_function`` and the others.
-
-    machine : what is compiled, where that is not ``function`` itself.
-    """
+    """What ``build`` makes as a C function of the signature ``kind``: of machine code where numba can."""
     make, count = parameter_tuple(names), len(names)
     for as_tuple in (False, True) if compiled else ():
+
+        def uniform(
+            function: Any, regimes: bool, machine: Any = None, arrays: bool = False, as_tuple: bool = as_tuple
+        ) -> Any:
+            return _uniform(machine or function, make, count, size, regimes, as_tuple and not arrays)
+
         try:
-            code = cfunc(kind)(build(_uniform(machine or function, make, count, size, regimes, as_tuple)))
+            code = cfunc(kind)(build(Mode(INNER, uniform, carray, INNER(lambda: RAISED))))
         except NumbaError:
             continue
         except Exception:  # numba fails on odd functions in odd ways; the interpreter can still call them
@@ -138,55 +153,87 @@ def wrap(
         return CFunction(int(code.address or 0), code)
     raised: list[BaseException] = []
 
-    def plain(t: float, x: Array, p: Array, regime: int) -> Any:
-        arguments = (t, x.copy(), make(*map(float, p[:count])))
-        return function(*arguments, regime) if regimes else function(*arguments)
+    def caught() -> int:
+        error = sys.exc_info()[1]
+        raised[:] = [error] if error is not None else []
+        return RAISED
 
-    return call_back(plain, raised)
+    def called(function: Any, regimes: bool, machine: Any = None, arrays: bool = False) -> Any:
+        def plain(t: float, x: Array, p: Array, regime: int) -> Any:
+            arguments = (t, x.copy(), make(*map(float, p[:count])))
+            return function(*arguments, regime) if regimes else function(*arguments)
+
+        return plain
+
+    signature = ctypes.CFUNCTYPE(*map(to_ctypes, (kind.return_type, *kind.args)))
+    owner = signature(build(Mode(lambda function: function, called, np.ctypeslib.as_array, caught)))
+    return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
 
 
 def _uniform(function: Callable[..., Any], make: Any, count: int, size: int, regimes: bool, as_tuple: bool) -> Any:
     """A compiled f(t, x, p, regime) of arrays around the user's function."""
-    inner = function if hasattr(function, "py_func") else njit(function)
-    named = make if isinstance(make, type) else None
+    inner = function if hasattr(function, "py_func") else INNER(function)
 
-    if named is not None:
-
-        @njit
-        def parameters(p):
-            return named(*to_fixed_tuple(p, count))
-
-    else:
-
-        @njit
-        def parameters(p):
-            return to_fixed_tuple(p, count)
+    @INNER
+    def parameters(p):
+        return make(*to_fixed_tuple(p, count))
 
     if as_tuple:
 
-        @njit
+        @INNER
         def state(x):
             return to_fixed_tuple(x, size)
 
     else:
 
-        @njit
+        @INNER
         def state(x):
             return x
 
     if regimes:
 
-        @njit
+        @INNER
         def uniform(t, x, p, regime):
             return inner(t, state(x), parameters(p), regime)
 
     else:
 
-        @njit
+        @INNER
         def uniform(t, x, p, regime):
             return inner(t, state(x), parameters(p))
 
     return uniform
+
+
+def _slope_along(mode: Mode, uniform: Any, size: int, rows: int, scale: ArrayLike) -> Any:
+    """Of a function of ``rows`` numbers its slope along v, and ``late`` in time, by fourth-order differences in units
+    of ``scale``: (t, x, p, which, v, late, out) → 0, or what went wrong."""
+    weight = np.array(scale, dtype=float)
+
+    @mode.jit
+    def along(t, x, p, which, v, late, out):
+        x_near, value, opposite = np.empty(size), np.empty(rows), np.empty(rows)
+        failed, length = 0, abs(late)
+        for i in range(size):
+            length = max(length, abs(v[i]) / max(weight[i], REACH * abs(x[i])))
+        out[:] = 0.0
+        if length == 0.0:
+            return failed
+        h = STEP / length
+        # One place that calls the function, compiled once. In pairs, so that what does not depend on the state cancels
+        # exactly.
+        for m in range(4):
+            for i in range(size):
+                x_near[i] = x[i] + MOVES[m] * h * v[i]
+            failed = max(failed, store(value, uniform(t + MOVES[m] * h * late, x_near, p, which)))
+            if m % 2 == 0:
+                opposite[:] = value
+                continue
+            for i in range(rows):
+                out[i] += WEIGHTS[m // 2] / (12 * h) * (opposite[i] - value[i])
+        return failed
+
+    return along
 
 
 def rate_function(
@@ -194,128 +241,73 @@ def rate_function(
     jacobian: Callable[..., Any] | None,
     size: int,
     names: tuple[str, ...],
-    scale: Array,
+    scale: ArrayLike,
     *,
     compiled: bool = True,
 ) -> CFunction:
     """Right-hand side with tangents: exact by ``jacobian`` (t, x, p) → (n, n), else by differences."""
     regimes = takes(function, (3, 4), "rate") == 4
     sloped_by_regime = jacobian is not None and takes(jacobian, (3, 4), "jacobian") == 4
-    count, step = len(names), STEP
-    weight = tuple(map(float, scale))
+    count = len(names)
 
-    def with_jacobian(uniform: Any) -> Any:
-        assert jacobian is not None
-        matrix = _uniform(jacobian, parameter_tuple(names), count, size, sloped_by_regime, False)
+    def with_jacobian(mode: Mode) -> Any:
+        matrix = mode.uniform(jacobian, sloped_by_regime, arrays=True)
 
-        @njit
-        def evaluate(t, y, p, k, regime, out):
-            failed = store(out[:size], uniform(t, y[:size], p, regime))
-            if failed == 0 and k > 0:
-                slopes = matrix(t, y[:size], p, regime)
-                for b in range(1, k + 1):
-                    for i in range(size):
-                        total = 0.0
-                        for j in range(size):
-                            total += slopes[i, j] * y[b * size + j]
-                        out[b * size + i] = total
-            return failed
-
-        return evaluate
-
-    def differenced(uniform: Any) -> Any:
-        scales = np.array(weight)
-
-        @njit
-        def evaluate(t, y, p, k, regime, out):
-            failed = store(out[:size], uniform(t, y[:size], p, regime))
-            if k == 0:
-                return failed
-            x, value, opposite = np.empty(size), np.empty(size), np.empty(size)
+        @mode.jit
+        def tangents(t, y, p, k, regime, out):
+            slopes = matrix(t, y[:size], p, regime)
             for b in range(1, k + 1):
-                v, slope = y[b * size : (b + 1) * size], out[b * size : (b + 1) * size]
-                length = 0.0
                 for i in range(size):
-                    length = max(length, abs(v[i]) / max(scales[i], REACH * abs(y[i])))
-                slope[:] = 0.0
-                if length == 0.0:
-                    continue
-                h = step / length
-                # One place that calls the function, compiled once. In pairs, so that what does not depend on the
-                # state cancels exactly.
-                for m in range(4):
-                    for i in range(size):
-                        x[i] = y[i] + MOVES[m] * h * v[i]
-                    failed = max(failed, store(value, uniform(t, x, p, regime)))
-                    if m % 2 == 0:
-                        opposite[:] = value
-                        continue
-                    for i in range(size):
-                        slope[i] += WEIGHTS[m // 2] / (12 * h) * (opposite[i] - value[i])
+                    total = 0.0
+                    for j in range(size):
+                        total += slopes[i, j] * y[b * size + j]
+                    out[b * size + i] = total
+            return 0
+
+        return tangents
+
+    def differenced(mode: Mode, uniform: Any) -> Any:
+        along = _slope_along(mode, uniform, size, size, scale)
+
+        @mode.jit
+        def tangents(t, y, p, k, regime, out):
+            failed = 0
+            for b in range(size, (1 + k) * size, size):
+                failed = max(failed, along(t, y[:size], p, regime, y[b : b + size], 0.0, out[b : b + size]))
             return failed
 
-        return evaluate
+        return tangents
 
-    def build(uniform: Any) -> Any:
-        evaluate = (differenced if jacobian is None else with_jacobian)(uniform)
+    def build(mode: Mode) -> Any:
+        uniform, array, caught = mode.uniform(function, regimes), mode.array, mode.caught
+        tangents = differenced(mode, uniform) if jacobian is None else with_jacobian(mode)
+
+        @mode.jit
+        def evaluate(t, y, p, k, regime, out):
+            failed = store(out[:size], uniform(t, y[:size], p, regime))
+            return tangents(t, y, p, k, regime, out) if failed == 0 and k > 0 else failed
 
         def rate(t, y_, p_, k, regime, out_):
-            y, p = carray(y_, ((1 + k) * size,)), carray(p_, (count,))
-            out = carray(out_, ((1 + k) * size,))
+            y, p = array(y_, ((1 + k) * size,)), array(p_, (count,))
+            out = array(out_, ((1 + k) * size,))
             try:
                 failed = evaluate(t, y, p, k, regime, out)
-            except Exception:
-                failed = 1
+            except:  # noqa: E722  a Ctrl-C that meets the interpreter, too
+                failed = caught()
             return failed
 
         return rate
 
-    def call_back(plain: Callable[..., Any], raised: list[BaseException]) -> CFunction:
-        pointer = ctypes.POINTER(ctypes.c_double)
-
-        def rate(t: float, y_: Any, p_: Any, k: int, regime: int, out_: Any) -> int:
-            y = np.ctypeslib.as_array(y_, ((1 + k), size))
-            p = np.ctypeslib.as_array(p_, (count,)) if count else np.zeros(0)
-            out = np.ctypeslib.as_array(out_, ((1 + k), size))
-            try:
-                failed = store(out[0], plain(t, y[0], p, regime))
-                if k and not failed and jacobian is not None:
-                    arguments = (t, y[0].copy(), parameter_tuple(names)(*map(float, p)))
-                    slopes = jacobian(*arguments, regime) if sloped_by_regime else jacobian(*arguments)
-                    out[1:] = y[1:] @ np.asarray(slopes, dtype=float).T
-                elif k and not failed:
-                    for v, slope in zip(y[1:], out[1:], strict=True):
-                        slope[:] = differences(lambda x: plain(t, x, p, regime), y[0], v, scale)
-            except BaseException as error:
-                raised[:] = [error]
-                return RAISED
-            return failed
-
-        signature = ctypes.CFUNCTYPE(
-            ctypes.c_int64, ctypes.c_double, pointer, pointer, ctypes.c_int64, ctypes.c_int64, pointer
-        )
-        owner = signature(rate)
-        return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
-
-    return wrap(function, size, names, regimes=regimes, kind=RATE, call_back=call_back, build=build, compiled=compiled)
+    return wrap(build, RATE, size, names, compiled=compiled)
 
 
-def differences(f: Callable[[Array], Any], x: Array, v: Array, scale: Array) -> Array:
-    """Slope of ``f`` along ``v``, by fourth-order differences in units of ``scale``."""
-    length = float(np.max(np.abs(v) / np.maximum(scale, REACH * np.abs(x)), initial=0.0))
-    if length == 0.0:
-        return np.zeros_like(x)
-    h = STEP / length
-    parts = [np.asarray(f(x + m * h * v), dtype=float) for m in (-2, -1, 1, 2)]
-    return np.asarray((8 * (parts[2] - parts[1]) - (parts[3] - parts[0])) / (12 * h))
-
-
+@cache
 def guard_function(
     function: Callable[..., Any],
     guards: int,
     size: int,
     names: tuple[str, ...],
-    scale: Array,
+    scale: tuple[float, ...],
     *,
     compiled: bool = True,
     machine: Callable[..., Any] | None = None,
@@ -325,71 +317,74 @@ def guard_function(
     machine : what is compiled, where that is not ``function`` itself.
     """
     regimes = takes(function, (3, 4), "guard") == 4
-    count, step, weight = len(names), STEP, np.array(scale, dtype=float)
+    count = len(names)
 
-    def build(uniform: Any) -> Any:
-        @njit
+    def flat(*arguments: Any) -> Any:
+        return np.atleast_1d(function(*arguments))
+
+    def build(mode: Mode) -> Any:
+        uniform, array, caught = mode.uniform(flat, regimes, machine or function), mode.array, mode.caught
+        along = _slope_along(mode, uniform, size, guards, scale)
+
+        @mode.jit
         def evaluate(t, x, p, regime, sloped, g, slope):
             failed = store(g, uniform(t, x, p, regime))
             if sloped == 0:
                 return failed
-            near, other = np.empty(size), np.empty(guards)
-            slope[:] = 0.0
+            unit, column = np.zeros(size), np.empty(guards)
             for j in range(size + 1):
-                h = step * (weight[j] if j < size else 1.0)
-                for m in range(4):
-                    move = (-2.0, -1.0, 1.0, 2.0)[m] * h
-                    for i in range(size):
-                        near[i] = x[i] + (move if i == j else 0.0)
-                    late = t + (move if j == size else 0.0)
-                    failed = max(failed, store(other, uniform(late, near, p, regime)))
-                    factor = (1.0, -8.0, 8.0, -1.0)[m] / (12 * h)
-                    for i in range(guards):
-                        slope[i * (size + 1) + j] += factor * other[i]
+                if j < size:
+                    unit[j] = 1.0
+                failed = max(failed, along(t, x, p, regime, unit, 1.0 if j == size else 0.0, column))
+                unit[:] = 0.0
+                for i in range(guards):
+                    slope[i * (size + 1) + j] = column[i]
             return failed
 
         def guard(t, x_, p_, regime, sloped, g_, slope_):
-            x, p = carray(x_, (size,)), carray(p_, (count,))
-            g, slope = carray(g_, (guards,)), carray(slope_, (guards * (size + 1),))
+            x, p = array(x_, (size,)), array(p_, (count,))
+            g, slope = array(g_, (guards,)), array(slope_, (guards * (size + 1),))
             try:
                 failed = evaluate(t, x, p, regime, sloped, g, slope)
-            except Exception:
-                failed = 1
+            except:  # noqa: E722
+                failed = caught()
             return failed
 
         return guard
 
-    def call_back(plain: Callable[..., Any], raised: list[BaseException]) -> CFunction:
-        pointer = ctypes.POINTER(ctypes.c_double)
+    return wrap(build, GUARD, size, names, compiled=compiled)
 
-        def guard(t: float, x_: Any, p_: Any, regime: int, sloped: int, g_: Any, slope_: Any) -> int:
-            x = np.ctypeslib.as_array(x_, (size,))
-            p = np.ctypeslib.as_array(p_, (count,)) if count else np.zeros(0)
-            g = np.ctypeslib.as_array(g_, (guards,))
-            try:
-                failed = store(g, np.atleast_1d(plain(t, x, p, regime)))
-                if sloped and not failed:
-                    slope = np.ctypeslib.as_array(slope_, (guards, size + 1))
-                    for j in range(size):
-                        v = np.zeros(size)
-                        v[j] = weight[j]
-                        slope[:, j] = (
-                            differences(lambda z: np.atleast_1d(plain(t, z, p, regime)), x, v, weight) / weight[j]
-                        )
-                    moved = [np.atleast_1d(plain(t + m * step, x, p, regime)) for m in (-2, -1, 1, 2)]
-                    slope[:, size] = (moved[0] - 8 * moved[1] + 8 * moved[2] - moved[3]) / (12 * step)
-            except BaseException as error:
-                raised[:] = [error]
-                return RAISED
+
+@cache
+def jump_function(
+    function: Callable[..., Any], size: int, names: tuple[str, ...], scale: tuple[float, ...], *, compiled: bool = True
+) -> CFunction:
+    """A jump (t, x, p, which) → n numbers at a switch; tangents by differences along (x, t)."""
+    takes(function, (4,), "jump")
+    count = len(names)
+
+    def build(mode: Mode) -> Any:
+        uniform, array, caught = mode.uniform(function, True), mode.array, mode.caught
+        along = _slope_along(mode, uniform, size, size, scale)
+
+        @mode.jit
+        def evaluate(t, y, p, k, which, delay):
+            x, out = y[:size].copy(), np.empty(size)
+            failed = store(y[:size], uniform(t, x, p, which))
+            for b in range(1, k + 1):
+                v = y[b * size : (b + 1) * size]
+                failed = max(failed, along(t, x, p, which, v, delay[b - 1], out))
+                v[:] = out
             return failed
 
-        signature = ctypes.CFUNCTYPE(
-            ctypes.c_int64, ctypes.c_double, pointer, pointer, ctypes.c_int64, ctypes.c_int64, pointer, pointer
-        )
-        owner = signature(guard)
-        return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
+        def jump(t, y_, p_, k, regime, which, delay_):
+            y, p, delay = array(y_, ((1 + k) * size,)), array(p_, (count,)), array(delay_, (max(k, 1),))
+            try:
+                failed = evaluate(t, y, p, k, which, delay)
+            except:  # noqa: E722
+                failed = caught()
+            return failed
 
-    return wrap(
-        function, size, names, regimes=regimes, kind=GUARD, call_back=call_back, build=build, compiled=compiled,
-        machine=machine,
-    )  # fmt: skip
+        return jump
+
+    return wrap(build, JUMP, size, names, compiled=compiled)
