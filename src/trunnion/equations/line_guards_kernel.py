@@ -10,37 +10,36 @@ This file imports nothing of the package: it is compiled from a copy in the cach
 
 from __future__ import annotations
 
-from numba import carray, cfunc, types
+from numba import carray, cfunc, njit, types
 from trunnion_kernels.line_kernel import (
-    ALPHA,
+    COMPLIANCES,
     FAR,
     FAR_COORDINATE,
     GUARDS,
     HEAD,
     LAW,
-    LAWS,
     MEAN,
     NEAR,
     NEAR_COORDINATE,
     OF,
-    OMEGA,
     PER_COMPLIANCE,
     PER_GUARD,
-    PER_HARMONIC,
     PER_SLIDER,
     PER_STAGE,
     PER_STATION,
     REACH,
     REFERENCE,
-    SINCE,
     SLIDERS,
     SLIPS_ON,
     STAGES,
+    STATIONS,
     STEP,
     STICKS,
     STRIDE,
-    THETA,
+    UNKNOWNS,
+    course,
     mesh_error,
+    places,
     walk,
 )
 
@@ -52,21 +51,36 @@ SETBACK = 1e-12
 rounding, which could let it slip again at rest."""
 
 
+@njit(cache=True, nogil=True)
+def gradient(row, p, q, by_twist, by_rate, omega, alpha, v, r, r1):
+    """Gradient (2n + sliders + 1,), by the states and time, of by_twist times a twist and by_rate times its rate."""
+    near, far, n = int(p[q + NEAR]), int(p[q + FAR]), int(p[UNKNOWNS])
+    i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+    first = int(p[HEAD + near * PER_STATION + REFERENCE])
+    turning = p[HEAD + first * PER_STATION + MEAN]
+    row[:] = 0.0
+    if j >= 0:
+        row[j] += by_twist
+        row[n + j] += by_rate
+    if i >= 0:
+        row[i] -= by_twist * r[near] + by_rate * r1[near] * v[first]
+        row[n + i] -= by_rate * r[near]
+    drift = (p[HEAD + near * PER_STATION + MEAN] - r[near] * turning) * omega
+    growth = (p[HEAD + far * PER_STATION + MEAN] - r[near] * turning) * alpha - r1[near] * turning * omega * v[first]
+    row[row.size - 1] = by_twist * drift + by_rate * growth
+
+
 @cfunc(_GUARD, cache=True)
 def line_guards(t, x_, p_, regime, sloped, g_, slope_):
     """GUARDS switching functions per spring with stages and per slider, and their gradients by x and t."""
     head = carray(p_, (HEAD,))
-    n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
-    compliance = HEAD + count * PER_STATION
-    slider, sliding = compliance + joined * PER_COMPLIANCE + shaken * PER_HARMONIC, int(head[SLIDERS])
-    scratch = slider + sliding * PER_SLIDER + int(head[LAWS])
+    n, count, joined, sliding = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
+    compliance, _, slider, scratch = places(head)
     p = carray(p_, (scratch + 5 * count,))
     x, g = carray(x_, (2 * n + sliding,)), carray(g_, (GUARDS * (joined + sliding),))
     wide = 2 * n + sliding + 1
     slope = carray(slope_, (GUARDS * (joined + sliding) * wide,))
-    since = t - p[SINCE]
-    omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
-    theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
+    theta, omega, alpha = course(t, p)
     space = p[scratch:]
     d, v = space[:count], space[count : 2 * count]
     r, r1, r2 = space[2 * count : 3 * count], space[3 * count : 4 * count], space[4 * count :]
@@ -77,50 +91,28 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
         if p[q + STAGES] < 2.0:
             continue
         near, far = int(p[q + NEAR]), int(p[q + FAR])
-        i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
         error, error_rate, error_acceleration = mesh_error(p, q, theta, omega, alpha)
         twist, rate = d[far] - d[near] + error, v[far] - v[near] + error_rate
         stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
-        for j_guard in range(GUARDS):
-            at = stage + 3 + PER_GUARD * j_guard
+        for guard in range(GUARDS):
+            at = stage + 3 + PER_GUARD * guard
             by_twist, by_rate = p[at], p[at + 1]
             g[m] = by_twist * twist + by_rate * rate - p[at + 2]
             if sloped != 0:
                 row = slope[m * wide : (m + 1) * wide]
-                row[:] = 0.0
-                reference = int(p[HEAD + near * PER_STATION + REFERENCE])
-                turning = p[HEAD + reference * PER_STATION + MEAN] * omega
-                if j >= 0:
-                    row[j] += by_twist
-                    row[n + j] += by_rate
-                if i >= 0:
-                    row[i] -= by_twist * r[near] + by_rate * r1[near] * v[reference]
-                    row[n + i] -= by_rate * r[near]
-                drift = p[HEAD + near * PER_STATION + MEAN] * omega - r[near] * turning
-                growth = p[HEAD + far * PER_STATION + MEAN] * alpha - r1[near] * turning * v[reference]
-                growth -= r[near] * p[HEAD + reference * PER_STATION + MEAN] * alpha
-                row[wide - 1] = by_twist * (drift + error_rate) + by_rate * (growth + error_acceleration)
+                gradient(row, p, q, by_twist, by_rate, omega, alpha, v, r, r1)
+                row[wide - 1] += by_twist * error_rate + by_rate * error_acceleration
             m += 1
     for s in range(sliding):
         at = slider + s * PER_SLIDER
         q = compliance + int(p[at + OF]) * PER_COMPLIANCE
-        near, far = int(p[q + NEAR]), int(p[q + FAR])
-        i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+        rate = v[int(p[q + FAR])] - v[int(p[q + NEAR])]
         # Where it slips back and on from stick, and where the twist that it slips with turns.
-        g[m], g[m + 1], g[m + 2] = x[2 * n + s] + p[at + REACH], x[2 * n + s] - p[at + REACH], v[far] - v[near]
+        g[m], g[m + 1], g[m + 2] = x[2 * n + s] + p[at + REACH], x[2 * n + s] - p[at + REACH], rate
         if sloped != 0:
-            slope[m * wide : (m + GUARDS) * wide] = 0.0
+            slope[m * wide : (m + 2) * wide] = 0.0
             slope[m * wide + 2 * n + s] = slope[(m + 1) * wide + 2 * n + s] = 1.0
-            row = slope[(m + 2) * wide : (m + GUARDS) * wide]
-            reference = int(p[HEAD + near * PER_STATION + REFERENCE])
-            turning = p[HEAD + reference * PER_STATION + MEAN] * omega
-            if j >= 0:
-                row[n + j] += 1.0
-            if i >= 0:
-                row[i] -= r1[near] * v[reference]
-                row[n + i] -= r[near]
-            row[wide - 1] = p[HEAD + far * PER_STATION + MEAN] * alpha - r1[near] * turning * v[reference]
-            row[wide - 1] -= r[near] * p[HEAD + reference * PER_STATION + MEAN] * alpha
+            gradient(slope[(m + 2) * wide : (m + GUARDS) * wide], p, q, 0.0, 1.0, omega, alpha, v, r, r1)
         m += GUARDS
     return 0
 
@@ -130,12 +122,12 @@ def line_jump(t, y_, p_, k, regime, which, delay_):
     """Deflections of sliders behind a guard: where one begins to slip it stands at its end exactly, and where the
     twist turns all that slip with it stick. The tangents know."""
     head = carray(p_, (HEAD,))
-    n, joined, sliding = int(head[0]), int(head[2]), int(head[SLIDERS])
-    slider = HEAD + int(head[1]) * PER_STATION + joined * PER_COMPLIANCE + int(head[3]) * PER_HARMONIC
+    n, joined, sliding = int(head[UNKNOWNS]), int(head[COMPLIANCES]), int(head[SLIDERS])
+    compliance, _, slider, _ = places(head)
     p, y = carray(p_, (slider + sliding * PER_SLIDER,)), carray(y_, (2 * n + sliding,))
     first = 0
     for e in range(joined):
-        if p[HEAD + int(head[1]) * PER_STATION + e * PER_COMPLIANCE + STAGES] >= 2.0:
+        if p[compliance + e * PER_COMPLIANCE + STAGES] >= 2.0:
             first += GUARDS
     if which < first:
         return 0

@@ -60,6 +60,22 @@ PER_RIPPLE = 3
 
 
 @njit(cache=True, nogil=True)
+def places(p):
+    """Where compliances, harmonics and sliders begin among the numbers, and the room to work in."""
+    compliance = HEAD + int(p[STATIONS]) * PER_STATION
+    harmonic = compliance + int(p[COMPLIANCES]) * PER_COMPLIANCE
+    slider = harmonic + int(p[HARMONICS]) * PER_HARMONIC
+    return compliance, harmonic, slider, slider + int(p[SLIDERS]) * PER_SLIDER + int(p[LAWS])
+
+
+@njit(cache=True, nogil=True)
+def course(t, p):
+    """Angle, speed and acceleration of the input."""
+    since = t - p[SINCE]
+    return p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since, p[OMEGA] + p[ALPHA] * since, p[ALPHA]
+
+
+@njit(cache=True, nogil=True)
 def walk(theta, omega, d_rate, p, count, place, d, v, r, r1, r2):
     """Deviation d, speed v, and r, r₁, r₂ of every station, from the unknowns and their rates in d_rate."""
     n = int(p[UNKNOWNS])
@@ -142,17 +158,12 @@ def stage_at(p, q, twist, rate):
 def line(t, y_, p_, k, regime, out_):
     """Rates of the unknowns and of k tangent vectors."""
     head = carray(p_, (HEAD,))
-    n, count, joined, shaken = int(head[0]), int(head[1]), int(head[2]), int(head[3])
-    compliance = HEAD + count * PER_STATION
-    harmonic = compliance + joined * PER_COMPLIANCE
-    slider, sliding = harmonic + shaken * PER_HARMONIC, int(head[SLIDERS])
-    scratch = slider + sliding * PER_SLIDER + int(head[LAWS])
+    n, count, joined, sliding = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
+    compliance, harmonic, slider, scratch = places(head)
     p = carray(p_, (scratch + 5 * count + 7 * n + 3 * joined,))
     wide = 2 * n + sliding
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
-    since = t - p[SINCE]
-    omega, alpha = p[OMEGA] + p[ALPHA] * since, p[ALPHA]
-    theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
+    theta, omega, alpha = course(t, p)
     space = p[scratch:]
     d, v = space[:count], space[count : 2 * count]
     r, r1, r2 = space[2 * count : 3 * count], space[3 * count : 4 * count], space[4 * count : 5 * count]
@@ -182,7 +193,7 @@ def line(t, y_, p_, k, regime, out_):
             torque[i] -= r[s] * load
             by_angle[i] -= r1[s] * load + r[s] * growth * r1[s] * v[reference]
             by_rate[i] -= r[s] * growth * r[s]
-    for h in range(shaken):
+    for h in range(int(p[HARMONICS])):
         q = harmonic + h * PER_HARMONIC
         s = int(p[q + AT])
         i = int(p[HEAD + s * PER_STATION + COORDINATE])
@@ -263,87 +274,53 @@ def line(t, y_, p_, k, regime, out_):
 @njit(cache=True, nogil=True)
 def locate(t, x, p):
     """The regime of a state: the stages of all springs in one number."""
-    twist, torque = np.empty((1, int(p[COMPLIANCES]))), np.empty((1, int(p[COMPLIANCES])))
-    rotation, stages = np.empty((1, int(p[STATIONS]))), np.zeros((1, int(p[COMPLIANCES])), dtype=np.int64)
-    observe(np.array([t]), x.reshape(1, -1), p, twist, torque, rotation, stages)
-    compliance, regime = HEAD + int(p[STATIONS]) * PER_STATION, 0
-    for e in range(int(p[COMPLIANCES])):
+    count, joined = int(p[STATIONS]), int(p[COMPLIANCES])
+    twist, torque, stages = np.empty((1, joined)), np.empty((1, joined)), np.zeros((1, joined), dtype=np.int64)
+    rotation, speed = np.empty((1, count)), np.empty((1, count))
+    observe(np.array([t]), x.reshape(1, -1), p, twist, torque, rotation, speed, stages)
+    compliance, _, slider, _ = places(p)
+    regime = 0
+    for e in range(joined):
         if p[compliance + e * PER_COMPLIANCE + STAGES] > 0.0:
             regime += stages[0, e] * int(p[compliance + e * PER_COMPLIANCE + STRIDE])
-    n, count = int(p[UNKNOWNS]), int(p[STATIONS])
-    v, r, r1, r2 = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
-    since = t - p[SINCE]
-    theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
-    walk(theta, p[OMEGA] + p[ALPHA] * since, x, p, count, HEAD, np.empty(count), v, r, r1, r2)
-    slider = compliance + int(p[COMPLIANCES]) * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
     for s in range(int(p[SLIDERS])):
         at = slider + s * PER_SLIDER
-        q = compliance + int(p[at + OF]) * PER_COMPLIANCE
-        rate, stage = v[int(p[q + FAR])] - v[int(p[q + NEAR])], STICKS
-        if x[2 * n + s] >= p[at + REACH] and rate > 0.0:
+        q, deflection = compliance + int(p[at + OF]) * PER_COMPLIANCE, x[2 * int(p[UNKNOWNS]) + s]
+        rate, stage = speed[0, int(p[q + FAR])] - speed[0, int(p[q + NEAR])], STICKS
+        if deflection >= p[at + REACH] and rate > 0.0:
             stage = SLIPS_ON
-        elif x[2 * n + s] <= -p[at + REACH] and rate < 0.0:
+        elif deflection <= -p[at + REACH] and rate < 0.0:
             stage = SLIPS_BACK
         regime += stage * int(p[at + STEP])
     return regime
 
 
 @njit(cache=True, nogil=True)
-def observe(times, states, p, twist, torque, rotation, stages):
-    """Twist and torque (m, compliances) and deviation of every station (m, stations) along a motion.
+def observe(times, states, p, twist, torque, rotation, speed, stages):
+    """Twist and torque (m, compliances), deviation and speed of every station (m, stations) along a motion.
 
     ``stages`` (m, compliances), zeros: becomes the stage of every spring, as its twist and rate tell.
     """
-    count, joined = int(p[STATIONS]), int(p[COMPLIANCES])
-    compliance = HEAD + count * PER_STATION
-    v, r, r1, r2 = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
+    count = int(p[STATIONS])
+    compliance, _, slider, _ = places(p)
+    r, r1, r2 = np.empty(count), np.empty(count), np.empty(count)
     for m in range(times.size):
-        since = times[m] - p[SINCE]
-        omega = p[OMEGA] + p[ALPHA] * since
-        theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
-        walk(theta, omega, states[m], p, count, HEAD, rotation[m], v, r, r1, r2)
-        for e in range(joined):
+        theta, omega, alpha = course(times[m], p)
+        walk(theta, omega, states[m], p, count, HEAD, rotation[m], speed[m], r, r1, r2)
+        for e in range(int(p[COMPLIANCES])):
             q = compliance + e * PER_COMPLIANCE
             near, far = int(p[q + NEAR]), int(p[q + FAR])
             twist[m, e] = rotation[m, far] - rotation[m, near]
-            rate = v[far] - v[near]
+            rate = speed[m, far] - speed[m, near]
             if p[q + LAW] == 0.0:
                 torque[m, e] = p[q + STIFFNESS] * twist[m, e] + p[q + DAMPING] * rate
                 continue
-            error, error_rate, _ = mesh_error(p, q, theta, omega, p[ALPHA])
-            wave = mesh_wave(p, q, theta)
+            error, error_rate, _ = mesh_error(p, q, theta, omega, alpha)
             twist[m, e] += error
             rate += error_rate
             stages[m, e] = stage_at(p, q, twist[m, e], rate)
             at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
-            torque[m, e] = wave * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
-        slider = compliance + joined * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
+            torque[m, e] = mesh_wave(p, q, theta) * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
         for s in range(int(p[SLIDERS])):
             at = slider + s * PER_SLIDER
             torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]
-
-
-@njit(cache=True, nogil=True)
-def energy(times, states, p, kinetic, potential):
-    """Kinetic and elastic energy (m,) along a motion, that of springs with stages left out."""
-    count, joined = int(p[STATIONS]), int(p[COMPLIANCES])
-    compliance = HEAD + count * PER_STATION
-    d, v = np.empty(count), np.empty(count)
-    r, r1, r2 = np.empty(count), np.empty(count), np.empty(count)
-    for m in range(times.size):
-        since = times[m] - p[SINCE]
-        omega = p[OMEGA] + p[ALPHA] * since
-        theta = p[THETA] + (p[OMEGA] + 0.5 * p[ALPHA] * since) * since
-        walk(theta, omega, states[m], p, count, HEAD, d, v, r, r1, r2)
-        kinetic[m], potential[m] = 0.0, 0.0
-        for s in range(count):
-            kinetic[m] += 0.5 * p[HEAD + s * PER_STATION + INERTIA] * v[s] * v[s]
-        for e in range(joined):
-            q = compliance + e * PER_COMPLIANCE
-            twist = d[int(p[q + FAR])] - d[int(p[q + NEAR])]
-            if p[q + LAW] == 0.0:
-                potential[m] += 0.5 * p[q + STIFFNESS] * twist * twist
-        slider = compliance + joined * PER_COMPLIANCE + int(p[HARMONICS]) * PER_HARMONIC
-        for s in range(int(p[SLIDERS])):
-            stretch = states[m, 2 * int(p[UNKNOWNS]) + s]
-            potential[m] += 0.5 * p[slider + s * PER_SLIDER + SPRING] * stretch * stretch

@@ -323,9 +323,9 @@ class LineSystem:
         """The same of states x (time, state) at times t (time,), under ``numbers`` as of ``numbers``."""
         topo = self.assembly.topology
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
-        rotation = np.empty((len(t), len(topo.stations)))
+        rotation, speed = np.empty((2, len(t), len(topo.stations)))
         stages = np.zeros(twist.shape, dtype=np.int64)
-        kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, stages)
+        kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, speed, stages)
         return LineMotion(twist, torque, rotation)
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:

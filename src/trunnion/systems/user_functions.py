@@ -43,7 +43,7 @@ RATE = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, PO
 GUARD = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, POINTER, POINTER)
 JUMP = types.int64(types.float64, POINTER, POINTER, types.int64, types.int64, types.int64, POINTER)
 
-INNER = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+INNER = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
 """Compiles what compiled code alone calls: entrances for Python take longer to compile than a short function does."""
 
 

@@ -55,54 +55,37 @@ INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """For functions that compiled code alone calls: their entrances for Python take longer to compile than they do."""
 
 
+def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """The C function at the address in front, of numbers and of pointers to the data of arrays; it returns an int64."""
+    given = [
+        context.make_array(kind)(context, builder, arg).data if isinstance(kind, types.Array) else arg
+        for kind, arg in zip(signature.args[1:], args[1:], strict=True)
+    ]
+    function = ir.FunctionType(ir.IntType(64), [arg.type for arg in given])
+    return builder.call(builder.inttoptr(args[0], function.as_pointer()), given)
+
+
 @intrinsic
 def _call_rate(typing: Any, address: Any, t: Any, y: Any, p: Any, count: Any, regime: Any, out: Any) -> Any:
-    """The C function at ``address``: int64(double, double*, double*, int64, int64, double*)."""
-    signature = types.int64(types.int64, types.float64, y, p, types.int64, types.int64, out)
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        double, whole = ir.DoubleType(), ir.IntType(64)
-        pointer = double.as_pointer()
-        kind = ir.FunctionType(whole, [double, pointer, pointer, whole, whole, pointer])
-        data = [context.make_array(signature.args[i])(context, builder, args[i]).data for i in (2, 3, 6)]
-        function = builder.inttoptr(args[0], kind.as_pointer())
-        return builder.call(function, [args[1], data[0], data[1], args[4], args[5], data[2]])
-
-    return signature, generate
+    """int64(double, double* y, double* p, int64 count, int64 regime, double* out)."""
+    whole = types.int64
+    return whole(whole, types.float64, y, p, whole, whole, out), _call
 
 
 @intrinsic
 def _call_guard(typing: Any, address: Any, t: Any, x: Any, p: Any, regime: Any, sloped: Any, g: Any, slope: Any) -> Any:
-    """int64(double, double*, double*, int64, int64 sloped, double* values, double* gradients)."""
-    signature = types.int64(types.int64, types.float64, x, p, types.int64, types.int64, g, slope)
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        double, whole = ir.DoubleType(), ir.IntType(64)
-        pointer = double.as_pointer()
-        kind = ir.FunctionType(whole, [double, pointer, pointer, whole, whole, pointer, pointer])
-        data = [context.make_array(signature.args[i])(context, builder, args[i]).data for i in (2, 3, 6, 7)]
-        function = builder.inttoptr(args[0], kind.as_pointer())
-        return builder.call(function, [args[1], data[0], data[1], args[4], args[5], data[2], data[3]])
-
-    return signature, generate
+    """int64(double, double* x, double* p, int64 regime, int64 sloped, double* values, double* gradients)."""
+    whole = types.int64
+    return whole(whole, types.float64, x, p, whole, whole, g, slope), _call
 
 
 @intrinsic
 def _call_jump(
     typing: Any, address: Any, t: Any, y: Any, p: Any, count: Any, regime: Any, which: Any, delay: Any
 ) -> Any:
-    """int64(double, double* y, double* p, int64 k, int64 regime, int64 which, double* delays)."""
-    signature = types.int64(types.int64, types.float64, y, p, types.int64, types.int64, types.int64, delay)
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        double, whole = ir.DoubleType(), ir.IntType(64)
-        pointer = double.as_pointer()
-        kind = ir.FunctionType(whole, [double, pointer, pointer, whole, whole, whole, pointer])
-        data = [context.make_array(signature.args[i])(context, builder, args[i]).data for i in (2, 3, 7)]
-        function = builder.inttoptr(args[0], kind.as_pointer())
-        return builder.call(function, [args[1], data[0], data[1], args[4], args[5], args[6], data[2]])
-
-    return signature, generate
+    """int64(double, double* y, double* p, int64 count, int64 regime, int64 which, double* delays)."""
+    whole = types.int64
+    return whole(whole, types.float64, y, p, whole, whole, whole, delay), _call
 
 
 @njit(cache=True, nogil=True, **INNER)
@@ -242,6 +225,13 @@ def _watched(functions, t, x, p, asked, n, regime, own, sloped, g, slope):
 
 
 @njit(cache=True, nogil=True, **INNER)
+def _look(functions, t, h, q, share, p, asked, n, regime, own, x, g, slope):
+    """State x and all switching functions g at a share of a step."""
+    interpolate(q, share, x)
+    return _watched(functions, t + share * h, x, p, asked, n, regime, own, 0, g, slope)
+
+
+@njit(cache=True, nogil=True, **INNER)
 def _sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
@@ -264,8 +254,7 @@ def _bracket(functions, t, h, q, p, asked, n, regime, own, sides, directions, x,
     _copy(sides, now)
     # One sample beyond each end, so that an extremum at the end of a step is seen from both sides.
     for j in range(-1, SAMPLES + 2):
-        interpolate(q, j / SAMPLES, x)
-        if _watched(functions, t + j / SAMPLES * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        if _look(functions, t, h, q, j / SAMPLES, p, asked, n, regime, own, x, g, slope) != 0:
             return -2, 0.0, 0.0
         _copy(last[1], last[0])
         _copy(last[2], last[1])
@@ -304,14 +293,12 @@ def _lowest(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
     a, b = low, high
     for _ in range(40):
         one, two = b - golden * (b - a), a + golden * (b - a)
-        interpolate(q, one, x)
-        if _watched(functions, t + one * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        if _look(functions, t, h, q, one, p, asked, n, regime, own, x, g, slope) != 0:
             return -1.0
         first = g[i] * side
         if first < 0:
             return one
-        interpolate(q, two, x)
-        if _watched(functions, t + two * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        if _look(functions, t, h, q, two, p, asked, n, regime, own, x, g, slope) != 0:
             return -1.0
         second = g[i] * side
         if second < 0:
@@ -330,8 +317,7 @@ def _locate(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        interpolate(q, middle, x)
-        if _watched(functions, t + middle * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+        if _look(functions, t, h, q, middle, p, asked, n, regime, own, x, g, slope) != 0:
             return -1.0
         if g[i] * side < 0:
             high = middle
@@ -346,13 +332,11 @@ def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, dir
 
     Two crossings between neighbouring samples come in either order.
     """
-    interpolate(q, low, x)
-    if _watched(functions, t + low * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+    if _look(functions, t, h, q, low, p, asked, n, regime, own, x, g, slope) != 0:
         return -1, 0.0
     before = np.empty(g.size)
     _copy(g, before)
-    interpolate(q, high, x)
-    if _watched(functions, t + high * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
+    if _look(functions, t, h, q, high, p, asked, n, regime, own, x, g, slope) != 0:
         return -1, 0.0
     for i in range(g.size):
         side = _sign(before[i])
@@ -517,11 +501,10 @@ def advance(
         whole[FRESH] = 0
     rejected = False
     while t < end:
+        clock[TIME], clock[STEP] = t, h
         if whole[STORED] == step_start.size or whole[EVENTS] + MOST_QUICK_EVENTS + 2 > event_time.size:
-            clock[TIME], clock[STEP] = t, h
             return FULL
         if whole[STEPS] >= most_steps:
-            clock[TIME], clock[STEP] = t, h
             return STEP_LIMIT
         h = min(h, longest)
         step = end - t if t + 1.01 * h >= end else h
@@ -529,7 +512,6 @@ def advance(
         if step < least:
             if end - t < least:
                 break
-            clock[TIME], clock[STEP] = t, h
             return TOO_SMALL
         refused = _stages(rate, t, step, y, p, count, regime, k, new)
         error = np.nan if refused != 0 else _error(step, y, new, k, n, count, tolerance, weight)
@@ -539,29 +521,24 @@ def advance(
             rejected = True
             whole[REJECTED] += 1
             if np.isnan(error) and h < least:
-                clock[TIME], clock[STEP] = t, h
                 return REFUSED if refused != 0 else NOT_FINITE
             continue
         grow = 6.0 if error == 0.0 else min(6.0, 0.9 * error ** (-0.125))
         proposed = step * (min(1.0, grow) if rejected else max(grow, 0.2))
         if _call_rate(rate, t + step, new, p, count, regime, k[STAGES]) != 0:
-            clock[TIME], clock[STEP] = t, h
             return REFUSED
         which, side = -1, 0.0
         if (m > 0 or dense) and _dense(rate, t, step, y, new, p, n, regime, k, spare, q) != 0:
-            clock[TIME], clock[STEP] = t, h
             return REFUSED
         if watched is not None:
             if m > 0:
                 which, low, high = _bracket(functions, t, step, q, p, asked, n, regime, own, sides, active, x, g, slope)
                 if which == -2:
-                    clock[TIME], clock[STEP] = t, h
                     return REFUSED
             if which >= 0:
                 side = 1.0 if active[which] == -1 else (-1.0 if active[which] == 1 else 0.0)
                 if side == 0.0:
-                    interpolate(q, high, x)
-                    _watched(functions, t + high * step, x, p, asked, n, regime, own, 0, g, slope)
+                    _look(functions, t, step, q, high, p, asked, n, regime, own, x, g, slope)
                     side = -_sign(g[which])
                 fraction = _locate(functions, t, step, q, p, asked, n, regime, own, which, side, low, high, x, g, slope)
                 for _ in range(m):
@@ -575,12 +552,10 @@ def advance(
                         functions, t, step, q, p, asked, n, regime, own, which, side, low, fraction, x, g, slope
                     )
                 if fraction < 0:
-                    clock[TIME], clock[STEP] = t, h
                     return REFUSED
                 step = fraction * step
                 for _ in range(4):
                     if _stages(rate, t, step, y, p, count, regime, k, new) != 0:
-                        clock[TIME], clock[STEP] = t, h
                         return REFUSED
                     _call_rate(rate, t + step, new, p, 0, regime, k[STAGES])
                     _watched(functions, t + step, new[:n], p, asked, n, regime, own, 1, g, slope)
@@ -610,6 +585,7 @@ def advance(
             _copy(k[STAGES], k[0])
         else:
             t += step
+        clock[TIME], clock[STEP] = t, h
         _copy(new, y)
         rejected = False
         if watched is not None:
@@ -631,7 +607,6 @@ def advance(
                     )
                     != 0
                 ):
-                    clock[TIME], clock[STEP] = t, h
                     return REFUSED
                 _copy(y[:n], event_after[at])
                 whole[EVENTS] += 1
@@ -645,19 +620,14 @@ def advance(
                     functions, t, y, p, asked, n, regime, own, which, side, jumped, active, g, slope, k, sides
                 )
                 if again < 0 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
-                    clock[TIME], clock[STEP] = t, h
                     return REFUSED
                 if whole[QUICK] > MOST_QUICK_EVENTS:
-                    clock[TIME], clock[STEP] = t, h
                     return CHATTER
                 if which >= own and stops[which - own] != 0:
-                    clock[TIME], clock[STEP] = t, h
                     return STOPPED
                 side = -side if not jumped else side
                 which = which if again == 1 else -1
         for i in range(wide):
             if not abs(y[i]) < LARGEST:
-                clock[TIME], clock[STEP] = t, h
                 return BEYOND
-    clock[TIME], clock[STEP] = t, h
     return REACHED
