@@ -14,8 +14,8 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
@@ -29,8 +29,6 @@ from trunnion.systems.regimes import Regimes
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 MOST_REGIMES = 400
 GUARDS = 3
 """Per spring; as many as its stages need, see ``_numbered``."""

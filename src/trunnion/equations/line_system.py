@@ -11,8 +11,9 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
@@ -33,7 +34,6 @@ from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
 
-Array = NDArray[np.float64]
 ANGLE_SCALE = 0.01
 """The deviation [rad] that counts as one in error control."""
 

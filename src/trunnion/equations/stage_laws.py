@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
@@ -19,7 +19,6 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.spring import StageSpring
 
-Array = NDArray[np.float64]
 Column = Callable[[int, str], int]
 
 

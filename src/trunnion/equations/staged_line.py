@@ -18,8 +18,8 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
@@ -34,9 +34,6 @@ from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 Clock = Literal["speed", "frequency", "both", "none"]
 
 

@@ -10,15 +10,13 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.compiled import kernel_file
 from trunnion.numerics.integration.integration import Watch
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction, guard_function, takes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

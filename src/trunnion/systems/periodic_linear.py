@@ -12,11 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

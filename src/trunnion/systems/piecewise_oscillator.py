@@ -7,15 +7,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.errors import InputError
 from trunnion.laws.spring import StageSpring
 
 if TYPE_CHECKING:
     from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 Damping = Literal["always", "in contact", "never pulling"]
 LAWS = ("always", "in contact", "never pulling")
 
@@ -30,8 +30,8 @@ class Regimes:
 
     pieces: Array
     guards: Array
-    then: NDArray[np.int64]
-    side: NDArray[np.int64]
+    then: Integers
+    side: Integers
 
 
 @dataclass(frozen=True)
@@ -179,10 +179,10 @@ class PiecewiseOscillator:
         return tuple(map(float, self.spring.offsets))
 
     @cached_property
-    def coefficients(self) -> NDArray[np.complex128]:
+    def coefficients(self) -> Complex:
         """B₀ and p_k − i q_k, all over the mass; the constant first."""
         highest = max([1, *(k for k, _, _ in self.harmonics)])
-        out: NDArray[np.complex128] = np.zeros(highest + 1, dtype=np.complex128)
+        out: Complex = np.zeros(highest + 1, dtype=np.complex128)
         out[0], out[1] = self.mean_force, self.force
         for k, p, q in self.harmonics:
             out[k] += complex(p, -q)

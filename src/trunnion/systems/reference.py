@@ -7,16 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.periodic_linear import PeriodicLinearSystem, from_matrices
 from trunnion.systems.regimes import Regimes, Switch
 from trunnion.systems.system import Period, System
 from trunnion.systems.user_functions import CFunction
-
-Array = NDArray[np.float64]
 
 
 def mathieu(a: float, q: float, damping: float = 0.0) -> PeriodicLinearSystem:

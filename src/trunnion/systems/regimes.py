@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.systems.user_functions import CFunction, guard_function, jump_function, parameter_tuple
 
 if TYPE_CHECKING:
     from trunnion.systems.system import System
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 class Switch(NamedTuple):

@@ -23,12 +23,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import Equations, kernel
 from trunnion.systems.regimes import Regimes
 from trunnion.systems.user_functions import CFunction, rate_function
 
-Array = NDArray[np.float64]
 MOST_AT_ONCE = 8
 """Surfaces that a motion may start on together."""
 ON_SURFACE = 1e-14

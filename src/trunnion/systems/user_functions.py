@@ -25,11 +25,11 @@ from numba.core.errors import NumbaError
 from numba.core.typing.ctypes_utils import to_ctypes
 from numba.extending import overload
 from numba.np.unsafe.ndarray import to_fixed_tuple
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 RAISED, WRONG_SHAPE = 1, 2
 STEP = 1e-3
 """Step of the fourth-order differences, in units of a state's scale: 1e-12 of truncation and of rounding."""

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
@@ -28,7 +29,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 DIRECTIONS = ("up", "down")
 
 
@@ -44,7 +44,7 @@ class BifurcationDiagram(Result):
     values: Array
     directions: tuple[str, ...]
     points: Array
-    repeat: NDArray[np.int64]
+    repeat: Integers
     section: str
     transient: int
     tolerance: float

@@ -21,7 +21,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_criteria import Criterion, criteria
 from trunnion.analyses.chaos.chaos_subject import angles, as_system, clocks, first_starts
@@ -32,6 +32,7 @@ from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, shear_boun
 from trunnion.analyses.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.analyses.motion.long_motion import motion_size, wrapped
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
@@ -44,7 +45,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 POINTS = 3000
 """Points of the Poincaré map."""
 BLOCKS, GROWN = 8, 2.0

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 SAME = 1e-9
 """Change of a rate over its size that counts as none."""
 PHASES = 7

@@ -14,11 +14,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 FREQUENCIES = 100
 FEWEST = 200
 """Points below which the test says little."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_subject import (
     BYTES_A_VALUE,
@@ -21,6 +21,7 @@ from trunnion.analyses.chaos.chaos_subject import (
 )
 from trunnion.analyses.chaos.lyapunov_result import shear_bound
 from trunnion.analyses.motion.long_motion import usual_time
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
@@ -35,7 +36,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 Request = tuple[str, float, float, int]
 
 
@@ -54,7 +54,7 @@ class LyapunovSweep(Result):
     outcome: Outcome
 
     @property
-    def positive(self) -> NDArray[np.bool_]:
+    def positive(self) -> Flags:
         """Where (values,) the largest exponent is above 0 by more than its interval."""
         return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
 
@@ -104,7 +104,7 @@ class LyapunovMap(Result):
     outcome: Outcome
 
     @property
-    def positive(self) -> NDArray[np.bool_]:
+    def positive(self) -> Flags:
         """Where (y, x) the exponent is above 0 by more than its interval."""
         return np.asarray(self.exponent - self.half_width > 0)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.numerics.averages import CONFIDENCE
 from trunnion.numerics.integration.integration import End
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
@@ -19,7 +19,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 HISTORY = 400
 """Points of a history of convergence."""
 

@@ -20,11 +20,12 @@ from dataclasses import replace
 from itertools import repeat
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_subject import as_system, clocks, first_starts, tilted_frame, whole_number
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, Run, shear_bound
 from trunnion.analyses.motion.long_motion import failure, usual_time
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.averages import BATCHES, average, batch_means, pooled
@@ -34,7 +35,6 @@ from trunnion.results.outcome import Outcome
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 PRECISION = 0.018
 """Width of the interval of the largest exponent over its size at which the default effort is content."""
 FIRST, LAST = 4096, 131072

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_subject import angles, as_system, first_starts, whole_number
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.analyses.motion.long_motion import LONGEST_REPEAT, failure, motion_size, repeat_of, usual_time, wrapped
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
@@ -32,7 +33,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 MOST_STEPS = 10_000_000
 """Of the integrator between two looks at a section."""
 

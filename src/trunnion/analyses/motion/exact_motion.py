@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.simulation import positive_time
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, staged_line
@@ -22,8 +23,6 @@ from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 MOST_EVENTS = 100_000
 SAMPLES = 1024
 

@@ -12,7 +12,7 @@ knowing the answer.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.linear.speed_sweep import sweep_speeds
 from trunnion.analyses.motion.linearity_result import LinearityCheck, LinearShaft, Passage
@@ -21,6 +21,7 @@ from trunnion.analyses.orbits.periodic_orbit import TOLERANCE
 from trunnion.analyses.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
 from trunnion.analyses.orders.response import order_response
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
@@ -28,8 +29,6 @@ from trunnion.driveline.operating_speed import operating_speed
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes, fourier
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 WIDTH = 0.2
 """A passage runs from this share of the speed below it to as much above."""
 PASSED = 161

@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
+from trunnion.arrays import Array, Complex
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -22,8 +22,6 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 SMALL = 0.01
 """A spring whose largest order is below this share of the largest of all is measured against that share."""
 FLUCTUATION = 0.1

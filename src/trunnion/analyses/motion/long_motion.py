@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.motion.integration_outcomes import GROWN, outcome_of
+from trunnion.arrays import Array
 from trunnion.numerics.integration.integration import integrate
 from trunnion.numerics.integration.tangents import Motion
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 LONGEST_REPEAT = 64
 """Returns after which a motion that has not closed is not called periodic."""
 CLOSED = 1e-5

@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.motion.simulate import LineSimulation
+from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 FEWEST_PER_TURN, PER_STEP = 64, 4
 """Samples: what swings faster than two of them would fold back on the orders shown. An integrator takes several steps
 to a swing, so four times as many samples miss none; what folds back of the bends at changes of stage stays below 1e-4

@@ -22,7 +22,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.motion.order_map import times_at_angles
@@ -30,6 +29,7 @@ from trunnion.analyses.motion.simulate import LineSimulation, simulate_line
 from trunnion.analyses.orbits.free_orbit import closes, kept_speed_orbit
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
+from trunnion.arrays import Array, Codes
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -48,7 +48,6 @@ from trunnion.results.speeds import show_speed
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 STEADY_SPEEDS = 81
 RAMP_PERIODS = 3.0
 """Of the slowest mode, over which the acceleration sets in."""
@@ -69,7 +68,7 @@ class SteadyResponse:
     speed: Array
     largest: Array
     swing: Array
-    verdict: NDArray[np.int8]
+    verdict: Codes
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,16 +6,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.motion.run_up import run_up
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

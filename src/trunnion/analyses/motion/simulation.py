@@ -8,9 +8,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
+from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
@@ -23,9 +24,6 @@ from trunnion.systems.system import System
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, repr=False)

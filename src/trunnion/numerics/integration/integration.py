@@ -15,12 +15,11 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Integers
 from trunnion.numerics.compiled import kernel_file
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 CHUNK = 4096
 MOST_STEPS = 1_000_000
 TOLERANCE = 1e-10

@@ -7,12 +7,10 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.numerics.compiled import kernel_file
 from trunnion.numerics.integration.integration import Equations
-
-Array = NDArray[np.float64]
 
 
 @cache
@@ -23,7 +21,7 @@ def _kernel() -> ModuleType:
 
 def sampled_rates(
     equations: Equations, times: Array, states: Array, regime: int
-) -> tuple[Array, Array, NDArray[np.int64]] | None:
+) -> tuple[Array, Array, Integers] | None:
     """Rates (samples, n), Jacobians (samples, n, n) and regimes (samples,) at states (samples, n).
 
     ``regime`` is that of the first sample, the others follow from the guards; None where the system refuses.

@@ -8,12 +8,11 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.numerics.compiled import kernel_file
 from trunnion.numerics.integration.integration import TOLERANCE, End, Equations
 
-Array = NDArray[np.float64]
 CHUNK = 512
 """Samples between two looks of the interpreter."""
 MOST_STEPS = 1_000_000
@@ -66,7 +65,7 @@ class Motion:
     tolerance: float = TOLERANCE
     most_steps: int = MOST_STEPS
     _clock: Array = field(init=False, repr=False)
-    _whole: NDArray[np.int64] = field(init=False, repr=False)
+    _whole: Integers = field(init=False, repr=False)
     _block: Array = field(init=False, repr=False)
     _numbers: Array = field(init=False, repr=False)
 

@@ -9,12 +9,12 @@ from types import ModuleType
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.errors import ComputationError
 from trunnion.numerics.compiled import kernel_file
 
-Array = NDArray[np.float64]
 MOST_EVENTS = 4096
 """Rows of the record of one call."""
 COLUMNS = (
@@ -46,11 +46,11 @@ class Tables(Protocol):
         """(regimes, most, 3)."""
 
     @property
-    def then(self) -> NDArray[np.int64]:
+    def then(self) -> Integers:
         """(regimes, most)."""
 
     @property
-    def side(self) -> NDArray[np.int64]:
+    def side(self) -> Integers:
         """(regimes,)."""
 
 
@@ -82,7 +82,7 @@ class TooManyEventsError(ComputationError):
 
 def move(
     tables: Tables,
-    force: NDArray[np.complex128],
+    force: Complex,
     frequency: float,
     state: ArrayLike,
     start: float,
@@ -118,7 +118,7 @@ def move(
 
 def states(
     tables: Tables,
-    force: NDArray[np.complex128],
+    force: Complex,
     frequency: float,
     state: ArrayLike,
     times: Array,
@@ -133,7 +133,7 @@ def states(
     return out
 
 
-def period(tables: Tables, force: NDArray[np.complex128], frequency: float, state: Array, periods: int) -> Passage:
+def period(tables: Tables, force: Complex, frequency: float, state: Array, periods: int) -> Passage:
     """The motion over ``periods`` forcing periods, its last tangent the derivative by ω of the state after them.
 
     The time of the end depends on ω as well, and adds the rate there.
@@ -149,9 +149,7 @@ def period(tables: Tables, force: NDArray[np.complex128], frequency: float, stat
     return passage
 
 
-def measure(
-    tables: Tables, force: NDArray[np.complex128], frequency: float, state: ArrayLike, periods: int
-) -> dict[str, float]:
+def measure(tables: Tables, force: Complex, frequency: float, state: ArrayLike, periods: int) -> dict[str, float]:
     """What the motion from ``state`` at phase zero does in ``periods`` periods: columns of a row, by name."""
     k = kernel()
     x = np.array(state, dtype=float)

@@ -8,13 +8,11 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.numerics.compiled import kernel_file
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 MOST_EVENTS = 8192
 """Changes of stage in one call, unless told otherwise."""
 
