@@ -93,6 +93,15 @@ def parameters_of(system: System) -> Iterator[Held]:
         yield remark(f"parameter {name}", value)
 
 
+def about(system: System, outcome: Outcome, **remarks: object) -> Iterator[Held]:
+    """What a result on a system says of the whole: the system, ``remarks``, how it ended, the parameters."""
+    yield remark("system", system.name)
+    for name, value in remarks.items():
+        yield remark(name, value)
+    yield from ending(outcome)
+    yield from parameters_of(system)
+
+
 class Result(ABC):
     """Base of what analyses return; a subclass writes ``declared`` and its words, ``__str__`` or ``Described``."""
 

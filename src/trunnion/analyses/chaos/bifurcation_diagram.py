@@ -19,7 +19,7 @@ from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, about, axis, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import parameter_axis
@@ -57,12 +57,8 @@ class BifurcationDiagram(Result):
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
             yield over("direction value point", name, self.points[..., i], unit)
         yield over("direction value", "repeat", self.repeat)
-        yield remark("system", self.system.name)
-        yield remark("section", self.section)
-        yield remark("transient", self.transient)
-        yield remark("tolerance", self.tolerance)
-        yield from ending(self.outcome)
-        yield from parameters_of(self.system)
+        remarks = {"section": self.section, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **remarks)
 
     def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
         """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""

@@ -26,7 +26,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, about, axis, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import parameter_axis
@@ -64,7 +64,8 @@ class LyapunovSweep(Result):
         yield axis("order", np.arange(1, self.exponents.shape[1] + 1))
         yield over("value order", "exponent", self.exponents, "1/s")
         yield over("value order", "half_width", self.half_width, "1/s")
-        yield from _remarks(self)
+        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **effort)
 
     def plot(self, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
         """Exponents over the parameter."""
@@ -114,7 +115,8 @@ class LyapunovMap(Result):
             yield axis(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
         yield over("y x", "exponent", self.exponent, "1/s")
         yield over("y x", "half_width", self.half_width, "1/s")
-        yield from _remarks(self)
+        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **effort)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
@@ -255,12 +257,3 @@ def _told(told: list[str], total: int) -> Outcome:
     return Outcome(
         False, "failed in part", f"at {len(told)} of {total} points the motion did not reach its end, first {told[0]}"
     )
-
-
-def _remarks(result: LyapunovSweep | LyapunovMap) -> Iterator[Held]:
-    yield remark("system", result.system.name)
-    yield remark("periods", result.periods)
-    yield remark("transient", result.transient)
-    yield remark("tolerance", result.tolerance)
-    yield from ending(result.outcome)
-    yield from parameters_of(result.system)

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.numerics.averages import CONFIDENCE
 from trunnion.numerics.integration.integration import End
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, about, axis, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
@@ -142,19 +142,12 @@ class LyapunovSpectrum(Result):
         yield over("start order", "half_width_of_start", self.by_start_half_width, "1/s")
         yield over("start time order", "running_mean", history, "1/s")
         yield over("start state", "start_state", self.starts)
-        yield remark("system", self.system.name)
-        yield remark("sum", self.sum)
-        if not np.isnan(self.divergence):
-            yield remark("divergence", self.divergence)
-            yield remark("sum_error", self.sum_error)
-        yield remark("confidence", CONFIDENCE)
-        yield remark("interval", self.interval)
-        yield remark("samples", self.samples)
-        yield remark("transient", self.transient)
-        yield remark("tolerance", self.tolerance)
-        yield remark("averaging", "windowed" if self.windowed else "plain")
-        yield from ending(self.outcome)
-        yield from parameters_of(self.system)
+        rule = {} if np.isnan(self.divergence) else {"divergence": self.divergence, "sum_error": self.sum_error}
+        yield from about(
+            self.system, self.outcome, sum=self.sum, **rule, confidence=CONFIDENCE, interval=self.interval,
+            samples=self.samples, transient=self.transient, tolerance=self.tolerance,
+            averaging="windowed" if self.windowed else "plain",
+        )  # fmt: skip
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Running means of the exponents over time."""

@@ -22,7 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, ending, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, about, over
 from trunnion.results.drawing import drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axis
@@ -71,13 +71,10 @@ class PoincareMap(Result):
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
             yield over("point", name, self.points[:, i], unit)
         yield over("point", "time", self.time, "s")
-        yield remark("system", self.system.name)
-        yield remark("section", self.section)
-        yield remark("repeat", self.repeat)
-        yield remark("transient", self.transient)
-        yield remark("tolerance", self.tolerance)
-        yield from ending(self.outcome)
-        yield from parameters_of(self.system)
+        yield from about(
+            self.system, self.outcome, section=self.section, repeat=self.repeat, transient=self.transient,
+            tolerance=self.tolerance,
+        )  # fmt: skip
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
         """One state over another; see ``trunnion.plots.chaos.draw_map``."""
