@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Axes
+    from matplotlib.figure import Figure as Figure
+else:  # what draws takes long to load, and results are drawn seldom
+    Axes = Figure = Any
 
 
 def drawing(result: object, method: str) -> Callable[..., Any]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,14 +19,11 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, axis, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import parameter_axis
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 DIRECTIONS = ("up", "down")
 

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,13 +37,10 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
 from trunnion.results.declared import Held, Result, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Figure, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 POINTS = 3000
 """Points of the Poincaré map."""

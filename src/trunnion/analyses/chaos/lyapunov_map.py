@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,14 +26,11 @@ from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, axis, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import parameter_axis
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Request = tuple[str, float, float, int]
 

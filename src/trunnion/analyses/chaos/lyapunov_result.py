@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,12 +11,9 @@ from trunnion.arrays import Array
 from trunnion.numerics.averages import CONFIDENCE
 from trunnion.numerics.integration.integration import End
 from trunnion.results.declared import Held, Result, about, axis, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 HISTORY = 400
 """Points of a history of convergence."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,15 +22,12 @@ from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axis
 from trunnion.systems.events import Event
 from trunnion.systems.maps import SectionMap, TimedMap
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 MOST_STEPS = 10_000_000
 """Of the integrator between two looks at a section."""

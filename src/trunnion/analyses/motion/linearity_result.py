@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,13 +13,10 @@ from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.arrays import Array, Complex
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SMALL = 0.01
 """A spring whose largest order is below this share of the largest of all is measured against that share."""

@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -41,12 +40,9 @@ from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STEADY_SPEEDS = 81
 RAMP_PERIODS = 3.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,13 +22,10 @@ from trunnion.errors import InputError
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, joined
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 PER_TURN = 128
 MOST_SAMPLES = 200_000

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,14 +15,11 @@ from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axis
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, repr=False)
