@@ -49,7 +49,7 @@ def test_compiled_equations_are_the_written_ones(seed: int, made: Callable[[int]
         np.testing.assert_allclose(found[n:], expected, atol=2e-13 * np.abs(expected).max())
         np.testing.assert_array_equal(found[:n], state[n:])
     # The rigid line is at rest in both descriptions.
-    np.testing.assert_allclose(line.rigid(0.0)[:n] + offset, slow.base_angles(0.0), atol=1e-14)
+    np.testing.assert_allclose(line.rest()[:n] + offset, slow.base_angles(0.0), atol=1e-14)
 
 
 def loaded_lines() -> dict[str, tn.Driveline]:
