@@ -1,9 +1,8 @@
 """Stages of gear meshes and of shafts with stages as regimes of a line, one number for all of them together.
 
 A spring with s stages counts them 0 … s − 1; the regime of the line is Σ stage · stride, the strides being products of
-the numbers of stages before. Each spring has three guards. Two stages see the surface between them as one function
-under one number, crossed upwards from one and downwards from the other, so that behind a crossing nothing starts at a
-zero whose sign is rounding. Sliders of clutches are parts of three stages, with guards of their own.
+the numbers of stages before. Each has the guards that ``laws.stages`` numbers. Sliders of clutches are parts of three
+stages.
 """
 
 from __future__ import annotations
@@ -19,19 +18,16 @@ from trunnion.arrays import Array, Integers
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.sliders import SLIDER_STAGES, sliders
+from trunnion.equations.sliders import sliders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
+from trunnion.laws.stages import GUARDS, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
-from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
-from trunnion.systems.piecewise_oscillator import Regimes as Stages
 from trunnion.systems.regimes import Regimes
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
 
 MOST_REGIMES = 400
-GUARDS = 3
-"""Per spring; as many as its stages need, see ``_numbered``."""
 
 
 def guards_kernel() -> ModuleType:
@@ -44,32 +40,30 @@ def guards_kernel() -> ModuleType:
 class StagedSpring:
     """One spring's numbers as ``line_kernel`` reads them.
 
-    table (stages, 3 + 4 · GUARDS); side (stages,): −1 below the softest stage, +1 above, 0 in it; then (stages,
-    GUARDS): the next stage or −1; error, wave (harmonics, 3).
+    law: its stages; error, wave (harmonics, 3): amplitude, cycles per turn of the input and phase of the mesh's.
     """
 
     name: str
     stride: int
-    table: Array
-    side: Integers
-    then: Integers
+    law: Stages
     error: Array
     wave: Array
 
     @property
     def stages(self) -> int:
         """How many."""
-        return len(self.table)
+        return len(self.law.pieces)
 
     @property
-    def directions(self) -> Array:
-        """In which each guard is crossed, (stages, GUARDS)."""
-        return self.table[:, 3:].reshape(self.stages, GUARDS, 4)[:, :, 3]
+    def side(self) -> Integers:
+        """Of every stage (stages,): −1 below the softest one, +1 above, 0 in it."""
+        return self.law.side
 
     @property
     def numbers(self) -> Array:
         """All of them in a row."""
-        return np.concatenate([self.table.ravel(), self.error.ravel(), self.wave.ravel()])
+        table = np.concatenate([self.law.pieces, self.law.guards.reshape(self.stages, -1)], axis=1)
+        return np.concatenate([table.ravel(), self.error.ravel(), self.wave.ravel()])
 
 
 def staged_springs(assembly: Assembly, row: Array) -> dict[int, StagedSpring]:
@@ -92,10 +86,6 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
     else:
         damping = float(spring_damping(element, place, column, row[None])[0])
     kind = element.damping_law if law.knots.size and isinstance(element, GearPair | PiecewiseShaft) else "always"
-    name = assembly.line.names[place]
-    oscillator = PiecewiseOscillator(tuple(law.knots[0]), tuple(law.slopes[0]), damping, damping_law=kind, name=name)
-    guards, then = _numbered(oscillator.regimes)
-    table = np.concatenate([oscillator.regimes.pieces, guards.reshape(len(guards), -1)], axis=1)
     error, wave = np.zeros((0, 3)), np.zeros((0, 3))
     if isinstance(element, GearPair):
         teeth = next((mesh.teeth for mesh in assembly.topology.meshes if mesh.element == place), 0)
@@ -103,35 +93,7 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
-    return StagedSpring(name, stride, table, oscillator.regimes.side, then, error, wave)
-
-
-def _numbered(regimes: Stages) -> tuple[Array, Integers]:
-    """Guards (stages, GUARDS, 4) as (a, e, h, direction), and where they lead (stages, GUARDS).
-
-    Given are functions that fall through zero at the end of a stage. Those of two neighbours differ in sign only: they
-    become one, and get a number that no other function of the same stage has.
-    """
-    found: list[list[tuple[tuple[float, ...], float, int]]] = []
-    for functions, then in zip(regimes.guards, regimes.then, strict=True):
-        own = []
-        for function, next_stage in zip(functions, then, strict=True):
-            if next_stage >= 0:
-                sign = float(np.sign(function[0] or function[1]))
-                own.append((tuple(float(v) + 0.0 for v in sign * function), -sign, int(next_stage)))
-        found.append(own)
-    number: dict[tuple[float, ...], int] = {}
-    for function in (f for own in found for f, _, _ in own):
-        if function not in number:
-            stages = [[f for f, _, _ in own] for own in found]
-            taken = {number[f] for stage in stages if function in stage for f in stage if f in number}
-            number[function] = next(i for i in range(GUARDS) if i not in taken)
-    guards, leads = np.zeros((len(found), GUARDS, 4)), np.full((len(found), GUARDS), -1, dtype=np.int64)
-    for stage, own in enumerate(found):
-        for function, direction, next_stage in own:
-            guards[stage, number[function]] = *function, direction
-            leads[stage, number[function]] = next_stage
-    return guards, leads
+    return StagedSpring(assembly.line.names[place], stride, stages_of(law.first, damping, kind), error, wave)
 
 
 def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, cycles: float) -> Array:
@@ -174,18 +136,20 @@ def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
 
 @dataclass(frozen=True)
 class _Part:
-    """What a regime is made of: one spring or slider with stages, and what each of its guards leads to.
+    """What a regime is made of: one spring or slider with stages.
 
     ``along``: numbers of the parts, itself among them, that come to stick together where they slip together.
     """
 
     name: str
     stride: int
-    stages: int
-    then: Integers
-    directions: Array
+    law: Stages
     words: tuple[str, ...]
     along: tuple[int, ...] = ()
+
+    def stage(self, regime: int) -> int:
+        """Its stage in a regime of the line."""
+        return regime // self.stride % len(self.law.pieces)
 
 
 def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
@@ -198,7 +162,7 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
     parts = _parts(assembly)
     if not parts:
         return None
-    count = prod(part.stages for part in parts)
+    count = prod(len(part.law.pieces) for part in parts)
     if count > MOST_REGIMES:
         raise InputError(
             f"have {count} combinations of stages, more than the {MOST_REGIMES} that are told apart",
@@ -208,15 +172,16 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
     directions = np.zeros_like(transitions)
     for regime in range(count):
         for i, part in enumerate(parts):
-            stage = regime // part.stride % part.stages
+            stage, law = part.stage(regime), part.law
             for guard in range(GUARDS):
-                then = part.then[stage, guard]
-                if then >= 0:
-                    same = [parts[j] for j in part.along if regime // parts[j].stride % parts[j].stages == stage]
-                    step = sum(p.stride for p in same) if same and stage != STICKS else part.stride
+                then = law.then[stage, guard]
+                at_rest = law.moves[stage] == 0 and law.guards[stage, guard, 0] != 0
+                if then >= 0 and not at_rest:
+                    same = [parts[j].stride for j in part.along if parts[j].stage(regime) == stage]
+                    step = sum(same) if same and stage != STICKS else part.stride
                     transitions[regime, GUARDS * i + guard] = regime + (then - stage) * step
-                    directions[regime, GUARDS * i + guard] = int(part.directions[stage, guard])
-    names = tuple(", ".join(f"{p.name} {p.words[r // p.stride % p.stages]}" for p in parts) for r in range(count))
+                    directions[regime, GUARDS * i + guard] = int(law.guards[stage, guard, 3])
+    names = tuple(", ".join(f"{p.name} {p.words[p.stage(r)]}" for p in parts) for r in range(count))
     guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
     compiled, jump = guards_kernel().line_guards, guards_kernel().line_jump
     return LineRegimes(
@@ -233,17 +198,11 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
     )
 
 
-STICKS = 1
-"""Stage of a slider between slipping back and slipping on."""
-_SLIDER_THEN = np.array([[-1, -1, STICKS], [0, 2, -1], [-1, -1, STICKS]], dtype=np.int64)
-_SLIDER_DIRECTIONS = np.array([[0, 0, 1], [-1, 1, 0], [0, 0, -1]])
-
-
 def _parts(assembly: Assembly) -> list[_Part]:
     row = assembly.table(1)[0]
     springs = staged_springs(assembly, row)
     found = [
-        _Part(s.name, s.stride, s.stages, s.then, s.directions, tuple(f"stage {i + 1}" for i in range(s.stages)))
+        _Part(s.name, s.stride, s.law, tuple(f"stage {i + 1}" for i in range(s.stages)))
         for s in springs.values()
         if s.stages > 1
     ]
@@ -252,6 +211,5 @@ def _parts(assembly: Assembly) -> list[_Part]:
     for slider, stride in zip(rubbing, slider_strides(springs, len(rubbing)), strict=True):
         # All that slip on one twist stick together: it turns for them at the same instant.
         along = tuple(first + j for j, other in enumerate(rubbing) if other.compliance == slider.compliance)
-        part = _Part(slider.name, stride, SLIDER_STAGES, _SLIDER_THEN, _SLIDER_DIRECTIONS, words, along)
-        found.append(part)
+        found.append(_Part(slider.name, stride, slider.stages, words, along))
     return found

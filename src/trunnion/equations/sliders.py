@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
@@ -18,13 +16,7 @@ from trunnion.driveline.elements import Element
 from trunnion.driveline.parameters import PackedLine
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
-
-SLIDER_STAGES = 3
-"""Slips with falling twist, sticks, slips with rising twist."""
-SLIDER_THEN = np.array([[1, 1, -1], [0, 2, -1], [1, 1, -1]], dtype=np.int64)
-"""Where the guards of each stage lead."""
-SLIDER_MOVES = np.array([0.0, 1.0, 0.0])
-"""Whether the deflection follows the twist in a stage."""
+from trunnion.laws.stages import Stages, slider_stages
 
 
 @dataclass(frozen=True)
@@ -42,14 +34,9 @@ class PlacedSlider:
         return self.torque / self.stiffness
 
     @property
-    def guards(self) -> Array:
-        """(stage, guard, 4): a, h, r, direction; a stage ends where a x + h q' − r crosses zero in that direction."""
-        table = np.zeros((SLIDER_STAGES, 3, 4))
-        # The second guards of slip are at rest in it, and tell it from stick.
-        table[0, 0], table[0, 1] = (0.0, 1.0, 0.0, 1.0), (1.0, 0.0, -self.reach, 1.0)
-        table[1, 0], table[1, 1] = (1.0, 0.0, -self.reach, -1.0), (1.0, 0.0, self.reach, 1.0)
-        table[2, 0], table[2, 1] = (0.0, 1.0, 0.0, -1.0), (1.0, 0.0, self.reach, -1.0)
-        return table
+    def stages(self) -> Stages:
+        """Slips back, sticks, slips on."""
+        return slider_stages(self.stiffness, self.reach)
 
 
 def sliders(packed: PackedLine, topo: Topology, row: Array) -> tuple[PlacedSlider, ...]:

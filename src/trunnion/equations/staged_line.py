@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,11 +27,12 @@ from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
-from trunnion.equations.line_regimes import GUARDS, StagedSpring, staged_springs
+from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
-from trunnion.equations.sliders import SLIDER_MOVES, SLIDER_STAGES, SLIDER_THEN, sliders
+from trunnion.equations.sliders import sliders
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
+from trunnion.laws.stages import Stages
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
 Clock = Literal["speed", "frequency", "both", "none"]
@@ -299,12 +300,14 @@ class _Builder:
         speed = self.turning.given
         if needed:
             speed = self.turning.speed(line)
-        pieces, guards, then, counts, sides, moves = self._stages()
+        parts = self._parts()
         springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
             self.assembly, springs, names, self.source, self.turns, speed, inverse, drag, constant, by_speed, waves,
-            pieces, guards, then, counts, sides, moves,
+            _padded([part.pieces for part in parts], 0.0), _padded([part.guards for part in parts], 0.0),
+            _padded([part.then for part in parts], -1), np.array([len(part.pieces) for part in parts]),
+            _padded([part.side for part in parts], 0), _padded([part.moves for part in parts], 1.0),
         )  # fmt: skip
 
     def _push(self, station: int) -> Array:
@@ -362,27 +365,19 @@ class _Builder:
                     found.append(Wave(float(cycles), 0.0, np.zeros(len(error), dtype=complex), error))
         return found
 
-    def _stages(self) -> tuple[Array, Array, Integers, Integers, Integers, Array]:
-        first = len(self.topo.compliances)
-        springs: list[StagedSpring | None] = [self.laws.get(e) for e in range(first)]
-        springs += [None] * (len(self.twisting) - first)
-        count, most = len(springs), max([1, *(s.stages for s in springs if s)])
-        most = max(most, SLIDER_STAGES if self.sliders else 1)
-        pieces, guards = np.zeros((count, most, 3)), np.zeros((count, most, GUARDS, 4))
-        then, sides = np.full((count, most, GUARDS), -1, dtype=np.int64), np.zeros((count, most), dtype=np.int64)
-        counts = np.ones(count, dtype=np.int64)
-        for e, spring in enumerate(springs):
-            if spring is None:
-                if e < len(self.topo.compliances):
-                    pieces[e, 0, :2] = self.coefficients.damping[0, e], self.coefficients.stiffness[0, e]
-                continue
-            counts[e] = n = spring.stages
-            pieces[e, :n], sides[e, :n], then[e, :n] = spring.table[:, :3], spring.side, spring.then
-            guards[e, :n] = spring.table[:, 3:].reshape(n, GUARDS, 4)
-        moves = np.ones((count, most))
-        for e, slider in enumerate(self.sliders, start=first):
-            counts[e] = SLIDER_STAGES
-            pieces[e, :SLIDER_STAGES, 1] = slider.stiffness
-            guards[e, :SLIDER_STAGES], then[e, :SLIDER_STAGES] = slider.guards, SLIDER_THEN
-            moves[e, :SLIDER_STAGES], sides[e, :SLIDER_STAGES] = SLIDER_MOVES, (-1, 0, 1)
-        return pieces, guards, then, counts, sides, moves
+    def _parts(self) -> list[Stages]:
+        """The stages of every row: springs, sliders, and the rotation of the first inertia, which carries nothing."""
+        damping, stiffness = self.coefficients.damping[0], self.coefficients.stiffness[0]
+        found = [Stages.apart([[c, k, 0.0]]) for c, k in zip(damping, stiffness, strict=True)]
+        for e, spring in self.laws.items():
+            found[e] = spring.law
+        found += [slider.stages for slider in self.sliders]
+        return found + [Stages.apart([[0.0, 0.0, 0.0]])] * (len(self.twisting) - len(found))
+
+
+def _padded(rows: list[Any], fill: float) -> Any:
+    """Arrays of unlike length, one below the other."""
+    out = np.full((len(rows), max(map(len, rows)), *rows[0].shape[1:]), fill, dtype=rows[0].dtype)
+    for place, row in zip(out, rows, strict=True):
+        place[: len(row)] = row
+    return out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.errors import InputError
 from trunnion.laws.spring import StageSpring
-
-if TYPE_CHECKING:
-    from trunnion.systems.system import System
+from trunnion.laws.stages import softest, stages_of
+from trunnion.systems.reference import dead_zone_oscillator
+from trunnion.systems.system import System
 
 Damping = Literal["always", "in contact", "never pulling"]
 LAWS = ("always", "in contact", "never pulling")
@@ -24,8 +24,9 @@ LAWS = ("always", "in contact", "never pulling")
 class Regimes:
     """What the exact motion is computed from, all divided by the mass; see ``numerics/piecewise_kernel``.
 
-    pieces (regimes, 3): damping, slope and offset; guards (regimes, most, 3); then (regimes, most): the next
-    regime; side (regimes,): +1 or −1 in contact above or below the gap, 0 in it.
+    pieces (regimes, 3): damping, slope and offset; guards (regimes, most, 3): a, e, h of what falls through zero at the
+    end of a regime; then (regimes, most): the next regime; side (regimes,): +1 or −1 in contact above or below the gap,
+    0 in it.
     """
 
     pieces: Array
@@ -164,9 +165,7 @@ class PiecewiseOscillator:
     @property
     def softest(self) -> int:
         """Number of the piece with the smallest slope, the gap of a backlash (the one nearest to 0 of several)."""
-        ends = [-np.inf, *self.breakpoints, np.inf]
-        distance = [max(ends[i], -ends[i + 1], 0.0) for i in range(len(self.slopes))]
-        return min(range(len(self.slopes)), key=lambda i: (self.slopes[i], distance[i]))
+        return softest(self.spring)
 
     @cached_property
     def spring(self) -> StageSpring:
@@ -221,8 +220,6 @@ class PiecewiseOscillator:
         ------
         InputError : not a symmetric gap with damping that always acts and one harmonic of force.
         """
-        from trunnion.systems.reference import dead_zone_oscillator
-
         symmetric = len(self.breakpoints) == 2 and self.breakpoints[0] == -self.breakpoints[1]
         if not symmetric or self.slopes[0] != self.slopes[2] or self.damping_law != "always" or self.harmonics:
             raise InputError(
@@ -239,41 +236,7 @@ class PiecewiseOscillator:
     @cached_property
     def regimes(self) -> Regimes:
         """The linear regimes and what leads from one to another."""
-        return _surfaces(self) if self.damping_law == "never pulling" else _pieces(self)
-
-
-def _pieces(oscillator: PiecewiseOscillator) -> Regimes:
-    m, gap, count = oscillator.inertia, oscillator.softest, len(oscillator.slopes)
-    side = np.sign(np.arange(count) - gap).astype(np.int64)
-    damped = np.ones(count) if oscillator.damping_law == "always" or count == 1 else np.abs(side)
-    pieces = np.stack([oscillator.damping * damped, oscillator.slopes, oscillator.offsets], axis=1) / m
-    guards, then = np.zeros((count, 2, 3)), np.full((count, 2), -1, dtype=np.int64)
-    for i, knot in enumerate(oscillator.breakpoints):
-        guards[i, 1], then[i, 1] = (-1.0, 0.0, -knot), i + 1
-        guards[i + 1, 0], then[i + 1, 0] = (1.0, 0.0, knot), i
-    return Regimes(np.ascontiguousarray(pieces), guards, then, side)
-
-
-def _surfaces(oscillator: PiecewiseOscillator) -> Regimes:
-    """Gap 0; at each side: pressed no more than doubly, pressed with damping, let go."""
-    m, c = oscillator.inertia, oscillator.damping
-    pieces = np.zeros((7, 3))
-    guards, then = np.zeros((7, 2, 3)), np.full((7, 2), -1, dtype=np.int64)
-    for sign, first in ((1, 1), (-1, 4)):
-        k = oscillator.slopes[2 if sign > 0 else 0]
-        knot = oscillator.breakpoints[1 if sign > 0 else 0]
-        doubly, damped, free = first, first + 1, first + 2
-        pieces[doubly] = 0.0, 2 * k / m, -2 * k * knot / m
-        pieces[damped] = c / m, k / m, -k * knot / m
-        guards[0, 0 if sign > 0 else 1] = -sign, 0.0, -sign * knot
-        then[0, 0 if sign > 0 else 1] = doubly
-        guards[doubly, 0] = -sign * k, sign * c, -sign * k * knot
-        then[doubly, 0] = damped
-        guards[damped, 0] = sign * k, sign * c, sign * k * knot
-        guards[damped, 1] = sign * k, -sign * c, sign * k * knot
-        then[damped] = free, doubly
-        guards[free, 0] = sign, 0.0, sign * knot
-        guards[free, 1] = -sign * k, -sign * c, -sign * k * knot
-        then[free] = 0, damped
-        guards[doubly, 1], then[doubly, 1] = (sign, 0.0, sign * knot), 0
-    return Regimes(pieces, guards, then, np.array([0, 1, 1, 1, -1, -1, -1]))
+        found = stages_of(self.spring, self.damping, self.damping_law)
+        used = (found.then >= 0).any(axis=0)
+        falling = np.ascontiguousarray((-found.guards[..., 3:] * found.guards[..., :3])[:, used])
+        return Regimes(found.pieces / self.inertia, falling, np.ascontiguousarray(found.then[:, used]), found.side)
