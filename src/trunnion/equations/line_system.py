@@ -116,12 +116,7 @@ class LineSystem:
     @cached_property
     def harmonics(self) -> tuple[HarmonicTorque, ...]:
         """The harmonic torques of all disks."""
-        names, elements = self.assembly.line.names, self.assembly.line.elements
-        return tuple(
-            HarmonicTorque(station, i, h, names[i], harmonic)
-            for station, i in self.assembly.topology.disks
-            for h, harmonic in enumerate(getattr(elements[i], "excitation", ()), start=1)
-        )
+        return harmonic_torques(self.assembly)
 
     @cached_property
     def period_turns(self) -> Fraction | None:
@@ -374,6 +369,16 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
     out[core.LINK], out[core.SIZE], out[core.COSINE] = core.FOURIER, place, len(law.orders)
     parts = [number(part) for part in (*law.amplitude, *law.phase)]
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
+
+
+def harmonic_torques(assembly: Assembly) -> tuple[HarmonicTorque, ...]:
+    """The harmonic torques of all disks of a line."""
+    names, elements = assembly.line.names, assembly.line.elements
+    return tuple(
+        HarmonicTorque(station, i, h, names[i], harmonic)
+        for station, i in assembly.topology.disks
+        for h, harmonic in enumerate(getattr(elements[i], "excitation", ()), start=1)
+    )
 
 
 def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:

@@ -28,7 +28,7 @@ from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import staged_springs
-from trunnion.equations.line_system import refuse_second_speed
+from trunnion.equations.line_system import harmonic_torques, refuse_second_speed
 from trunnion.equations.sliders import sliders
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -276,7 +276,8 @@ class _Builder:
         self.row = assembly.table(1)[0]
         self.coefficients = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
         self.laws = staged_springs(assembly, self.row)
-        self.viscous = self._viscous()
+        self.viscous = self.topo.on_unknowns(self.coefficients.viscous)[0]
+        """V (n,)."""
         self.turns = self.topo.free and bool(self.viscous.any())
         self.sliders = sliders(assembly.packed, assembly.topology, self.row)
         own = twisting_of(self.topo, self.turns)
@@ -288,13 +289,17 @@ class _Builder:
         mass = aligned_matrices(self.topo, self.coefficients).mass[0]
         self.accelerated = self.twisting / mass
         """E M⁻¹, (m, n)."""
+        unknown = self.topo.unknown_of
+        self.push = np.where(unknown >= 0, self.accelerated[:, unknown] * self.topo.relative_ratios, 0.0)
+        """q″ by a unit torque at every station (m, station)."""
 
     def build(self) -> StagedLine:
         line, topo = self.assembly.line, self.topo
         drag = np.zeros((len(self.twisting),) * 2)
         if self.viscous.any():
             drag[:, self.own] = (self.accelerated * self.viscous) @ np.linalg.inv(self.twisting[self.own])
-        constant, by_speed = self._constant()
+        constant = -self.push @ (self.coefficients.load[0] * np.sign(topo.mean_speeds))
+        by_speed = -self.push @ (self.coefficients.viscous[0] * topo.mean_speeds)
         waves = tuple(self._torques() + self._errors())
         needed = any(w.cycles for w in waves) or bool(by_speed.any() and not topo.free)
         speed = self.turning.given
@@ -310,49 +315,17 @@ class _Builder:
             _padded([part.side for part in parts], 0), _padded([part.moves for part in parts], 1.0),
         )  # fmt: skip
 
-    def _push(self, station: int) -> Array:
-        """q″ (m,) by a unit torque at a station."""
-        coordinate = self.topo.coordinate[self.topo.group_of(station)]
-        if coordinate < 0:
-            return np.zeros(len(self.twisting))
-        return np.asarray(self.accelerated[:, coordinate] * self.topo.relative_ratios[station])
-
-    def _loads(self) -> list[tuple[int, float]]:
-        """Stations with viscous loads [N m s/rad]."""
-        column = self.assembly.packed.column
-        return [(s, float(self.row[column(i, "viscous_load")])) for s, i in self.topo.disks]
-
-    def _viscous(self) -> Array:
-        """V (n,)."""
-        out = np.zeros(self.topo.size)
-        for station, load in self._loads():
-            coordinate = self.topo.coordinate[self.topo.group_of(station)]
-            if coordinate >= 0:
-                out[coordinate] += load * self.topo.relative_ratios[station] ** 2
-        return out
-
-    def _constant(self) -> tuple[Array, Array]:
-        """q″ (m,) by the loads, and its part per input speed."""
-        mean = [float(q) for q in self.topo.speed_ratio]
-        constant, by_speed = np.zeros(len(self.twisting)), np.zeros(len(self.twisting))
-        for station in range(len(self.topo.stations)):
-            constant -= self._push(station) * self.coefficients.load[0, station] * np.sign(mean[station])
-        for station, load in self._loads():
-            by_speed -= self._push(station) * load * mean[station]
-        return constant, by_speed
-
     def _torques(self) -> list[Wave]:
-        found, column = [], self.assembly.packed.column
-        for station, i in self.topo.disks:
-            element, mean = self.assembly.line.elements[i], float(self.topo.speed_ratio[station])
-            for h, harmonic in enumerate(element.excitation if isinstance(element, Disk) else (), start=1):
-                torque = harmonic_torque(self.assembly.packed, self.topo, station, i, h, self.row[None])[0]
-                push = self._push(station) * float(np.sign(mean)) * torque
-                # By order at the mean rotation: the torque does not follow the deviation of its own disk.
-                cycles = abs(mean) * (harmonic.order or 0.0)
-                frequency = 0.0 if harmonic.order else float(self.row[column(i, f"excitation {h} frequency")])
-                if push.any():
-                    found.append(Wave(cycles, frequency, push, np.zeros(len(push), dtype=complex)))
+        found, packed = [], self.assembly.packed
+        for one in harmonic_torques(self.assembly):
+            mean = float(self.topo.mean_speeds[one.station])
+            torque = harmonic_torque(packed, self.topo, one.station, one.element, one.number, self.row[None])[0]
+            push = self.push[:, one.station] * float(np.sign(mean)) * torque
+            # By order at the mean rotation: the torque does not follow the deviation of its own disk.
+            order = one.law.order or 0.0
+            frequency = 0.0 if order else float(self.row[packed.column(one.element, f"{one.key} frequency")])
+            if push.any():
+                found.append(Wave(abs(mean) * order, frequency, push, np.zeros(len(push), dtype=complex)))
         return found
 
     def _errors(self) -> list[Wave]:
