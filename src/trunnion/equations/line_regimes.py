@@ -7,6 +7,7 @@ stages.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -24,7 +25,6 @@ from trunnion.errors import InputError
 from trunnion.laws.stages import GUARDS, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.regimes import Regimes
-from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
 
 MOST_REGIMES = 400
@@ -123,9 +123,9 @@ class LineRegimes(Regimes):
         first = len(self.guards) - GUARDS * self.sliders
         return self.sliders - len({(int(i) - first) // GUARDS for i in fired if first <= i < len(self.guards)})
 
-    def at(self, system: System, time: float, state: Array) -> int:
+    def at(self, time: float, state: Array, parameters: Mapping[str, float], numbers: Array) -> int:
         assert self.kernel is not None
-        return int(self.kernel.locate(float(time), np.ascontiguousarray(state, dtype=float), system.numbers))
+        return int(self.kernel.locate(float(time), np.ascontiguousarray(state, dtype=float), numbers))
 
 
 def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.systems.user_functions import CFunction, guard_function, jump_function, parameter_tuple
-
-if TYPE_CHECKING:
-    from trunnion.systems.system import System
 
 
 class Switch(NamedTuple):
@@ -91,29 +88,18 @@ class Regimes:
         started with, as a slider does that never slips."""
         return 0
 
-    def compiled(self, system: System) -> tuple[CFunction, CFunction | None, Integers, Integers]:
-        """Guard and jump as C functions, transitions and directions."""
-        given = system.size, tuple(system.parameters), tuple(map(float, system.scale))  # type: ignore[arg-type]
+    def compiled(
+        self, size: int, names: tuple[str, ...], scale: tuple[float, ...], *, compiled: bool
+    ) -> tuple[CFunction, CFunction | None, Integers, Integers]:
+        """Guard and jump as C functions, transitions and directions, of a system of ``size`` states of that scale, its
+        parameters ``names``."""
         guard, jump = self.guard, self.jump
         if not isinstance(guard, CFunction):
-            guard = guard_function(guard, len(self.guards), *given, compiled=system.compiled)
+            guard = guard_function(guard, len(self.guards), size, names, scale, compiled=compiled)
         if not (jump is None or isinstance(jump, CFunction)):
-            jump = jump_function(jump, *given, compiled=system.compiled)
+            jump = jump_function(jump, size, names, scale, compiled=compiled)
         return (guard, jump, *self.tables())
 
-    def at(self, system: System, time: float, state: Array) -> int:
-        """Number of the regime of ``state``.
-
-        Raises
-        ------
-        InputError : ``locate`` gives no regime there.
-        """
-        found = self.locate(time, state, parameter_tuple(tuple(system.parameters))(*system.parameters.values()))
-        if isinstance(found, bool) or int(found) != found or not 0 <= found < len(self.names):
-            raise InputError(
-                f"must give the number of one of {len(self.names)} regimes",
-                element=system.name,
-                key="locate",
-                value=found,
-            )
-        return int(found)
+    def at(self, time: float, state: Array, parameters: Mapping[str, float], numbers: Array) -> int:
+        """Number of the regime of ``state``, as ``locate`` gives it; ``numbers``: what the right-hand side reads."""
+        return self.locate(time, state, parameter_tuple(tuple(parameters))(*parameters.values()))

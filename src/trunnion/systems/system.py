@@ -172,7 +172,7 @@ class System:
             # Off symmetric places, at which a wrong entry may vanish.
             state = first + 0.1 * rng.uniform(0.5, 1.0, self.size) * np.maximum(self.scale, np.abs(first))
             time = period * (0.123 + np.sqrt(2) * k) % period
-            regime = self.regimes.at(self, time, state) if self.regimes is not None else 0
+            regime = self._located(time, state) if self.regimes is not None else 0
             matrix, differences = self.jacobian(time, state, regime), self._differences(time, state, regime)
             if not (np.isfinite(matrix).all() and np.isfinite(differences).all()):
                 continue
@@ -254,7 +254,8 @@ class System:
         plain = (self.rate.address, self.size, self.numbers, self.scale)
         if self.regimes is None:
             return Equations(*plain)
-        guard, jump, transitions, directions = self.regimes.compiled(self)
+        names, scale = tuple(self.parameters), tuple(self.scale.tolist())
+        guard, jump, transitions, directions = self.regimes.compiled(self.size, names, scale, compiled=self.compiled)
         return Equations(*plain, guard.address, jump.address if jump else 0, transitions, directions)
 
     def but(self, **parameters: float) -> System:
@@ -325,13 +326,22 @@ class System:
         if self.regimes is None:
             return 0
         t, x = float(time), self.checked(state)
-        regime = self.regimes.at(self, t, x)
+        regime = self._located(t, x)
         for _ in range(MOST_AT_ONCE):
             then = self._crossing(t, x, regime)
             if then < 0:
                 break
             regime = then
         return regime
+
+    def _located(self, time: float, state: Array) -> int:
+        assert self.regimes is not None
+        found, count = self.regimes.at(time, state, self.parameters, self.numbers), len(self.regimes.names)
+        if isinstance(found, bool) or int(found) != found or not 0 <= found < count:
+            raise InputError(
+                f"must give the number of one of {count} regimes", element=self.name, key="locate", value=found
+            )
+        return int(found)
 
     def _crossing(self, time: float, state: Array, regime: int) -> int:
         """The regime behind a surface that ``state`` lies on and leaves its own regime by; −1 where there is none."""
