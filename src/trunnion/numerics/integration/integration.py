@@ -184,7 +184,7 @@ def integrate(
             float(longest_step), most_steps, dense, *kept,
         )  # fmt: skip
         found: dict[str, Any] = {
-            name: part[: whole[4] if name.startswith("event") else whole[5]].copy()
+            name: part[: whole[4] if name.startswith("event") else whole[5]]
             for name, part in zip(_ALONG, kept, strict=True)
         }
         found["state"] = np.concatenate([parts[-1].state[-1:] if parts else first, found["state"]])
@@ -198,8 +198,6 @@ def integrate(
 
 def joined(parts: Sequence[Trajectory]) -> Trajectory:
     """Stretches of one motion, each beginning where the one before ended, as one."""
-    if len(parts) == 1:
-        return parts[0]
     along: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ALONG}
     along["state"] = np.concatenate([parts[0].state, *(part.state[1:] for part in parts[1:])])
     return replace(parts[-1], **along)

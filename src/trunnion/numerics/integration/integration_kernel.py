@@ -225,13 +225,6 @@ def _watched(functions, t, x, p, asked, n, regime, own, sloped, g, slope):
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _look(functions, t, h, q, share, p, asked, n, regime, own, x, g, slope):
-    """State x and all switching functions g at a share of a step."""
-    interpolate(q, share, x)
-    return _watched(functions, t + share * h, x, p, asked, n, regime, own, 0, g, slope)
-
-
-@njit(cache=True, nogil=True, **INNER)
 def _sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
@@ -254,7 +247,8 @@ def _bracket(functions, t, h, q, p, asked, n, regime, own, sides, directions, x,
     _copy(sides, now)
     # One sample beyond each end, so that an extremum at the end of a step is seen from both sides.
     for j in range(-1, SAMPLES + 2):
-        if _look(functions, t, h, q, j / SAMPLES, p, asked, n, regime, own, x, g, slope) != 0:
+        interpolate(q, j / SAMPLES, x)
+        if _watched(functions, t + j / SAMPLES * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
             return -2, 0.0, 0.0
         _copy(last[1], last[0])
         _copy(last[2], last[1])
@@ -293,12 +287,14 @@ def _lowest(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
     a, b = low, high
     for _ in range(40):
         one, two = b - golden * (b - a), a + golden * (b - a)
-        if _look(functions, t, h, q, one, p, asked, n, regime, own, x, g, slope) != 0:
+        interpolate(q, one, x)
+        if _watched(functions, t + one * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
             return -1.0
         first = g[i] * side
         if first < 0:
             return one
-        if _look(functions, t, h, q, two, p, asked, n, regime, own, x, g, slope) != 0:
+        interpolate(q, two, x)
+        if _watched(functions, t + two * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
             return -1.0
         second = g[i] * side
         if second < 0:
@@ -317,7 +313,8 @@ def _locate(functions, t, h, q, p, asked, n, regime, own, i, side, low, high, x,
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if _look(functions, t, h, q, middle, p, asked, n, regime, own, x, g, slope) != 0:
+        interpolate(q, middle, x)
+        if _watched(functions, t + middle * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
             return -1.0
         if g[i] * side < 0:
             high = middle
@@ -332,11 +329,13 @@ def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, dir
 
     Two crossings between neighbouring samples come in either order.
     """
-    if _look(functions, t, h, q, low, p, asked, n, regime, own, x, g, slope) != 0:
+    interpolate(q, low, x)
+    if _watched(functions, t + low * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
         return -1, 0.0
     before = np.empty(g.size)
     _copy(g, before)
-    if _look(functions, t, h, q, high, p, asked, n, regime, own, x, g, slope) != 0:
+    interpolate(q, high, x)
+    if _watched(functions, t + high * h, x, p, asked, n, regime, own, 0, g, slope) != 0:
         return -1, 0.0
     for i in range(g.size):
         side = _sign(before[i])
@@ -538,7 +537,8 @@ def advance(
             if which >= 0:
                 side = 1.0 if active[which] == -1 else (-1.0 if active[which] == 1 else 0.0)
                 if side == 0.0:
-                    _look(functions, t, step, q, high, p, asked, n, regime, own, x, g, slope)
+                    interpolate(q, high, x)
+                    _watched(functions, t + high * step, x, p, asked, n, regime, own, 0, g, slope)
                     side = -_sign(g[which])
                 fraction = _locate(functions, t, step, q, p, asked, n, regime, own, which, side, low, high, x, g, slope)
                 for _ in range(m):
