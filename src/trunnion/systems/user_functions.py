@@ -251,7 +251,10 @@ def rate_function(
     count = len(names)
 
     def with_jacobian(mode: Mode) -> Any:
-        matrix = mode.uniform(jacobian, sloped_by_regime, arrays=True)
+        def rows(*arguments: Any) -> Array:
+            return np.asarray(jacobian(*arguments), dtype=np.float64)
+
+        matrix = mode.uniform(rows, sloped_by_regime, jacobian, arrays=True)
 
         @mode.jit
         def tangents(t, y, p, k, regime, out):
