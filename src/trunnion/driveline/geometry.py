@@ -34,6 +34,11 @@ def tube_inertia(outer_diameter: Number, inner_diameter: Number, length: Number,
     return density * _polar_area(outer_diameter, inner_diameter) * length
 
 
+def tube_stress(outer_diameter: Number, inner_diameter: Number) -> Number:
+    """Shear stress at the outside of a round tube over its torque [1/m³], 16 D/(π(D⁴ − d⁴)); diameters D and d [m]."""
+    return 16 * outer_diameter / (math.pi * (outer_diameter**4 - inner_diameter**4))
+
+
 def disk_inertia(outer_diameter: Number, inner_diameter: Number, thickness: Number, density: Number) -> Number:
     """Polar moment of inertia of a flat disk with a bore [kg m²]: a tube as long as the disk is thick."""
     return tube_inertia(outer_diameter, inner_diameter, thickness, density)

@@ -66,8 +66,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
 
 
 def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rule: Rule) -> Check:
-    response = case.response
-    assert response is not None
+    response = case.answered
     found = rated_values(case.assembly, response, name, key)
     values, by_order, unit = found.values, found.by_order, found.unit
     at, value = worst_of(values)

@@ -18,9 +18,9 @@ from trunnion.analyses.assessment.course import SWING, WHOLE, course
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.arrays import Array
+from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import against, shown
-from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.results.counts import counted
 
@@ -58,11 +58,8 @@ def unlimited(assembly: Assembly) -> list[str]:
     """Springs whose torque nothing judges: no limit of torque, vibratory torque or stress, no rating."""
     keys = ("max_torque", "vibratory_torque", "max_stress", "ship_shaft")
     limited = {one.element for one in assembly.line.limits_by_element if one.key in keys}
-    names, elements = assembly.line.names, assembly.line.elements
-    rated = {
-        n for n, e in zip(names, elements, strict=True) if getattr(e, "maximum_torque", None) is not None
-    }  # fmt: skip
-    springs = [names[i] for c in assembly.topology.compliances for i in c.shafts]
+    rated = {name for name, e in assembly.line.parts if getattr(e, "maximum_torque", None) is not None}
+    springs = [assembly.line.names[i] for c in assembly.topology.compliances for i in c.shafts]
     return [name for name in springs if name not in limited | rated]
 
 
@@ -160,20 +157,13 @@ def limited_values(
     return twist, np.abs(response.twist[:, :, c])
 
 
-def stress_factor(shaft: Shaft) -> float:
-    """τ/T = 16 D/(π(D⁴ − d⁴)) [1/m³] at the outside of a tube."""
-    assert shaft.outer_diameter
-    outer, inner = shaft.outer_diameter, shaft.inner_diameter or 0.0
-    return 16 * outer / (np.pi * (outer**4 - inner**4))
-
-
 def _stress_factors(assembly: Assembly, table: Array, element: str) -> Array:
-    """The same (row,) at the rows of ``table``."""
+    """τ/T [1/m³] at the outside of a tube, (row,), at the rows of ``table``."""
     place = assembly.line.index(element)
     outer = table[:, assembly.packed.column(place, "outer_diameter")]
     bore = assembly.packed.column(place, "inner_diameter")
     inner = table[:, bore] if bore >= 0 else np.zeros(len(table))
-    return np.asarray(16 * outer / (np.pi * (outer**4 - inner**4)))
+    return tube_stress(outer, inner)
 
 
 def _share(assembly: Assembly, table: Array, element: str, compliance: int) -> Array:

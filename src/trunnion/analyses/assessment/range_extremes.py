@@ -26,9 +26,7 @@ def _torques(response: OrderResponse, word: str) -> Array:
 def largest_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
     """Largest "peak" or "vibratory" torque [N m] of a spring over the range, infinite where there is no steady state,
     and its speed [rad/s]."""
-    response = case.response
-    assert response is not None
-    at, value = worst_of(_torques(response, word)[:, spring])
+    at, value = worst_of(_torques(case.answered, word)[:, spring])
     return value, float(case.speeds[at])
 
 
@@ -38,9 +36,7 @@ def exact_torque(case: Case, word: str, spring: int) -> tuple[float, float]:
     grid = case.speeds
     if not np.isfinite(value) or len(grid) < 3:
         return value, speed
-    response = case.response
-    assert response is not None
-    values = _torques(response, word)[:, spring]
+    values = _torques(case.answered, word)[:, spring]
     inner = (
         np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]) & (values[1:-1] > NEAR * value)) + 1
     )

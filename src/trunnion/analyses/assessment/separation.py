@@ -76,8 +76,7 @@ def _near(case: Case, name: str, status: Status, said: str, near: float, speed: 
 
 def shaking_orders(case: Case) -> Array:
     """Orders that make up 1 % of any spring's torque at least."""
-    response = case.response
-    assert response is not None
+    response = case.answered
     if not len(response.order):
         return np.zeros(0)
     size = np.nan_to_num(np.abs(response.torque)).max(axis=0)

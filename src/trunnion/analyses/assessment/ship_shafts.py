@@ -20,9 +20,10 @@ import numpy as np
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.compared import at_worst, unanswered
 from trunnion.analyses.assessment.course import SWING, course
-from trunnion.analyses.assessment.own_limits import bands, spring_of, stress_factor
+from trunnion.analyses.assessment.own_limits import bands, spring_of
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.arrays import Array
+from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.limits import SHIP_SHAFTS
 from trunnion.driveline.quantities import PRESSURE
 from trunnion.driveline.shafts import Shaft
@@ -72,7 +73,8 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
         yield Check(title, Status.NOT_APPLICABLE, RULE, f"all speeds lie above {HIGHEST} of the rated one")
         return
     speeds, ratio = case.speeds[inside], ratio[inside]
-    stress = case.answer.vibratory_torque[inside, c] * stress_factor(shaft) / 1e6
+    per_torque = tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0)
+    stress = case.answer.vibratory_torque[inside, c] * per_torque / 1e6
     stress = np.where(np.isfinite(stress), stress, np.inf)
     allowed = np.array([permissible_stress(strength, diameter, factor, float(r)) for r in ratio])
     required = subject.required(name)
@@ -83,7 +85,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
     seen = course(
         case.answer, f"stress of {name}", PRESSURE, SWING, 1e6 * stress,
         {"continuous, τ_C": 1e6 * allowed, "passing quickly, τ_T": 1e6 * transient},
-        by_order * stress_factor(shaft), inside,
+        by_order * per_torque, inside,
     )  # fmt: skip
     inputs = (
         f"σ_B = {strength:g} N/mm², d = {diameter:g} mm, C_K = {factor:g} ({feature}), "

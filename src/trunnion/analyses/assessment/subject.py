@@ -165,6 +165,12 @@ class Case:
         """The linear response by order; None where there is none."""
         return self.answer if isinstance(self.answer, OrderResponse) else None
 
+    @property
+    def answered(self) -> OrderResponse:
+        """The linear response by order, where one knows that there is one."""
+        assert isinstance(self.answer, OrderResponse)
+        return self.answer
+
     @cached_property
     def modes(self) -> Complex:
         """Eigenvalues (speed, mode) [1/s] of the loaded line, joints straight, at ``speeds``."""

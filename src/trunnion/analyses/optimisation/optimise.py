@@ -176,27 +176,26 @@ def _there(space: Space, one: Tried) -> Driveline:
     return line
 
 
-def _nothing(search: Search, best: Tried) -> ComputationError:
-    """What to say where no design can be computed; raises what refuses the line itself."""
-    line = search.space.line(best.shares)
-    if line is not None:
-        search.question.require(line)
-    return ComputationError("no design within the bounds can be computed; narrow them, or ask for other aims")
+def _anew(search: Search, one: Tried) -> Tried:
+    """One design as ``assess`` judges it; raises what refuses the line, or says that no design can be computed."""
+    found = search.whole(one.shares)
+    if not found.answer.possible:
+        line = search.space.line(one.shares)
+        if line is not None:
+            search.question.require(line)
+        raise ComputationError("no design within the bounds can be computed; narrow them, or ask for other aims")
+    return found
 
 
 def _found(search: Search) -> tuple[list[Tried], Tried]:
     """Designs of the front, computed anew, and the one to take: of two aims the one nearest to the best of both."""
     if len(search.question.aims) == 1:
-        best = search.whole(search.best(first).shares)
-        if not best.answer.possible:
-            raise _nothing(search, best)
+        best = _anew(search, search.best(first))
         return [best], best
     found = nondominated([search.whole(one.shares) for one in thinned(front(search), POINTS)])
     if not found:
         # Nothing holds all checks: the design that comes nearest to it.
-        nearest = search.whole(min(search.tried.values(), key=lambda one: one.answer.violation).shares)
-        if not nearest.answer.possible:
-            raise _nothing(search, nearest)
+        nearest = _anew(search, min(search.tried.values(), key=lambda one: one.answer.violation))
         return [nearest], nearest
     losses = np.array([one.losses for one in found])
     off = (losses - losses.min(axis=0)) / np.maximum(np.ptp(losses, axis=0), 1e-300)

@@ -29,6 +29,7 @@ from trunnion.arrays import Array, Codes, Complex, Places
 from trunnion.driveline.arguments import numbers
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
@@ -217,8 +218,7 @@ def _stress_factor(assembly: Assembly) -> Array:
         for i in compliance.shafts:
             shaft = assembly.line.elements[i]
             if isinstance(shaft, Shaft) and shaft.outer_diameter:
-                outer, inner = shaft.outer_diameter, shaft.inner_diameter or 0.0
-                found.append(16 * outer / (np.pi * (outer**4 - inner**4)))
+                found.append(tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0))
         factors.append(max(found, default=np.nan))
     return np.array(factors)
 
