@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
@@ -18,6 +19,8 @@ import trunnion as tn
 from trunnion.analyses.charts import prices
 from trunnion.cli import app
 from trunnion.studies.result import Reproduction
+
+pytest_plugins = ["served"]  # the fixtures of the browser
 
 STUDIES = {
     "test_command_lines.py": "500 random command lines",
@@ -80,6 +83,15 @@ Run = Callable[..., Result]
 
 # A tree of so many commands takes a tenth of a second to build: once a process, as for its users, not once a call.
 typer.testing._get_command = cache(typer.testing._get_command)
+
+
+# Whatever is imported and compiled lives to the end: going through it now and then took a tenth of all the time.
+gc.set_threshold(100_000, 50, 100)
+
+
+def pytest_collection_finish() -> None:
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_xdist_auto_num_workers() -> int:

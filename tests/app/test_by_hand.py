@@ -92,9 +92,20 @@ def fits(ending: str, body: bytes) -> bool:
 
 
 @pytest.mark.parametrize(("view", "settings"), CASES)
-def test_every_file_of_a_view_is_what_its_name_says(look: Look, view: str, settings: str) -> None:
+def test_files_of_a_view_a_number_that_moves_its_address_and_undo(
+    look: Look, browser: Any, view: str, settings: str
+) -> None:
+    """All on one page, since opening one takes longest: a server, a worker and a browser are asked for each."""
     look.at(address(view, settings))
     no_alarm(look)
+    assert look.page.get_by_text("Save", exact=True).count() == 1
+    every_file_is_what_its_name_says(look)
+    move_a_number(look, view)
+    an_address_restores_it_in_a_fresh_browser(look, browser, settings)
+    undo_takes_it_back(look, settings)
+
+
+def every_file_is_what_its_name_says(look: Look) -> None:
     found = look.page.locator(".files a, ul a[download]").evaluate_all("links => links.map(l => l.href)")
     endings = {href.rpartition(".")[2] for href in found}
     assert {"toml", "py", "html"} <= endings
@@ -107,12 +118,10 @@ def test_every_file_of_a_view_is_what_its_name_says(look: Look, view: str, setti
         assert fits(ending, answer.body()), href
 
 
-@pytest.mark.parametrize(("view", "settings"), CASES)
-def test_a_number_that_moves_moves_the_view_and_undo_takes_it_back(look: Look, view: str, settings: str) -> None:
-    look.at(address(view, settings))
+def move_a_number(look: Look, view: str) -> None:
+    """The view follows."""
     if view == "stability":  # whose point keeps its angle, an axis of the chart
-        look.page.get_by_label("Parameter to move", exact=True).select_option("Shaft 1.stiffness")
-        look.page.get_by_label("Value [kN*m/rad]", exact=True).wait_for()
+        choose(look, "Shaft 1.stiffness", "kN*m/rad")
     before = look.page.evaluate(SHOWN)
     field = look.page.get_by_label(re.compile(r"^Value \["), exact=False)
     was = float(field.input_value())
@@ -123,23 +132,18 @@ def test_a_number_that_moves_moves_the_view_and_undo_takes_it_back(look: Look, v
     after, kinds = look.page.evaluate(SHOWN), ("values",) if view == "driveline" else ("drawn", "texts")
     assert any(after[kind] != before[kind] for kind in kinds)
     no_alarm(look)
-    moved = unpack(dict(re.findall(r"[?&](\w+)=([^&]+)", look.page.url))["line"])
-    look.view("Driveline")
-    look.page.get_by_role("button", name="Undo").click()
-    look.page.wait_for_function("was => !document.location.href.includes(was)", arg=pack(moved), timeout=WAIT)
-    back = unpack(dict(re.findall(r"[?&](\w+)=([^&]+)", look.page.url))["line"])
-    assert tn.loads(back) == (rattling() if "line=" in settings else tn.loads(starter("two-shaft")))
-    assert tomllib.loads(moved) != tomllib.loads(back)
+    if view == "stability":  # an address does not say which number was moved last
+        choose(look, "HookeJoint 1.angle", "deg")
 
 
-@pytest.mark.parametrize(("view", "settings"), CASES)
-def test_an_address_restores_a_view_in_a_fresh_browser(look: Look, browser: Any, view: str, settings: str) -> None:
+def choose(look: Look, parameter: str, unit: str) -> None:
+    """Which number is moved."""
+    look.page.get_by_label("Parameter to move", exact=True).select_option(parameter)
+    look.page.get_by_label(f"Value [{unit}]", exact=True).wait_for()
+
+
+def an_address_restores_it_in_a_fresh_browser(look: Look, browser: Any, settings: str) -> None:
     """Its settings, the line with a number changed, and the same pictures."""
-    look.at(address(view, settings))
-    if "line=" not in settings:
-        look.type("Value [deg]", "11")
-        look.page.wait_for_url(re.compile("line="))
-    look.settled_anew()
     query = look.page.url.removeprefix(look.server.address)
     for setting in settings.split("&"):
         assert not setting or setting.startswith("line=") or setting.replace("=40&", "") in query, setting
@@ -152,6 +156,16 @@ def test_an_address_restores_a_view_in_a_fresh_browser(look: Look, browser: Any,
     assert second["values"] == first["values"]
     assert second["texts"] == first["texts"]
     assert second["drawn"] == first["drawn"]
+
+
+def undo_takes_it_back(look: Look, settings: str) -> None:
+    moved = unpack(dict(re.findall(r"[?&](\w+)=([^&]+)", look.page.url))["line"])
+    look.view("Driveline")
+    look.page.get_by_role("button", name="Undo").click()
+    look.page.wait_for_function("was => !document.location.href.includes(was)", arg=pack(moved), timeout=WAIT)
+    back = unpack(dict(re.findall(r"[?&](\w+)=([^&]+)", look.page.url))["line"])
+    assert tn.loads(back) == (rattling() if "line=" in settings else tn.loads(starter("two-shaft")))
+    assert tomllib.loads(moved) != tomllib.loads(back)
 
 
 def test_forks_are_turned_by_a_slider_and_angles_of_two_views_are_combined(look: Look) -> None:

@@ -120,8 +120,14 @@ CROWDED = (
 
 
 @pytest.mark.parametrize("view", VIEWS)
-def test_text_stands_out_from_its_ground(look: Look, view: str) -> None:
+def test_everybody_reads_and_reaches_what_is_on_a_page(look: Look, view: str) -> None:
     look.at(QUERY.format(view))
+    text_stands_out_from_its_ground(look)
+    the_tab_key_reaches_every_control(look)
+    nothing_overlaps_from_twice_enlarged_to_wide(look)
+
+
+def text_stands_out_from_its_ground(look: Look) -> None:
     found = look.page.evaluate(FAINT_TEXT)
     assert len(found) > 20
     assert [one for one in found if one[0] < LEAST_CONTRAST] == []
@@ -142,9 +148,7 @@ def test_what_is_drawn_stands_out_from_white(colour: str, least: float) -> None:
     assert 1.05 / (luminance(colour) + 0.05) >= least
 
 
-@pytest.mark.parametrize("view", VIEWS)
-def test_the_tab_key_reaches_every_control(look: Look, view: str) -> None:
-    look.at(QUERY.format(view))
+def the_tab_key_reaches_every_control(look: Look) -> None:
     controls = look.page.evaluate(MARK_CONTROLS)
     assert len(controls) > 15
     look.page.evaluate("() => document.activeElement.blur()")
@@ -157,10 +161,8 @@ def test_the_tab_key_reaches_every_control(look: Look, view: str) -> None:
     assert [name for k, name in enumerate(controls) if k not in reached] == []
 
 
-@pytest.mark.parametrize("view", VIEWS)
-def test_nothing_overlaps_from_twice_enlarged_to_wide(look: Look, view: str) -> None:
+def nothing_overlaps_from_twice_enlarged_to_wide(look: Look) -> None:
     """512 and 640 points are what windows of 1024 and 1280 have at 200 %."""
-    look.at(QUERY.format(view))
     look.page.set_viewport_size({"width": 1920, "height": 800})
     look.page.wait_for_timeout(700)  # pictures follow the page with a delay
     found = {1920: look.page.evaluate(CROWDED)}
