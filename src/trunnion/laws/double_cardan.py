@@ -13,11 +13,10 @@ so β₁ = β₂ only for a = b. What remains is a pair of unequal Hooke's joint
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.laws.hooke import CrossLaw
-
-Array = NDArray[np.float64]
 
 
 def halves(angle: ArrayLike, distance_ratio: ArrayLike = 1.0) -> tuple[Array, Array]:

@@ -10,11 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.laws.joint import Passed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

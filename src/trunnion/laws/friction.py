@@ -9,11 +9,11 @@ make any symmetric hysteresis of Masing's kind; with springs beside them the bil
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.laws.spring import StageSpring
 
-Array = NDArray[np.float64]
 ROUNDING = 1e-14
 """Mean torque over that of the stiffest stage at the amplitude, that counts as none."""
 HALVINGS = 60

@@ -19,11 +19,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.laws.joint import Passed
 
-Array = NDArray[np.float64]
 QUARTER_TURN = np.pi / 2
 
 

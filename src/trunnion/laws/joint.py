@@ -14,10 +14,7 @@ from math import factorial
 from operator import add
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
 
 
 class Passed(NamedTuple):

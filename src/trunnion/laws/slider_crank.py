@@ -12,9 +12,9 @@ of the exact mechanism.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
+
 SAMPLES = 1024
 """Over a turn: the harmonics fall off as (λ/2)^n, to rounding long before."""
 

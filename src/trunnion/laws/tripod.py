@@ -15,11 +15,10 @@ driven instead of driving, ψ = χ − A sin 3χ, its inverse within A². Angles
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.laws.fourier import FourierLaw
-
-Array = NDArray[np.float64]
 
 
 def amplitude(angle: ArrayLike, radius_over_length: ArrayLike) -> Array:

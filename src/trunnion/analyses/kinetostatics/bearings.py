@@ -32,7 +32,7 @@ def place_bearings(chain: Chain, bearings: Bearings) -> dict[int, tuple[float, .
         try:
             positions = tuple(parse(x, LENGTH) for x in entry[1:])
         except InputError as error:
-            raise InputError(error.problem, element=name, key="supports", value=error.value, remedy=remedy) from None
+            raise error.but(element=name, key="supports", remedy=remedy) from None
         m = known[name]
         placed[m] = placed.get(m, ()) + positions
         if len(placed[m]) > 2:

@@ -86,8 +86,8 @@ class Member:
 
     joint: int
     train: int
-    shafts: tuple[str, ...]
-    length: float
+    shafts: tuple[str, ...] = ()
+    length: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -197,26 +197,16 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
     draft = _Draft(line, lengths or {})
     for i in range(len(line.elements)):
         draft.add(i)
-    members = tuple(
-        Member(m.joint, m.train, tuple(m.shafts), m.length if m.length > 0 else np.nan) for m in draft.members
-    )
+    members = tuple(member if member.length > 0 else replace(member, length=np.nan) for member in draft.members)
     found = Chain(line, tuple(draft.steps), members, len(draft.steps) - 1)
     return found if branch is None else replace(found, output=found.end_behind(branch))
-
-
-@dataclass
-class _OpenMember:
-    joint: int
-    train: int
-    shafts: list[str]
-    length: float
 
 
 class _Draft:
     def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
         self.line, self.lengths = line, lengths
         self.steps = [Step(Link.ROOT, -1, "drive", 0)]
-        self.members = [_OpenMember(-1, 0, [], 0.0)]
+        self.members = [Member(-1, 0)]
         self.behind: list[int] = []
 
     def add(self, i: int) -> None:
@@ -224,20 +214,15 @@ class _Draft:
         here = 0 if parent is None else self.behind[parent]
         member = self.steps[here].member
         if isinstance(element, Spring):
-            half = element.moment_of_inertia / 2
-            here = self._step(
-                Link.SHAFT, here, name, member,
-                fork_offset=element.fork_offset, stiffness=element.torsional_stiffness,
+            half, length = element.moment_of_inertia / 2, getattr(element, "length", None) or 0.0
+            here = self._shaft(
+                here, name, length, fork_offset=element.fork_offset, stiffness=element.torsional_stiffness,
                 near_inertia=half, far_inertia=half,
             )  # fmt: skip
-            self.members[member].shafts.append(name)
-            self._extend(here, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         elif isinstance(element, PiecewiseShaft):
             packed = pack(self.line)
             stages = stage_law(self.line, i, packed.column, packed.table(1))
-            here = self._step(Link.SHAFT, here, name, member, fork_offset=element.fork_offset, stages=stages)
-            self.members[member].shafts.append(name)
-            self._extend(here, self.lengths.get(name, 0.0))
+            here = self._shaft(here, name, 0.0, fork_offset=element.fork_offset, stages=stages)
         elif isinstance(element, Disk):
             here = self._step(
                 Link.RIGID, here, name, member, far_inertia=element.moment_of_inertia, load=element.load_torque,
@@ -246,7 +231,7 @@ class _Draft:
         elif isinstance(element, DoubleCardanJoint):
             first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
             here = self._cross(here, f"{name}, first cross", angle=float(first), plane=element.plane)
-            self.members[-1].shafts.append(f"{name}, yoke")
+            self._name(len(self.members) - 1, f"{name}, yoke")
             # the second cross hangs on the station behind the first, at the far end of the yoke
             self._extend(here, element.yoke_length or 0.0)
             # a quarter turn back, so that the joint counts as one that passes rotation unchanged
@@ -261,7 +246,7 @@ class _Draft:
                 law = element.law(lambda key: np.asarray(packed.values[packed.column(i, key)]))
             here = self._joint(Link.JOINT, here, name, law=law, orders=element.orders, **bend)
         elif isinstance(element, Ratio | GearPair):
-            self.members.append(_OpenMember(-1, self.members[-1].train + 1, [], 0.0))
+            self.members.append(Member(-1, self.members[-1].train + 1))
             here = self._step(Link.RATIO, here, name, len(self.members) - 1, ratio=element.speed_ratio)
         elif isinstance(element, ConstantSpeed):
             if i > 0:
@@ -275,6 +260,16 @@ class _Draft:
             raise InputError("is not an element the kinetostatics know", element=name)
         self.behind.append(here)
 
+    def _shaft(self, parent: int, name: str, length: float, **numbers: Any) -> int:
+        here = self._step(Link.SHAFT, parent, name, self.steps[parent].member, **numbers)
+        self._name(self.steps[here].member, name)
+        self._extend(here, self.lengths.get(name, length))
+        return here
+
+    def _name(self, member: int, shaft: str) -> None:
+        """A shaft that is part of a member."""
+        self.members[member] = replace(self.members[member], shafts=(*self.members[member].shafts, shaft))
+
     def _cross(
         self, parent: int, name: str, *, angle: float, plane: float = 0.0, turned: float = hooke.QUARTER_TURN
     ) -> int:
@@ -283,7 +278,7 @@ class _Draft:
 
     def _joint(self, link: Link, parent: int, name: str, **numbers: Any) -> int:
         train = self.members[self.steps[parent].member].train
-        self.members.append(_OpenMember(len(self.steps), train, [], 0.0))
+        self.members.append(Member(len(self.steps), train))
         return self._step(link, parent, name, len(self.members) - 1, **numbers)
 
     def _extend(self, step: int, length: float) -> None:
@@ -291,7 +286,8 @@ class _Draft:
         here = self.steps[step]
         reach = length + (self.steps[here.parent].reach if here.link is Link.SHAFT else 0.0)
         self.steps[step] = replace(here, reach=reach)
-        self.members[here.member].length = max(self.members[here.member].length, reach)
+        member = self.members[here.member]
+        self.members[here.member] = replace(member, length=max(member.length, reach))
 
     def _step(self, link: Link, parent: int, name: str, member: int, **more: Any) -> int:
         if link is Link.RIGID:

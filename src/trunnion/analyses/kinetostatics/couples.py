@@ -19,14 +19,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
 from trunnion.analyses.kinetostatics.torques import Torques
+from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.laws.hooke import QUARTER_TURN
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

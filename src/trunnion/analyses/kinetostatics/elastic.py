@@ -16,16 +16,15 @@ rate is not; the rates given are those beside the step.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Step
 from trunnion.analyses.kinetostatics.motion import Drive, walk
 from trunnion.analyses.kinetostatics.torques import Torques, rates_needed, torques
+from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import ComputationError
 from trunnion.numerics import jets
 
-Array = NDArray[np.float64]
 ROUNDS = 300
 MOTION_ORDER = 2
 

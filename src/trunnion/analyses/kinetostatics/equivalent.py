@@ -19,11 +19,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
+from trunnion.arrays import Array
 
-Array = NDArray[np.float64]
 Changes = Mapping[int, Array]
 
 

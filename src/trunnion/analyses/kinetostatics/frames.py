@@ -11,11 +11,10 @@ turns u and v about e by ϑ and then bends e toward u by its angle β:
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain
+from trunnion.arrays import Array
 
-Array = NDArray[np.float64]
 START = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 

@@ -36,9 +36,7 @@ class CrossFriction:
             try:
                 value = parse(getattr(self, key), kind)
             except InputError as error:
-                raise InputError(
-                    error.problem, element="friction", key=key, value=error.value, remedy=error.remedy
-                ) from None
+                raise error.but(element="friction", key=key) from None
             object.__setattr__(self, key, value)
         for key, least, example in (("coefficient", 0.0, "0.005"), ("pin_radius", 0.0, '"12 mm"')):
             if getattr(self, key) < least:

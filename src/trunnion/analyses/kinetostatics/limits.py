@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from trunnion.analyses.kinetostatics.measures import largest
+from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.driveline.quantities import ANGLE, DEGREE, TORQUE, Kind, parse
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
-
-if TYPE_CHECKING:
-    from trunnion.analyses.kinetostatics.result import Kinetostatics
 
 EVEN_RUNNING = 0.0027
 """Irregularity that makers of cardan shafts allow for quiet running: one Hooke's joint of 2.98°."""
@@ -104,7 +100,7 @@ def _limit(key: str, value: float | str | None, kind: Kind | None = None) -> flo
     try:
         number = parse(value, kind) if kind else float(value)
     except InputError as error:
-        raise InputError(error.problem, key=key, value=value, remedy=error.remedy) from None
+        raise error.but(key=key, value=value) from None
     except (TypeError, ValueError):
         raise InputError("is not a number", key=key, value=value, remedy="write it in SI units") from None
     if not (np.isfinite(number) and number >= 0):

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
+
 ROUNDING = 1e-12
 """Irregularity that is rounding."""
 

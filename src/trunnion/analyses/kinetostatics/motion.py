@@ -12,14 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link
+from trunnion.arrays import Array
 from trunnion.equations import kinematics
 from trunnion.equations.kinematics import Place, Rotations
 from trunnion.laws import hooke
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,17 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics import equivalent
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, period_turns
 from trunnion.analyses.kinetostatics.measures import equivalent_angle, extremes, phasor_angle
 from trunnion.analyses.kinetostatics.motion import drive_jet, walk
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 HALF_TURN = np.pi
 STARTS, POLISHED = 4000, 6
 MOST_POSITIONS = 200_000
@@ -239,7 +238,7 @@ def _pitches(train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[s
         try:
             pitches[name] = parse(value, ANGLE)
         except InputError as error:
-            raise InputError(error.problem, key="pitch", value=value, remedy=error.remedy) from None
+            raise error.but(key="pitch", value=value) from None
         if not pitches[name] > 0:
             raise InputError("must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines')
         pitches[name] = _whole_splines(pitches[name], value)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
 from trunnion.analyses.features import left_out
 from trunnion.analyses.kinetostatics.chain import Chain, period_turns
 from trunnion.analyses.kinetostatics.motion import Drive
 from trunnion.analyses.kinetostatics.supports import Supports
+from trunnion.arrays import Array
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
@@ -18,7 +16,6 @@ from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import frequency_unit, speed_factor
 
-Array = NDArray[np.float64]
 NEAR_RESONANCE = 1 / 3
 """Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
 

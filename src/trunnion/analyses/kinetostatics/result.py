@@ -10,23 +10,31 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.analyses.kinetostatics.contents import contents
+from trunnion._version import __version__
 from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, irregularity, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.results.declared import Held, Result
+from trunnion.driveline.quantities import DEGREE
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
+from trunnion.results.declared import Described, Held, axis, over, remark
 from trunnion.results.drawing import drawing
-from trunnion.results.finding import Finding
-from trunnion.results.speeds import speed_factor
+from trunnion.results.finding import Finding, by_gravity
+from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
+ANGLES = (
+    ("angle", "rad", "rotation"),
+    ("speed", "rad/s", "speed"),
+    ("acceleration", "rad/s^2", "angular acceleration"),
+)
 
 
 @dataclass(frozen=True)
@@ -44,7 +52,7 @@ class ConstantTwist:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Kinetostatics(Result):
+class Kinetostatics(Described):
     """Motion, torques, couples and support forces of a line over the input angle; SI units.
 
     Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan
@@ -209,8 +217,52 @@ class Kinetostatics(Result):
         return parts(self.supports.force[b], self.supports.ratio[b] * self.input_angle)
 
     def declared(self) -> Iterator[Held]:
-        """Everything over the input angle, by the named shafts, joints, forks and bearings; and the settings."""
-        return contents(self)
+        """Everything over the input angle, by the named shafts, branches, joints, forks and bearings; the settings."""
+        yield axis("input_angle", self.input_angle, "rad", "input angle")
+        yield axis("shaft", list(self.shafts))
+        yield axis("branch", list(self.branches))
+        yield axis("joint", list(self.joints))
+        yield axis("fork", list(self.forks))
+        yield axis("standing", ["u", "v"])
+        yield axis("rotating", ["arm", "across"])
+        for name, unit, words in ANGLES:
+            yield over("shaft input_angle", name, getattr(self, name), unit, f"{words} of the far end")
+        yield over("shaft input_angle", "twist", self.twist, "rad", "twist, far end minus near end")
+        yield over("shaft input_angle", "torque", self.torque, "N*m", "torque, positive with the twist")
+        for name, unit, words in ANGLES:
+            yield over("input_angle", f"output_{name}", getattr(self, f"output_{name}"), unit, f"{words} of the output")
+        for name, unit, words in ANGLES:
+            values = getattr(self, f"end_{name}")
+            yield over("branch input_angle", f"end_{name}", values, unit, f"{words} of the branch's end")
+        yield over("input_angle", "drive_torque", self.drive_torque, "N*m", "torque the drive supplies")
+        yield over("input_angle", "power_loss", self.power_loss, "W", "power lost in joint friction")
+        joint, fork, couple = "joint input_angle", "fork {} input_angle", "couple on the fork, {} frame"
+        yield over(joint, "joint_angle", self.joint_angle, "rad", "input angle from the joint's own plane")
+        yield over(joint, "joint_torque_in", self.joint_torque_in, "N*m", "torque transmitted into the joint")
+        yield over(joint, "joint_torque_out", self.joint_torque_out, "N*m", "torque transmitted out of the joint")
+        for frame, name in (("standing", "secondary_couple"), ("rotating", "secondary_couple_rotating")):
+            yield over(fork.format(frame), name, getattr(self, name), "N*m", couple.format(frame))
+        if self.supports is not None:
+            yield axis("bearing", list(self.supports.names))
+            yield axis("loaded_joint", list(self.supports.joint_names))
+            yield axis("axis", ["e", "u", "v"])
+            force, between = (
+                "force of the shaft on its bearing",
+                "force of the shaft in front of the joint on the one behind it",
+            )
+            yield over("bearing standing input_angle", "support_force", self.supports.force, "N", force)
+            yield over("loaded_joint axis input_angle", "joint_force", self.supports.joint_force, "N", between)
+        yield remark("version", __version__)
+        yield remark("driveline", dumps(self.line))
+        yield remark("input_speed", self.input_speed)
+        yield remark("input_acceleration", self.input_acceleration)
+        yield remark("output", self.branch)
+        yield remark("output_torque", self.output_torque)
+        yield remark("turns", self.turns)
+        yield remark("rigid", int(self.rigid))
+        yield remark("inertia", int(self.inertia))
+        for name in ("irregularity", "equivalent_angle", "homokinetic_deviation", "peak_acceleration"):
+            yield remark(name, getattr(self, name))
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per input angle, one column per quantity and shaft, units in the heading."""
@@ -246,55 +298,112 @@ class Kinetostatics(Result):
 
     def describe(self, unit: str | None = None) -> str:
         """The summary that printing gives, the input speed in ``unit``, by default that of the line's description."""
-        from trunnion.analyses.kinetostatics.summary import summary
+        return "\n".join(
+            [
+                _title(self, unit or speed_unit(self.line)),
+                *(line for name in self.branches for line in _output(self.on_branch(name))),
+                *_torques(self),
+                *_couples(self),
+                *_supports(self),
+                *_twists(self),
+                *(f"  {finding}" for finding in by_gravity(self.findings)),
+            ]
+        )
 
-        return summary(self, unit or speed_unit(self.line))
 
-    def __str__(self) -> str:
-        return self.describe()
+def _title(r: Kinetostatics, unit: str) -> str:
+    name = f" of {r.line.name!r}" if r.line.name else ""
+    turns = "one turn" if r.turns == 1 else f"{r.turns} turns"
+    kind = "rigid shafts" if r.rigid else "elastic shafts, their damping left out"
+    return (
+        f"kinetostatics{name} over {turns} at {show_speed(r.input_speed, unit)}: {kind}, "
+        f"inertia torques {'included' if r.inertia else 'left out'}, {len(r.input_angle)} points"
+    )
+
+
+def _output(r: Kinetostatics) -> list[str]:
+    low, high = r.speed_ratio
+    output = "output" if len(r.branches) == 1 else f"output {r.branch}"
+    if not r.irregularity:
+        return [f"  {output} turns uniformly at {low:.5f} of the input speed"]
+    return [
+        f"  {output} speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
+        f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",
+        f"  {output} leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
+        f"acceleration {r.peak_acceleration:.5g} rad/s^2",
+    ]
+
+
+def _torques(r: Kinetostatics) -> list[str]:
+    if not np.any(r.drive_torque):
+        return ["  no torque: no Disk has a load and no output_torque is given"]
+    low, high = extremes(r.drive_torque)
+    line = f"  drive torque {low:.6g} to {high:.6g} N*m"
+    if np.any(r.power_loss):
+        line += f"; joint friction leaves an efficiency of {r.efficiency:.5f}"
+    return [line]
+
+
+def _couples(r: Kinetostatics) -> list[str]:
+    if not len(r.forks):
+        return []
+    size = largest(np.hypot(r.secondary_couple[:, 0], r.secondary_couple[:, 1]))
+    if not np.any(size > 0):
+        return []
+    f = int(np.argmax(size))
+    part = r.couple_parts(r.forks[f])
+    return [
+        f"  largest secondary couple {size[f]:.5g} N*m, on the fork {r.forks[f]!r}: "
+        f"{np.hypot(*part.steady):.5g} steady, {part.two_per_turn:.5g} twice per turn"
+    ]
+
+
+def _supports(r: Kinetostatics) -> list[str]:
+    if r.supports is None:
+        return []
+    lines = []
+    for name in r.supports.names:
+        part = r.support_parts(name)
+        lines.append(
+            f"  bearing {name}: up to {part.largest:.5g} N; {np.hypot(*part.steady):.5g} steady, "
+            f"{part.two_per_turn:.5g} twice per turn"
+        )
+    return lines
+
+
+def _twists(r: Kinetostatics) -> list[str]:
+    constant = r.constant_twist
+    if constant is None or not np.any(r.twist):
+        return []
+    s = int(np.argmax(largest(r.twist)))
+    return [
+        f"  largest twist {largest(r.twist)[s]:.4g} rad in {r.shafts[s]}, varying by ± "
+        f"{100 * constant.variation[s]:.3g} % of its mean over the turn; taken as constant, the output speed "
+        f"is off by {constant.speed / r.input_speed:.2g} of the input speed"
+    ]
 
 
 def _place(name: str, names: tuple[str, ...], what: str) -> int:
-    from trunnion.driveline.refusals import nearest
-    from trunnion.errors import InputError
-
     if name not in names:
         raise InputError(f"is not a {what} of this result", key=name, remedy=nearest(name, names))
     return names.index(name)
 
 
-def _outputs(result: Kinetostatics) -> list[str]:
-    """What the ends are called: "output", with the branch's name where there are several."""
-    return ["output"] if len(result.branches) == 1 else [f"output {name}" for name in result.branches]
-
-
-def _columns(result: Kinetostatics) -> list[tuple[str, Array]]:
-    columns = [("input angle [rad]", result.input_angle)]
+def _columns(result: Kinetostatics) -> Iterator[tuple[str, Array]]:
+    yield "input angle [rad]", result.input_angle
+    of_shafts = (*((what, unit) for what, unit, _ in ANGLES), ("twist", "rad"), ("torque", "N*m"))
     for s, name in enumerate(result.shafts):
-        columns += [
-            (f"{name} angle [rad]", result.angle[s]),
-            (f"{name} speed [rad/s]", result.speed[s]),
-            (f"{name} acceleration [rad/s^2]", result.acceleration[s]),
-            (f"{name} twist [rad]", result.twist[s]),
-            (f"{name} torque [N*m]", result.torque[s]),
-        ]
-    columns += [
-        *(
-            (f"{one}{what}", values[k])
-            for k, one in enumerate(_outputs(result))
-            for what, values in (
-                (" angle [rad]", result.end_angle),
-                (" speed [rad/s]", result.end_speed),
-                (" acceleration [rad/s^2]", result.end_acceleration),
-            )
-        ),
-        ("drive torque [N*m]", result.drive_torque),
-    ]
-    for f, name in enumerate(result.forks):
-        columns += [
-            (f"{name} couple {axis} [N*m]", c) for axis, c in zip("uv", result.secondary_couple[f], strict=True)
-        ]
+        for what, unit in of_shafts:
+            yield f"{name} {what} [{unit}]", getattr(result, what)[s]
+    for k, name in enumerate(result.branches):
+        output = "output" if len(result.branches) == 1 else f"output {name}"
+        for what, unit, _ in ANGLES:
+            yield f"{output} {what} [{unit}]", getattr(result, f"end_{what}")[k]
+    yield "drive torque [N*m]", result.drive_torque
+    for name, (u, v) in zip(result.forks, result.secondary_couple, strict=True):
+        yield f"{name} couple u [N*m]", u
+        yield f"{name} couple v [N*m]", v
     if result.supports:
-        for name, force in zip(result.supports.names, result.supports.force, strict=True):
-            columns += [(f"{name} force {axis} [N]", c) for axis, c in zip("uv", force, strict=True)]
-    return columns
+        for name, (u, v) in zip(result.supports.names, result.supports.force, strict=True):
+            yield f"{name} force u [N]", u
+            yield f"{name} force v [N]", v

@@ -6,16 +6,15 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
 from trunnion.analyses.kinetostatics.measures import equivalent_angle
 from trunnion.analyses.kinetostatics.phasing import irregularity_of, phased_shafts
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE, parse
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 MOST_TOGETHER = 12
 """Errors up to which every combination of signs is tried; beyond, 4096 random ones."""
 
@@ -71,7 +70,7 @@ def assembly_sensitivity(
     try:
         size = parse(error, ANGLE)
     except InputError as refused:
-        raise InputError(refused.problem, key="error", value=error, remedy=refused.remedy) from None
+        raise refused.but(key="error", value=error) from None
     if not size > 0:
         raise InputError("must be positive", key="error", value=error, remedy='write "1 deg", say')
     train = chain(line, branch=branch)

@@ -18,15 +18,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.bearings import Bearings, place_bearings
 from trunnion.analyses.kinetostatics.chain import Chain, Link, member_ratio
 from trunnion.analyses.kinetostatics.couples import Couples, turned
 from trunnion.analyses.kinetostatics.frames import member_frames
+from trunnion.arrays import Array
 from trunnion.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

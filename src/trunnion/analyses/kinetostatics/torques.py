@@ -16,16 +16,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link, Step
 from trunnion.analyses.kinetostatics.motion import Drive
+from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
 from trunnion.laws.joint import through
 from trunnion.numerics import jets
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

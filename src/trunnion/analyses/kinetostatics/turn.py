@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from numbers import Real
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.bearings import Bearings
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, member_ratio
@@ -19,13 +18,13 @@ from trunnion.analyses.kinetostatics.remarks import remarks
 from trunnion.analyses.kinetostatics.result import ConstantTwist, Kinetostatics
 from trunnion.analyses.kinetostatics.supports import support_forces
 from trunnion.analyses.kinetostatics.torques import Torques, refuse_locking
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE, Kind, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
 
-Array = NDArray[np.float64]
 FEWEST_POINTS = 8
 
 
@@ -226,7 +225,7 @@ def _number(value: float | str, kind: Kind, key: str) -> float:
     try:
         return parse(value, kind)
     except InputError as error:
-        raise InputError(error.problem, key=key, value=error.value, remedy=error.remedy) from None
+        raise error.but(key=key) from None
 
 
 def _acceleration(value: float) -> float:
