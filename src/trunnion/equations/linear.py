@@ -30,7 +30,6 @@ from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
-from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 
@@ -128,7 +127,7 @@ def periodic_linear_system(
 
     Raises
     ------
-    InputError : no speed, a line without a usable period, or one whose base motion is not steady (see
+    InputError : a line without a usable period, or one whose base motion is not steady (see
         ``require_steady_base``).
     """
     topo = assembly.topology
@@ -136,8 +135,6 @@ def periodic_linear_system(
     refuse_own_motion(assembly, "put a ConstantSpeed in front")
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     speed = float(coefficients.speed[0])
-    if not (np.isfinite(speed) and speed > 0):
-        raise InputError("must be a positive speed", key="speed", value=speed, remedy="give rad/s, or tn.rpm(1500)")
     period = 2 * np.pi * float(require_period(assembly.line, topo))
 
     def at(tau: Array) -> Matrices:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from trunnion.analyses.orders.response import response_of_table
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.tongues.bracketing import bracketed
 from trunnion.arrays import Array, Places
-from trunnion.driveline.limits import LIMIT_KINDS
+from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.parameters import Columns
 from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
@@ -72,28 +73,27 @@ def demands_of(assembly: Assembly) -> list[Demand]:
     """Every limit and rating of the line that its response can be compared with."""
     line, found = assembly.line, []
     for limit in line.limits_by_element:
-        if limit.key not in JUDGED:
-            continue
-
-        def of_limit(response: OrderResponse, table: Array, limit=limit) -> Array:  # type: ignore[no-untyped-def]
-            values = limited_values(assembly, response, limit, table)
-            return np.full(len(table), -np.inf) if isinstance(values, str) else values[0]
-
-        allowed = limit.value * (1 - limit.margin)
-        found.append(Demand(name_of(limit), allowed, LIMIT_KINDS[limit.key].unit, of_limit))
+        if limit.key in JUDGED:
+            allowed, unit = limit.value * (1 - limit.margin), LIMIT_KINDS[limit.key].unit
+            found.append(Demand(name_of(limit), allowed, unit, partial(_of_limit, assembly, limit)))
     for name, element in zip(line.names, line.elements, strict=True):
         for key in RATINGS if isinstance(element, Coupling) else ():
             rating = getattr(element, key)
             if rating is None:
                 continue
-
-            def of_rating(response: OrderResponse, table: Array, name=name, key=key) -> Array:  # type: ignore[no-untyped-def]
-                return rated_values(assembly, response, name, key).values
-
             margin = max((one.margin for one in line.limits_by_element if one.element == name), default=0.0)
-            unit = "W" if key == "heat_rating" else "N*m"
-            found.append(Demand(f"rated {key.replace('_', ' ')} of {name}", rating * (1 - margin), unit, of_rating))
+            unit, look = "W" if key == "heat_rating" else "N*m", partial(_of_rating, assembly, name, key)
+            found.append(Demand(f"rated {key.replace('_', ' ')} of {name}", rating * (1 - margin), unit, look))
     return found
+
+
+def _of_limit(assembly: Assembly, limit: OneLimit, response: OrderResponse, table: Array) -> Array:
+    values = limited_values(assembly, response, limit, table)
+    return np.full(len(table), -np.inf) if isinstance(values, str) else values[0]
+
+
+def _of_rating(assembly: Assembly, name: str, key: str, response: OrderResponse, table: Array) -> Array:
+    return rated_values(assembly, response, name, key).values
 
 
 @dataclass(frozen=True)

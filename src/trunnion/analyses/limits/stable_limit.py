@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,7 +24,7 @@ from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, tur
 from trunnion.analyses.tongues.rows import Row, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.analyses.tongues.windows import StableWindows, stable_windows
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import numbers, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
@@ -96,20 +96,19 @@ def stable_limit(
     task = task_of(assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit")
     workers = os.cpu_count() or 1
     region = _region(task, len(speed), tolerance, workers, lambda s: tell(0.6 * s))
-    found = _Stability.of(region, np.unique(np.clip(speed, task.y.values[0], task.y.values[-1])))
+    at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
+    rows = _rows(region, at)
     tell(0.7)
     end = 1.0 if margin is None else 0.8
     span = float(task.x.values[0]), float(task.x.values[-1])
-    others = other_limits(
-        assembly, task.x.columns, found.speed, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s)
-    )
+    others = other_limits(assembly, task.x.columns, at, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s))
     whole = None
     if margin is not None:
         whole = stable_windows(
             assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
         )
     tell(1.0)
-    return _result(assembly, task, region, found, others, whole)
+    return _result(assembly, task, region, at, rows, others, whole)
 
 
 def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool = False) -> StableLimit:
@@ -132,8 +131,8 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     else:
         region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: None)
     asked = np.clip(np.asarray(speeds, dtype=float), chart.x.min(), chart.x.max())
-    found = _Stability.of(region, np.unique(np.concatenate([asked, chart.x] if own else [asked])))
-    return _result(assemble(chart.line), task, region, found, ((), ""), None)
+    at = np.unique(np.concatenate([asked, chart.x] if own else [asked]))
+    return _result(assemble(chart.line), task, region, at, _rows(region, at), ((), ""), None)
 
 
 def _region(task: Task, speeds: int, tolerance: float, workers: int, tell: Progress) -> Region:
@@ -143,49 +142,37 @@ def _region(task: Task, speeds: int, tolerance: float, workers: int, tell: Progr
     return patched(task.family, task.x.values, task.y.values, tolerance, workers, tell)
 
 
-@dataclass(frozen=True)
-class _Stability:
-    """Unstable ranges of the parameter at every speed, and whether any of it could not be computed."""
-
-    speed: Array
-    unstable: tuple[Array, ...]
-    at_once: Flags
-    failed: Flags
-
-    @classmethod
-    def of(cls, region: Region, speed: Array) -> _Stability:
-        rows: list[Row] = []
-        for start in range(0, len(speed), AT_ONCE):
-            v = region.family.to_patch(speed[start : start + AT_ONCE], False)
-            rows += unstable_intervals(region, v)
-        at_once = np.array([bool(len(row) and row.clipped[0, 0]) for row in rows])
-        return cls(
-            speed,
-            tuple(region.in_x(row.low, row.high) for row in rows),
-            at_once,
-            np.array([len(r.unknown) > 0 for r in rows]),
-        )
+def _rows(region: Region, speed: Array) -> list[Row]:
+    """Unstable ranges of the parameter at every speed (speed,)."""
+    rows: list[Row] = []
+    for start in range(0, len(speed), AT_ONCE):
+        rows += unstable_intervals(region, region.family.to_patch(speed[start : start + AT_ONCE], False))
+    return rows
 
 
 def _result(
     assembly: Assembly,
     task: Task,
     region: Region,
-    found: _Stability,
+    speed: Array,
+    rows: list[Row],
     others: Reached,
     whole: StableWindows | None,
 ) -> StableLimit:
     low, high = float(task.x.values[0]), float(task.x.values[-1])
-    some = np.array([len(ranges) > 0 for ranges in found.unstable])
-    kind = np.where(~some, LimitKind.BEYOND, np.where(found.at_once, LimitKind.AT_ONCE, LimitKind.CROSSING))
-    kind = np.where(found.failed, LimitKind.UNKNOWN, kind).astype(np.int8)
-    limit = np.array([float(ranges[0, 0]) if len(ranges) else high for ranges in found.unstable])
-    limit[found.failed] = np.nan
+    unstable = tuple(region.in_x(row.low, row.high) for row in rows)
+    at_once = np.array([bool(len(row) and row.clipped[0, 0]) for row in rows])
+    failed = np.array([len(row.unknown) > 0 for row in rows])
+    some = np.array([len(ranges) > 0 for ranges in unstable])
+    kind = np.where(~some, LimitKind.BEYOND, np.where(at_once, LimitKind.AT_ONCE, LimitKind.CROSSING))
+    kind = np.where(failed, LimitKind.UNKNOWN, kind).astype(np.int8)
+    limit = np.array([float(ranges[0, 0]) if len(ranges) else high for ranges in unstable])
+    limit[failed] = np.nan
     said = left_out("stable_limit", assembly.line)
     known = {finding.sentence for finding in said}
     notes = tuple(Finding(Gravity.NOTE, f"{r[0].upper()}{r[1:]}") for r in task.remarks if r not in known)
     return StableLimit(
-        task.x.label, task.x.unit, found.speed, limit, kind, found.unstable, low, high,
+        task.x.label, task.x.unit, speed, limit, kind, unstable, low, high,
         region.by_coefficients and not region.uncovered, _search_words(region),
         *others, whole, (*said, *notes), speed_unit(assembly.line),
     )  # fmt: skip

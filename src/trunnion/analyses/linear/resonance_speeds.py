@@ -32,7 +32,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
-from trunnion.results.declared import Described, Held, axis, over, remark
+from trunnion.results.declared import Described, Held, axis, members_over, over, remark
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
@@ -63,15 +63,12 @@ class Resonance:
     @property
     def formula(self) -> str:
         """``(ω₁+ω₂)/2``, the resonance speed in terms of the natural frequencies."""
-        mode = [f"ω{m}".translate(_SUBSCRIPT) for m in self.modes]
+        first, *second = (f"ω{m}".translate(_SUBSCRIPT) for m in self.modes)
         if self.kind == "divergence":
-            return mode[0]
-        if self.kind in ("harmonic", "subharmonic"):
-            top = mode[0]
-            below = 2 * self.order if self.kind == "harmonic" else 2 * self.order - 1
-        else:
-            top = f"({mode[0]}+{mode[1]})" if self.kind == "sum" else f"({mode[1]}−{mode[0]})"
-            below = 2 * self.order
+            return first
+        pairs = {"sum": f"({'+'.join([first, *second])})", "difference": f"({'−'.join([*second, first])})"}
+        top = pairs.get(self.kind, first)
+        below = 2 * self.order - (self.kind == "subharmonic")
         under = below * self.rate
         over = "" if under.denominator == 1 else f"{under.denominator}"
         return f"{over}{top}" if under.numerator == 1 else f"{over}{top}/{under.numerator}"
@@ -111,9 +108,7 @@ class ResonanceSpeeds(Described):
         """Speed, kind, order, exciting mesh of every resonance, and whether it can open."""
         rows = self.resonances
         yield axis("resonance", [str(r) for r in rows])
-        yield over("resonance", "speed", [r.speed for r in rows], "rad/s")
-        yield over("resonance", "kind", [r.kind for r in rows])
-        yield over("resonance", "order", [r.order for r in rows])
+        yield from members_over("resonance", rows, speed="rad/s", kind="", order="")
         yield over("resonance", "mesh", [r.mesh for r in rows], about="gear mesh that excites; empty for joints")
         opens = np.array([r.opens for r in rows], dtype=np.int8)
         yield over("resonance", "opens", opens, about="unloaded line can be unstable there")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -61,24 +62,19 @@ OWN = Group(Fraction(0), 0.0, (), own=True)
 def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, width: int) -> list[Group]:
     """Groups of the exciters that have an amplitude in the packed numbers ``row``; orders with more than 2·``width``
     harmonics between them are apart."""
-    by_carrier: dict[Fraction, list[tuple[Exciter, int]]] = {}
-    in_time: dict[float, list[tuple[Exciter, int]]] = {}
+    together: dict[tuple[Fraction, float], list[tuple[Exciter, int]]] = {}
     for exciter in exciters:
         if exciter.held or row[exciter.amplitude] == 0:
             continue
         if exciter.in_time:
-            in_time.setdefault(float(row[exciter.frequency]), []).append((exciter, 0))
+            together.setdefault((Fraction(0), float(row[exciter.frequency])), []).append((exciter, 0))
         else:
-            by_carrier.setdefault(exciter.order % base, []).append((exciter, int(exciter.order // base)))
+            m, carrier = divmod(exciter.order, base)
+            together.setdefault((carrier, 0.0), []).append((exciter, int(m)))
     found = []
-    for carrier, members in by_carrier.items():
+    for (carrier, frequency), members in together.items():
         members.sort(key=lambda member: member[1])
-        near = [members[0]]
-        for member in members[1:]:
-            if member[1] - near[-1][1] > 2 * width:
-                found.append(Group(carrier, 0.0, tuple(near)))
-                near = []
-            near.append(member)
-        found.append(Group(carrier, 0.0, tuple(near)))
-    found += [Group(Fraction(0), frequency, tuple(members)) for frequency, members in in_time.items()]
+        apart = [i for i, (one, next_to) in enumerate(pairwise(members), 1) if next_to[1] - one[1] > 2 * width]
+        for begin, end in pairwise([0, *apart, len(members)]):
+            found.append(Group(carrier, frequency, tuple(members[begin:end])))
     return found

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -82,8 +82,8 @@ def order_response(
     [2.] 106.781
     """
     assembly = assemble(line, load_case)
-    speed = _checked_speeds(speeds)
-    wanted = None if orders is None else _checked_orders(orders)
+    speed = _positive(speeds, "speeds", "np.linspace(tn.rpm(300), tn.rpm(3000), 301)")
+    wanted = _listed(orders)
     twisted, motions = statically_twisted, own_motions_of(assembly)
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
@@ -133,21 +133,18 @@ def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderRe
     return _result(assembly, spectrum, lambda: failed, None)
 
 
-def _checked_speeds(speeds: ArrayLike) -> Array:
-    remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
-    speed = numbers(speeds, "speeds", remedy)
-    if not (np.all(np.isfinite(speed)) and np.all(speed > 0)):
-        raise InputError("must be positive and finite", key="speeds", remedy=remedy)
-    return speed
+def _positive(values: Any, key: str, remedy: str) -> Array:
+    found = numbers(values, key, remedy)
+    if not (np.all(np.isfinite(found)) and np.all(found > 0)):
+        raise InputError("must be positive and finite", key=key, remedy=remedy)
+    return found
 
 
-def _checked_orders(orders: Iterable[float]) -> Array:
-    remedy = "orders=[0.5, 1, 2], say"
+def _listed(orders: Iterable[float] | None) -> Array | None:
+    if orders is None:
+        return None
     given = list(orders) if isinstance(orders, Iterable) and not isinstance(orders, str) else orders
-    wanted = numbers(given, "orders", remedy)  # type: ignore[arg-type]
-    if not (np.all(np.isfinite(wanted)) and np.all(wanted > 0)):
-        raise InputError("must be positive and finite", key="orders", remedy=remedy)
-    return np.unique(wanted)
+    return np.unique(_positive(given, "orders", "orders=[0.5, 1, 2], say"))
 
 
 def _result(

@@ -14,7 +14,7 @@ from trunnion.analyses.assessment.remedies.variables import Scale, scale_of
 from trunnion.arrays import Array
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, members_over, over, remark
 from trunnion.results.drawing import drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
@@ -184,9 +184,7 @@ class Sensitivities(Result):
         yield axis("parameter", list(self.parameters))
         yield over("quantity", "value", self.value, about="in the unit of the quantity")
         yield over("quantity", "quantity_unit", [q.unit for q in self.quantities])
-        yield over("quantity", "kind", [q.kind for q in self.quantities])
-        yield over("quantity", "method", [q.method for q in self.quantities])
-        yield over("quantity", "refused", [q.refused for q in self.quantities])
+        yield from members_over("quantity", self.quantities, kind="", method="", refused="")
         yield over("quantity", "speed", [q.speed for q in self.quantities], "rad/s", "input speed where it was taken")
         yield over("parameter", "parameter_value", self.parameter_value, about="in the unit of the parameter")
         yield over("parameter", "parameter_unit", list(self.parameter_unit))

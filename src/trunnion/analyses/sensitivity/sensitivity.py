@@ -31,7 +31,7 @@ from trunnion.analyses.tongues.result import Tongues
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import numbers, several
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import moves_by_itself
@@ -225,9 +225,8 @@ def _torques(question: _Question) -> Iterator[Rows]:
 
 
 def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[Rows]:
-    operation = line.operation
     span = None
-    if operation is None or not (operation.speed_range or operation.speed is not None):
+    if stated_range(line) is None:
         if not len(question.at):
             return
         span = (float(question.at.min()), float(question.at.max()))
