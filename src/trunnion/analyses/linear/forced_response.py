@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.analyses.orders.spectrum import order_spectrum
-from trunnion.analyses.orders.totals import common_turns, extremes, wave
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
@@ -101,9 +100,9 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
     topo = assembly.topology
     spectrum = order_spectrum(assembly, np.array([speed]), statically_twisted=statically_twisted)
     places = spectrum.channels
-    between = extremes(spectrum, spectrum.amplitude, spectrum.mean)
+    between = spectrum.extremes(spectrum.amplitude, spectrum.mean)
     swing = between.swing[0]
-    turns = float(common_turns(spectrum) or (TURNS if spectrum.order else 1))
+    turns = float(spectrum.common_turns or (TURNS if spectrum.order else 1))
     cycles = max(np.abs(spectrum.angular_frequency).max(initial=speed) / speed * turns, 1.0)
     times = np.ceil(max(TIMES, PER_CYCLE * cycles))
     if times * spectrum.mean.shape[1] > MOST_NUMBERS:
@@ -113,7 +112,7 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
             "times the speed; raise the speed or lower it"
         )
     tau = np.linspace(0.0, 2 * np.pi * turns, int(times) + 1)
-    seen = wave(spectrum, 0, spectrum.amplitude[0], spectrum.mean[0], tau / speed)
+    seen = spectrum.wave(0, spectrum.amplitude[0], spectrum.mean[0], tau / speed)
     return LinearResponse(
         tau=tau,
         twist=seen[:, places.twist],

@@ -1,16 +1,36 @@
-"""Amplitudes by order: as they are summed up, and as a whole over many speeds."""
+"""Amplitudes by order: as they are summed up, and as a whole over many speeds with its extremes over the cycle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.analyses.orders.channels import Channels
 from trunnion.arrays import Array, Complex
+from trunnion.equations.topology import LONGEST_PERIOD, common_rate
+from trunnion.numerics.cycle_extremes import cycle_extremes
 
 Key = tuple[Fraction, float]
+
+
+class Range(NamedTuple):
+    """Lowest and highest values over the cycle."""
+
+    low: Array
+    high: Array
+
+    @property
+    def swing(self) -> Array:
+        """Half of the peak-to-peak values."""
+        return np.asarray((self.high - self.low) / 2)
+
+    @property
+    def largest(self) -> Array:
+        """Largest absolute values."""
+        return np.maximum(np.abs(self.low), np.abs(self.high))
 
 
 class OrderSum:
@@ -73,3 +93,52 @@ class OrderSpectrum:
     def angular_frequency(self) -> Array:
         """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
         return self.speed[:, None] * self.order_numbers + self.frequency
+
+    @property
+    def common_turns(self) -> Fraction | None:
+        """Turns of the input after which everything repeats; None where it does not."""
+        base = None if np.any(self.frequency != 0) else _common_base(self.order)
+        return 1 / base if base else None
+
+    @property
+    def adds_exactly(self) -> bool:
+        """Whether extremes of the sum are those of the motion, not the sum of amplitudes as a bound."""
+        in_time = np.count_nonzero(self.frequency)
+        if in_time:
+            return in_time == len(self.order) == 1
+        return not self.order or self.common_turns is not None
+
+    def extremes_at(self, channels: slice) -> Range:
+        """Extremes (speed, channel) of some channels, mean included."""
+        return self.extremes(self.amplitude[..., channels], self.mean[:, channels])
+
+    def extremes(self, amplitude: Complex, mean: Array) -> Range:
+        """Extremes (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
+
+        With phases over the common period of the orders; what has no common period is added by its amplitudes, a bound.
+        """
+        turning = self.frequency == 0
+        orders = tuple(o for o, t in zip(self.order, turning, strict=True) if t)
+        base = _common_base(orders)
+        loose = ~turning if base else np.ones(len(turning), dtype=bool)
+        beside = np.abs(amplitude[:, loose]).sum(axis=1)
+        low = high = np.zeros(mean.shape)
+        if base and orders:
+            index = np.array([int(order / base) for order in orders], dtype=np.int64)
+            rows = np.moveaxis(amplitude[:, turning], 1, 2).reshape(-1, len(orders))
+            low, high = (part.reshape(mean.shape) for part in cycle_extremes(index, rows))
+        return Range(mean + low - beside, mean + high + beside)
+
+    def wave(self, at: int, amplitude: Complex, mean: Array, time: Array) -> Array:
+        """Values (time, channel) at ``time`` [s] of amplitudes (order, channel) and a mean (channel,) at speed ``at``.
+
+        Time counts from zero rotation of the input.
+        """
+        turning = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
+        return np.asarray(mean + (turning @ amplitude).real)
+
+
+def _common_base(orders: tuple[Fraction, ...]) -> Fraction | None:
+    """Largest order that all ``orders`` are multiples of; None without orders or with too long a common period."""
+    base = common_rate(orders)
+    return base if base and 1 / base <= LONGEST_PERIOD else None

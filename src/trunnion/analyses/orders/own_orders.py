@@ -10,9 +10,7 @@ there, and the mean deviation of the input is none.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
@@ -143,14 +141,3 @@ def seen_about(own: OwnBase, topo: Topology, h: Integers, x: Complex) -> Complex
 def _finer(values: Array, times: int) -> Array:
     """Periodic values (case, time, …) at ``times`` samples instead."""
     return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=1), times, axis=1) * (times / values.shape[1]))
-
-
-Add = Callable[[Fraction, float, Complex], None]
-
-
-def add_own(own: OwnBase, cycles: Fraction, add: Add) -> None:
-    """The own motions' harmonics, ``add``ed by order."""
-    times = own.mass.shape[1]
-    spectrum = np.fft.fft(own.seen, axis=1) / times
-    for h in range(-own.count, own.count + 1):
-        add(h * cycles, 0.0, spectrum[:, h % times])

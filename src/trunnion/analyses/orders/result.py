@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.orders.amplitudes import OrderSpectrum
-from trunnion.analyses.orders.totals import Range, adds_exactly, common_turns, extremes, extremes_at, wave
+from trunnion.analyses.orders.amplitudes import OrderSpectrum, Range
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.results.counts import counted
@@ -88,12 +87,12 @@ class OrderResponse(Judged):
     @property
     def sum_is_bound(self) -> bool:
         """True where excitations have no common period, so that sums over the cycle are sums of amplitudes."""
-        return not adds_exactly(self.spectrum)
+        return not self.spectrum.adds_exactly
 
     @cached_property
     def torque_range(self) -> Range:
         """Lowest and highest torque (speed, spring) [N m] over the cycle, mean included."""
-        return extremes_at(self.spectrum, self.spectrum.channels.torque)
+        return self.spectrum.extremes_at(self.spectrum.channels.torque)
 
     @property
     def peak_torque(self) -> Array:
@@ -108,7 +107,7 @@ class OrderResponse(Judged):
     @cached_property
     def twist_range(self) -> Range:
         """Lowest and highest twist (speed, spring) [rad] over the cycle, mean included."""
-        return extremes_at(self.spectrum, self.spectrum.channels.twist)
+        return self.spectrum.extremes_at(self.spectrum.channels.twist)
 
     @property
     def vibratory_twist(self) -> Array:
@@ -156,7 +155,7 @@ class OrderResponse(Judged):
         spectrum = self.spectrum
         whole = spectrum.amplitude[..., spectrum.channels.point] + spectrum.base
         turned = whole * (1j * spectrum.angular_frequency[..., None]) ** rates
-        return extremes(spectrum, turned, np.zeros((len(self.speed), len(self.inertias)))).swing
+        return spectrum.extremes(turned, np.zeros((len(self.speed), len(self.inertias)))).swing
 
     @cached_property
     def joint_rotation(self) -> Array:
@@ -166,7 +165,7 @@ class OrderResponse(Judged):
     @cached_property
     def joint_rotations(self) -> Array:
         """The same for every joint (speed, joint)."""
-        return extremes_at(self.spectrum, self.spectrum.channels.joint_input).largest
+        return self.spectrum.extremes_at(self.spectrum.channels.joint_input).largest
 
     @property
     def linear(self) -> Flags:
@@ -209,7 +208,7 @@ class OrderResponse(Judged):
         """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
         spectrum = self.spectrum
         at = 0 if speed is None else int(np.abs(self.speed - speed).argmin())
-        turns = common_turns(spectrum)
+        turns = spectrum.common_turns
         length = 2 * np.pi * float(turns or 10) / self.speed[at]
         if len(spectrum.order) == 1 and spectrum.frequency[0]:
             length = 2 * np.pi / spectrum.frequency[0]
@@ -217,9 +216,9 @@ class OrderResponse(Judged):
         time = np.linspace(0.0, length, int(np.ceil(WAVE_POINTS * cycles)) + 1)
         places = spectrum.channels
         parts = spectrum.amplitude[at], spectrum.mean[at]
-        seen = wave(spectrum, at, *parts, time)
+        seen = spectrum.wave(at, *parts, time)
         whole = spectrum.amplitude[at][:, places.point] + spectrum.base[at]
-        rotation = wave(spectrum, at, whole, spectrum.mean[at, places.point], time)
+        rotation = spectrum.wave(at, whole, spectrum.mean[at, places.point], time)
         return OrderWave(
             float(self.speed[at]), time, seen[:, places.torque], seen[:, places.twist], rotation,
             self.springs, self.inertias,

@@ -298,11 +298,13 @@ class _Case:
 
     def _about_own_motions(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
         """Some speeds of a bent line that starts free."""
-        from trunnion.analyses.orders.own_orders import about, add_own, seen_about
+        from trunnion.analyses.orders.own_orders import about, seen_about
 
         co, speed = own.coefficients, table[:, 0]
         total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
-        add_own(own, 1 / self.turns, total.add)
+        kept = np.arange(-own.count, own.count + 1)
+        for harmonic, part in zip(kept.tolist(), self._harmonics(own.seen, kept).swapaxes(0, 1), strict=True):
+            total.add(harmonic / self.turns, 0.0, part)
         for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
             carrier = group.carrier_at(speed)
             centres = [m for _, m in group.members]

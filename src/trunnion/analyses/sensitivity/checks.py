@@ -8,6 +8,7 @@ where the line has a base motion that is known.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -69,7 +70,7 @@ def check_slopes(
             slopes[c, 0], errors[c, 0], refused[c] = _growth(case, float(speeds[c]), directions)
             here[c], exact[c] = (check.value, check.margin), True
         else:
-            here[c] = values.here(case, float(speeds[c]), check)
+            here[c] = values.known(case, float(speeds[c]), check, ("", 0.0), subject.line)
             exact[c] = values.exact(case, check)
             look = partial(values.slope, case, float(speeds[c]), check)
             slopes[c], errors[c] = along_each(directions, look, (2,))
@@ -107,7 +108,7 @@ class _Values:
             case.name: set() if case.costly else {check.name for check in of_response(subject, case)}
             for case in subject.cases
         }
-        self._seen: dict[tuple[str, float, str, float], dict[str, Array]] = {}
+        self._seen: defaultdict[tuple[str, float, str, float], dict[str, Array]] = defaultdict(dict)
         self._around: dict[tuple[str, float], tuple[dict[str, SpectrumSlope | None], float]] = {}
 
     def exact(self, case: Case, check: Check) -> bool:
@@ -147,34 +148,26 @@ class _Values:
             self._around[key] = every, max((one.pace for one in every.values() if one is not None), default=0.0)
         return self._around[key]
 
-    def here(self, case: Case, speed: float, check: Check) -> Array:
-        """Of the line as it is."""
-        return self._known(case, speed, check, ("", 0.0), self.subject.line)
-
     def at(self, case: Case, speed: float, check: Check, one: Direction, share: float) -> Array | None:
-        """Of the line moved along a direction; None where it is refused."""
-        if not share:
-            return self.here(case, speed, check)
-        line = self.near.line(one, share)
-        return None if line is None else self._known(case, speed, check, (one.label, share), line)
+        """Of the line moved along a direction, or as it is without a ``share``; None where it is refused."""
+        line = self.near.line(one, share) if share else self.subject.line
+        return None if line is None else self.known(case, speed, check, (one.label if share else "", share), line)
 
-    def _known(self, case: Case, speed: float, check: Check, moved: tuple[str, float], line: Driveline) -> Array:
+    def known(self, case: Case, speed: float, check: Check, moved: tuple[str, float], line: Driveline) -> Array:
+        """Of a ``line`` that is ``moved`` along a direction by a share of its size."""
         whole = check.name in self.of_line
         key = ("", 0.0, *moved) if whole else (case.name, speed, *moved)
-        if key not in self._seen or check.name not in self._seen[key]:
+        if check.name not in self._seen[key]:
             subject, own = _of(self.subject, case, line)
             if whole:
-                self._keep(key, _read(of_line(subject)))
+                self._seen[key] |= _read(of_line(subject))
             elif check.name == GROWTH and np.isfinite(speed):
                 one = at_speed(subject, own, speed)
-                self._keep(key, _read(parametric_stability(one, one.cases[0])))
+                self._seen[key] |= _read(parametric_stability(one, one.cases[0]))
             elif np.isfinite(speed):
                 for at, one in _speed_by_speed(subject, own, self.speeds[case.name]):
-                    self._keep((case.name, at, *moved), _read(self._by_case(one)))
-        return self._seen.setdefault(key, {}).setdefault(check.name, np.full(2, np.nan))
-
-    def _keep(self, key: tuple[str, float, str, float], found: dict[str, Array]) -> None:
-        self._seen[key] = self._seen.get(key, {}) | found
+                    self._seen[case.name, at, *moved] |= _read(self._by_case(one))
+        return self._seen[key].setdefault(check.name, np.full(2, np.nan))
 
     def _by_case(self, one: Subject) -> Iterator[Check]:
         for rule in self.rules:

@@ -14,7 +14,6 @@ import numpy as np
 from trunnion.analyses.linear.along import stability_along
 from trunnion.analyses.orders.amplitudes import OrderSpectrum
 from trunnion.analyses.orders.response import order_response
-from trunnion.analyses.orders.totals import extremes_at
 from trunnion.analyses.sensitivity.differences import slope
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
 from trunnion.analyses.sensitivity.responses import spectrum_slope
@@ -57,7 +56,7 @@ def exact_torque_slopes(
 
 def _extremes(spectrum: OrderSpectrum) -> Array:
     """Peak and vibratory torque (2, spring) [N m] at the one speed of a spectrum."""
-    found = extremes_at(spectrum, spectrum.channels.torque)
+    found = spectrum.extremes_at(spectrum.channels.torque)
     return np.stack([found.largest[0], found.swing[0]])
 
 
