@@ -36,7 +36,7 @@ STUDIES = {
 
 
 LONGEST = [
-    *("test_features.py", "test_integration.py", "test_report.py", "test_views.py", "test_charts_hold_their_word.py"),
+    *("test_features.py", "test_integration.py", "test_by_hand.py", "test_report.py", "test_charts_hold_their_word.py"),
     *("test_tongues.py", "test_commands.py", "test_process.py", "test_stability_charts.py", "test_random_chains.py"),
 ]
 """Files that take longest, the longest first. The first two need different kernels, so that none is compiled twice."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
+from trunnion.driveline.quantities import Kind, parse
 from trunnion.errors import InputError
 
 
@@ -23,6 +24,19 @@ def one_number(value: object, key: str, remedy: str = "") -> float:
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise InputError("must be a number", key=key, value=_said(value), remedy=remedy)
     return float(value)
+
+
+def quantity(value: object, kind: Kind, key: str) -> float:
+    """A quantity [SI] of a kind, from a number or a text with its unit.
+
+    Raises
+    ------
+    InputError : it is none, or of another dimension.
+    """
+    try:
+        return parse(value, kind)
+    except InputError as error:
+        raise error.but(key=key) from None
 
 
 def whole_number(value: object, key: str, least: int) -> int:

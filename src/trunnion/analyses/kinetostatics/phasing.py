@@ -19,8 +19,9 @@ from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, period_tur
 from trunnion.analyses.kinetostatics.measures import equivalent_angle, extremes, phasor_angle
 from trunnion.analyses.kinetostatics.motion import drive_jet, walk
 from trunnion.arrays import Array
+from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.quantities import ANGLE, DEGREE, parse
+from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 
@@ -235,10 +236,7 @@ def _pitches(train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[s
     for name, value in given.items():
         if name not in names:
             raise InputError("is not a Shaft between two joints", key="pitch", value=name, remedy=nearest(name, names))
-        try:
-            pitches[name] = parse(value, ANGLE)
-        except InputError as error:
-            raise error.but(key="pitch", value=value) from None
+        pitches[name] = quantity(value, ANGLE, "pitch")
         if not pitches[name] > 0:
             raise InputError("must be positive", key="pitch", value=value, remedy='write "10 deg" for 36 splines')
         pitches[name] = _whole_splines(pitches[name], value)

@@ -11,8 +11,9 @@ from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
 from trunnion.analyses.kinetostatics.measures import equivalent_angle
 from trunnion.analyses.kinetostatics.phasing import irregularity_of, phased_shafts
 from trunnion.arrays import Array
+from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.quantities import ANGLE, DEGREE, parse
+from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.errors import InputError
 
 MOST_TOGETHER = 12
@@ -67,10 +68,7 @@ def assembly_sensitivity(
     error : size of every error [rad].
     branch : name of an element on the branch whose output is asked about; default the one that ends the line.
     """
-    try:
-        size = parse(error, ANGLE)
-    except InputError as refused:
-        raise refused.but(key="error", value=error) from None
+    size = quantity(error, ANGLE, "error")
     if not size > 0:
         raise InputError("must be positive", key="error", value=error, remedy='write "1 deg", say')
     train = chain(line, branch=branch)

@@ -19,8 +19,9 @@ from trunnion.analyses.kinetostatics.result import ConstantTwist, Kinetostatics
 from trunnion.analyses.kinetostatics.supports import support_forces
 from trunnion.analyses.kinetostatics.torques import Torques, refuse_locking
 from trunnion.arrays import Array
+from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE, Kind, parse
+from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
@@ -72,7 +73,7 @@ def kinetostatics(
     """
     if speed is None:
         speed = (line.operation.speed if line.operation else None) or 1.0
-    drive_speed = _number(speed, SPEED, "speed")
+    drive_speed = quantity(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
     _whole("turns", turns, 1)
@@ -148,7 +149,7 @@ def kinetostatics(
 def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]) -> dict[int, float]:
     """Torque [N m] by end step."""
     if not isinstance(given, Mapping):
-        return {train.output: _number(given, TORQUE, "output_torque")}
+        return {train.output: quantity(given, TORQUE, "output_torque")}
     found: dict[int, float] = {}
     for name, value in given.items():
         end = train.end_behind(name, "output_torque")
@@ -157,7 +158,7 @@ def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]
             raise InputError(
                 "names a branch that has its torque already", key="output_torque", value=name, remedy=remedy
             )
-        found[end] = _number(value, TORQUE, f"output_torque[{name!r}]")
+        found[end] = quantity(value, TORQUE, f"output_torque[{name!r}]")
     return found
 
 
@@ -215,17 +216,10 @@ def _lengths(line: Driveline, lengths: Mapping[str, float | str] | None) -> dict
                 value=name,
                 remedy=nearest(name, line.names),
             )
-        known[name] = _number(length, LENGTH, f"lengths[{name!r}]")
+        known[name] = quantity(length, LENGTH, f"lengths[{name!r}]")
         if not known[name] > 0:
             raise InputError("must be positive", element=name, key="lengths", value=length, remedy="write 0.8 [m]")
     return known
-
-
-def _number(value: float | str, kind: Kind, key: str) -> float:
-    try:
-        return parse(value, kind)
-    except InputError as error:
-        raise error.but(key=key) from None
 
 
 def _acceleration(value: float) -> float:
