@@ -140,12 +140,15 @@ class Topology:
         """The group a station belongs to."""
         return self.stations[station].group
 
-    def on_unknowns(self, parts: Array) -> Array:
-        """What stands at stations (case, station) as the unknowns feel it, joints straight: Σ part r² (case, n)."""
-        found = np.zeros((self.size, len(parts)))
-        moves = self.unknown_of >= 0
-        np.add.at(found, self.unknown_of[moves], (parts * self.relative_ratios**2).T[moves])
-        return np.ascontiguousarray(found.T)
+    def on_unknowns(self, parts: Array, relative: Array | None = None) -> Array:
+        """What stands at stations (…, station) as the unknowns feel it: Σ part r² (…, n).
+
+        ``relative`` (…, station) : r of every station from its group's first; by default that of straight joints.
+        """
+        felt = parts * (self.relative_ratios if relative is None else relative) ** 2
+        found, moves = np.zeros((self.size, *felt.shape[:-1])), self.unknown_of >= 0
+        np.add.at(found, self.unknown_of[moves], np.moveaxis(felt, -1, 0)[moves])
+        return np.ascontiguousarray(np.moveaxis(found, 0, -1))
 
     @cached_property
     def mean_speeds(self) -> Array:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.analyses.linear.natural_frequencies import damped_modes
 from trunnion.arrays import Array, Complex, Places
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly
@@ -34,19 +35,15 @@ def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
     root = np.sqrt(mass)
     scale = np.outer(root, root)
     squares, reference = np.linalg.eigh(matrices.stiffness[0] / scale)
-    elastic = squares > (RIGID**2) * max(squares.max(initial=0.0), 0.0)
+    least = RIGID * np.sqrt(max(squares.max(initial=0.0), 0.0))
+    elastic = squares > least**2
     last = reference[:, elastic].astype(complex)
     found = np.full((len(speeds), last.shape[1]), complex(np.nan, np.nan))
     shapes = np.full((len(speeds), n, last.shape[1]), complex(np.nan, np.nan))
     alike = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in (damping, matrices.stiffness))
     for i in range(min(len(speeds), 1) if alike else len(speeds)):
-        system = np.zeros((2 * n, 2 * n), dtype=complex)
-        system[:n, n:] = np.eye(n)
-        system[n:, :n] = -(matrices.stiffness[i] + 1j * matrices.loss[i]) / scale
-        system[n:, n:] = -damping[i] / scale
-        values, vectors = np.linalg.eig(system)
-        kept = values.imag > RIGID * np.sqrt(max(squares.max(initial=0.0), 0.0))
-        values, vectors = values[kept], vectors[:n, kept]
+        lossy = matrices.stiffness[i] + 1j * matrices.loss[i]
+        values, vectors = damped_modes(damping[i] / scale, lossy / scale, least)
         here, there = matched(last, vectors)
         found[i, here] = values[there]
         turned = vectors[:, there] / root[:, None]

@@ -143,20 +143,20 @@ def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Arra
         return ratio
     whole = stiffness + 1j * loss if loss.any() else stiffness
     oscillating = frequency > 0
-    values, _ = damped_modes(damping, whole, float(frequency[oscillating].min(initial=np.inf)))
+    values, _ = damped_modes(damping, whole, NO_OSCILLATION * float(frequency[oscillating].min(initial=np.inf)))
     if len(values) == oscillating.sum():
         ratio[oscillating] = -values.real / np.abs(values)
     return ratio
 
 
-def damped_modes(damping: Array, stiffness: Array | Complex, lowest: float) -> tuple[Complex, Complex]:
-    """Eigenvalues with positive imaginary part of λ² + λC + K, by modulus, and their shapes (n, values).
+def damped_modes(damping: Array, stiffness: Array | Complex, least: float) -> tuple[Complex, Complex]:
+    """Eigenvalues of λ² + λC + K with an imaginary part above ``least`` [rad/s], by modulus; their shapes (n, values).
 
     C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
-    own size, is no oscillation: far below ``lowest``, the lowest elastic frequency [rad/s].
+    own size, is no oscillation: ``least`` keeps it out.
     """
     n = len(damping)
     values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
-    above = np.flatnonzero(values.imag > NO_OSCILLATION * lowest)
+    above = np.flatnonzero(values.imag > least)
     above = above[np.argsort(np.abs(values[above]))]
     return values[above], vectors[:n, above]

@@ -80,10 +80,6 @@ class OwnOrders:
         uniform = base_motion(topo, co.straight, tau).angle
         rigid = base_motion(topo, co, tau).angle - uniform
         relative = base_motion(topo, co, tau, stood=uniform + observed.rotation).relative
-        mass = np.zeros((len(speeds), len(tau), n))
-        for s in range(len(topo.stations)):
-            if (i := topo.coordinate[topo.group_of(s)]) >= 0:
-                mass[..., i] += co.inertia[:, None, s] * relative[..., s] ** 2
         places = channels_of(topo)
         seen = np.zeros((len(speeds), len(tau), places.count))
         seen[..., places.twist], seen[..., places.torque] = observed.twist, observed.torque
@@ -95,7 +91,7 @@ class OwnOrders:
         seen[..., places.joint_input] = (swing - swing.mean(axis=1, keepdims=True))[..., before]
         return OwnBase(
             ratio=relative[..., [c.near for c in topo.compliances]],
-            mass=mass,
+            mass=topo.on_unknowns(co.inertia[:, None], relative),
             base=BaseOfExcitation(relative, observed.rotation),
             wave=stiffness_waves(topo, co, tau),
             seen=seen,

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from trunnion.analyses.linear.natural_frequencies import damped_modes, natural_frequencies
+from trunnion.analyses.linear.natural_frequencies import NO_OSCILLATION, damped_modes, natural_frequencies
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
 from trunnion.analyses.sensitivity.result import EXACT, Quantity, Rows
@@ -42,7 +42,9 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
     weight = np.einsum("im,i,im->m", shape, mass, shape)
     root = np.sqrt(mass)
     over = 1 / np.outer(root, root)
-    values, scaled = damped_modes(damping * over, complex_stiffness * over, float(omega.min(initial=np.inf)))
+    values, scaled = damped_modes(
+        damping * over, complex_stiffness * over, NO_OSCILLATION * float(omega.min(initial=np.inf))
+    )
     vectors = scaled / root[:, None]
     matched = _matched(values, found.damping_ratio[first:])
     frequency_slope, ratio_slope = np.zeros((2, len(omega), len(directions)))
