@@ -30,8 +30,9 @@ def mathieu(a: float, q: float, damping: float = 0.0) -> PeriodicLinearSystem:
 
 def mathieu_oscillator(a: float = 1.0, q: float = 0.2, damping: float = 0.0) -> System:
     """The same oscillator as a ``System``, to be integrated: states y and y′."""
-    values = {"a": a, "q": q, "damping": damping}
-    return _system("mathieu", ("y", "rate"), values, np.pi, [1.0, 0.0], divergence=lambda p: -2 * p["damping"])
+    return _system(
+        "mathieu", ("y", "rate"), np.pi, [1.0, 0.0], divergence=lambda p: -2 * p["damping"], a=a, q=q, damping=damping
+    )  # fmt: skip
 
 
 def duffing(
@@ -43,37 +44,32 @@ def duffing(
     frequency: float = 1.2,
 ) -> System:
     """Duffing's oscillator x″ + c x′ + k₁x + k₃x³ = B₀ + B₁ cos ωt."""
-    values = {
-        "damping": damping, "stiffness": stiffness, "cubic": cubic,
-        "mean_force": mean_force, "force": force, "frequency": frequency,
-    }  # fmt: skip
-    return _oscillator("duffing", "duffing", values)
+    return _oscillator(
+        "duffing", damping=damping, stiffness=stiffness, cubic=cubic, mean_force=mean_force, force=force,
+        frequency=frequency,
+    )  # fmt: skip
 
 
 def linear_oscillator(
     damping: float = 0.1, stiffness: float = 1.0, force: float = 1.0, frequency: float = 1.0
 ) -> System:
     """x″ + c x′ + kx = B cos ωt."""
-    values = {
-        "damping": damping, "stiffness": stiffness, "cubic": 0.0,
-        "mean_force": 0.0, "force": force, "frequency": frequency,
-    }  # fmt: skip
-    return _oscillator("linear-oscillator", "duffing", values)
+    return _oscillator(
+        "duffing", "linear-oscillator", damping=damping, stiffness=stiffness, cubic=0.0, mean_force=0.0, force=force,
+        frequency=frequency,
+    )  # fmt: skip
 
 
 def ueda(damping: float = 0.05, force: float = 7.5, frequency: float = 1.0) -> System:
     """Ueda's oscillator x″ + c x′ + x³ = B cos ωt, chaotic as it stands (Ueda, J. Stat. Phys. 20, 1979)."""
-    values = {
-        "damping": damping, "stiffness": 0.0, "cubic": 1.0,
-        "mean_force": 0.0, "force": force, "frequency": frequency,
-    }  # fmt: skip
-    return _oscillator("ueda", "duffing", values)
+    return _oscillator(
+        "duffing", "ueda", damping=damping, stiffness=0.0, cubic=1.0, mean_force=0.0, force=force, frequency=frequency
+    )  # fmt: skip
 
 
 def driven_pendulum(damping: float = 0.1, force: float = 2.5, frequency: float = 1.0) -> System:
     """x″ + c x′ + sin x = B sin ωt; chaotic as it stands."""
-    values = {"damping": damping, "force": force, "frequency": frequency}
-    return _oscillator("driven-pendulum", "pendulum", values)
+    return _oscillator("pendulum", "driven-pendulum", damping=damping, force=force, frequency=frequency)
 
 
 def dead_zone_oscillator(
@@ -86,10 +82,6 @@ def dead_zone_oscillator(
     frequency: float = 0.6,
 ) -> System:
     """x″ + c x′ + g(x) = B₀ + B₁ cos ωt, with slope αk of g within ±b and k outside; ``inside`` is α."""
-    values = {
-        "damping": damping, "stiffness": stiffness, "inside": inside, "half_gap": half_gap,
-        "mean_force": mean_force, "force": force, "frequency": frequency,
-    }  # fmt: skip
     regimes = Regimes(
         names=("gap", "upper contact", "lower contact"),
         guards=("upper end", "lower end"),
@@ -102,20 +94,23 @@ def dead_zone_oscillator(
         ),
         locate=_contact,
     )
-    return _oscillator("dead-zone-oscillator", "dead_zone", values, regimes)
+    return _oscillator(
+        "dead_zone", "dead-zone-oscillator", regimes, damping=damping, stiffness=stiffness, inside=inside,
+        half_gap=half_gap, mean_force=mean_force, force=force, frequency=frequency,
+    )  # fmt: skip
 
 
 def lorenz(sigma: float = 10.0, rho: float = 28.0, beta: float = 8.0 / 3.0) -> System:
     """Lorenz's equations (J. Atmos. Sci. 20, 1963)."""
-    values = {"sigma": sigma, "rho": rho, "beta": beta}
     return _system(
-        "lorenz", ("x", "y", "z"), values, None, [1.0, 1.0, 20.0], divergence=lambda p: -p["sigma"] - 1 - p["beta"]
-    )
+        "lorenz", ("x", "y", "z"), None, [1.0, 1.0, 20.0], divergence=lambda p: -p["sigma"] - 1 - p["beta"],
+        sigma=sigma, rho=rho, beta=beta,
+    )  # fmt: skip
 
 
 def rossler(a: float = 0.2, b: float = 0.2, c: float = 5.7) -> System:
     """Rössler's equations (Phys. Lett. A 57, 1976)."""
-    return _system("rossler", ("x", "y", "z"), {"a": a, "b": b, "c": c}, None, [1.0, 1.0, 1.0])
+    return _system("rossler", ("x", "y", "z"), None, [1.0, 1.0, 1.0], a=a, b=b, c=c)
 
 
 SYSTEMS: Mapping[str, Callable[..., System]] = {
@@ -157,19 +152,20 @@ def _forcing_period(p: Mapping[str, float]) -> float:
     return 2 * np.pi / p["frequency"] if p["frequency"] > 0 else np.nan
 
 
-def _oscillator(name: str, rate: str, values: dict[str, float], regimes: Regimes | None = None) -> System:
-    return _system(rate, ("x", "v"), values, _forcing_period, [0.0, 0.0], name, regimes, lambda p: -p["damping"])
+def _oscillator(rate: str, name: str = "", regimes: Regimes | None = None, **values: float) -> System:
+    start = [0.0, 0.0]
+    return _system(rate, ("x", "v"), _forcing_period, start, name, regimes, lambda p: -p["damping"], **values)
 
 
 def _system(
     rate: str,
     states: tuple[str, ...],
-    values: dict[str, float],
     period: Period,
     start: list[float],
     name: str = "",
     regimes: Regimes | None = None,
     divergence: Callable[[Mapping[str, float]], float] | None = None,
+    **values: float,
 ) -> System:
     return System(
         name=name or rate,
