@@ -91,6 +91,7 @@ def check(text: str, name: str, settings: dict[str, str]) -> None:
     calls = {s.name: (s.call, s.toml(document.toml)) for s in steps}
     exec(script(document.toml, calls, name, {s.name for s in steps if s.soft}), there)
     for step in steps:
+        assert hasattr(view.side, f"show_{step.show}"), f"nothing draws what {step.name} gives"
         if step.call.function == "line":
             continue
         given = {"progress": lambda share: None, "threads": 1}

@@ -1,10 +1,12 @@
-"""One axis of a stability chart in the browser."""
+"""A parameter over a range, in the unit that the browser shows it in."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from trunnion.driveline.parameters import SPEED
+from trunnion.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -17,9 +19,32 @@ class Axis:
     unit: str
     size: float
 
+    def typed(self, low: float | None, high: float | None) -> Axis:
+        """The same with the ends that were typed, as shown; None leaves one where it is."""
+        first = self.low if low is None else low * self.size
+        last = self.high if high is None else high * self.size
+        return replace(self, low=first, high=last)
+
+    def require_rising(self, unit: str = "") -> None:
+        """InputError where the ends do not rise; ``unit`` stands behind them."""
+        if not self.low < self.high:
+            low, high = self.ends
+            remedy = "type two ends that rise, or leave the fields empty"
+            raise InputError(f"runs from {low:g} to {high:g}{unit}", key=self.path, remedy=remedy)
+
     def request(self, points: int) -> tuple[str, float, float, int]:
         """As ``stability_chart`` takes it."""
         return (self.path, self.low, self.high, points)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """As shown."""
+        return self.low / self.size, self.high / self.size
+
+    def pixels(self, values: Any) -> tuple[float, float]:
+        """Begin and length, as shown, of what points in the middle of their pixels cover."""
+        step = float(values[1] - values[0])
+        return (values[0] - step / 2) / self.size, (values[-1] - values[0] + step) / self.size
 
     @property
     def label(self) -> str:

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-LIBRARIES = ("tn", "np")
+import trunnion
+
+LIBRARIES = {"tn": trunnion, "np": np}
 GIVEN_BY_WORKER = ("progress", "threads")
 """Arguments that change no number: the worker adds them, the exported Python leaves them out."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """Stands for the driveline in the arguments of a call."""
-
-
-LINE = Line()
 
 
 @dataclass(frozen=True)
@@ -37,9 +31,13 @@ class Call:
 
     def evaluate(self, line: Any, given: Mapping[str, Any] | None = None) -> Any:
         """What the call gives for ``line``; ``given`` adds those of its arguments that the outermost function takes."""
-        if self == THE_LINE:
+        if self == LINE:
             return line
-        function = _function(self.function) if self.of is None else _method(self.of.evaluate(line), self.function)
+        library, _, name = self.function.rpartition(".")
+        if name.startswith("_") or (self.of is None and library not in LIBRARIES):
+            raise ValueError(f"no call of {self.function}")
+        owner = LIBRARIES[library] if self.of is None else self.of.evaluate(line)
+        function = getattr(owner, name)
         arguments = [_value(a, line) for a in self.arguments]
         keywords = {key: _value(value, line) for key, value in self.keywords.items()}
         if given:
@@ -49,13 +47,15 @@ class Call:
 
     def text(self) -> str:
         """The call as Python."""
+        if self == LINE:
+            return self.function
         parts = [_text(a) for a in self.arguments] + [f"{k}={_text(v)}" for k, v in self.keywords.items()]
         owner = "" if self.of is None else f"{self.of.text()}."
         return f"{owner}{self.function}({', '.join(parts)})"
 
 
-THE_LINE = Call("line")
-"""The driveline itself, where it is shown as it is."""
+LINE = Call("line")
+"""Stands for the driveline: an argument of calls, and a call where it is shown as it is."""
 
 
 def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft: Collection[str] = ()) -> str:
@@ -66,7 +66,7 @@ def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft:
     body, now = [], toml
     asked_for: list[tuple[str, Call, str]] = []
     for name, (call, of) in results.items():
-        if call == THE_LINE:
+        if call == LINE:
             continue
         again = next((n for n, *what in asked_for if what == [call, of]), "")
         if again:
@@ -104,27 +104,8 @@ def _block(text: str) -> str:
     return f"'''\n{text}'''"
 
 
-def _function(name: str) -> Callable[..., Any]:
-    library, _, attribute = name.partition(".")
-    if library not in LIBRARIES or attribute.startswith("_"):
-        raise ValueError(f"no call of {name}")
-    if library == "np":
-        return getattr(np, attribute)  # type: ignore[no-any-return]
-    import trunnion as tn
-
-    return getattr(tn, attribute)  # type: ignore[no-any-return]
-
-
-def _method(owner: Any, name: str) -> Callable[..., Any]:
-    if name.startswith("_"):
-        raise ValueError(f"no call of {name}")
-    return getattr(owner, name)  # type: ignore[no-any-return]
-
-
 def _value(argument: Any, line: Any) -> Any:
     match argument:
-        case Line():
-            return line
         case Call():
             return argument.evaluate(line)
         case tuple():
@@ -136,8 +117,6 @@ def _value(argument: Any, line: Any) -> Any:
 
 def _text(argument: Any) -> str:
     match argument:
-        case Line():
-            return "line"
         case Call():
             return argument.text()
         case tuple():

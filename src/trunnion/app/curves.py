@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem, Span
+from bokeh.models import HoverTool, Legend, LegendItem, Span
 
 from trunnion.app import figures
 
@@ -21,6 +21,16 @@ WIDE, NARROW = 52, 34
 """Letters of a title in one line over the narrowest picture, and over one that has half of the page."""
 MOST = 24
 """Curves that one figure shows."""
+
+
+class Curve(NamedTuple):
+    """One of them; colour and dash where it does not take the next of the palette."""
+
+    name: str
+    x: Any
+    y: Any
+    colour: str = ""
+    dash: str = ""
 
 
 class Curves:
@@ -38,8 +48,8 @@ class Curves:
     ) -> None:
         self.figure = figures.plot(x, y, height=height, title=title, **more)
         self.words, self.is_narrow, self.height = title, False, height
-        self.source = ColumnDataSource(data={"xs": [], "ys": [], "colour": [], "dash": [], "width": [], "name": []})
-        self.areas = ColumnDataSource(data={"xs": [], "ys": []})
+        self.source = figures.source(xs=[], ys=[], colour=[], dash=[], width=[], name=[])
+        self.areas = figures.source(xs=[], ys=[])
         self.figure.patches(
             "xs", "ys", source=self.areas, color=figures.ORANGE, fill_alpha=0.25, line_alpha=0.0,
             hatch_pattern="right_diagonal_line", hatch_alpha=0.4, hatch_color=figures.ORANGE,
@@ -50,15 +60,12 @@ class Curves:
         self.figure.add_tools(
             HoverTool(renderers=[drawn], tooltips=[("", "@name"), ("", "($x, $y)")], line_policy="interp")
         )
-        self.legend = Legend(items=[LegendItem(label={"field": "name"}, renderers=[drawn])], ncols=IN_A_ROW)
-        self.legend.label_text_font_size = "12px"
-        self.legend.spacing = 8
-        self.legend.margin = 2
-        self.legend.padding = 2
-        self.legend.border_line_color = None
-        self.legend.location = "top_left"
+        self.legend = Legend(
+            items=[LegendItem(label={"field": "name"}, renderers=[drawn])], ncols=IN_A_ROW, location="top_left",
+            label_text_font_size="12px", spacing=8, margin=2, padding=2, border_line_color=None,
+        )  # fmt: skip
         self.figure.add_layout(self.legend, "below")
-        self.marks: dict[str, tuple[ColumnDataSource, LegendItem]] = {}
+        self.marks: dict[str, tuple[Any, LegendItem]] = {}
         self.cursor = Span(location=None, dimension="height", line_color=figures.INK, line_dash="dotted", line_width=2)
         self.figure.add_layout(self.cursor)
         if tap:
@@ -67,7 +74,7 @@ class Curves:
 
     def mark(self, name: str, shape: str, colour: str, size: int = 9) -> None:
         """Marks beside the curves, none at first; see ``put_marks``."""
-        source = ColumnDataSource(data={"x": [], "y": []})
+        source = figures.source(x=[], y=[])
         drawn = self.figure.scatter("x", "y", source=source, marker=shape, size=size, color=colour, fill_alpha=0.2)
         item = LegendItem(label=name, renderers=[drawn], visible=False)
         self.legend.items = [*self.legend.items, item]
@@ -83,33 +90,18 @@ class Curves:
 
     def fill(self, areas: Sequence[tuple[Any, Any]]) -> None:
         """Areas (x, y) under the curves, in place of those that are."""
-        figures.put(self.areas, {"xs": [np.asarray(x) for x, _ in areas], "ys": [np.asarray(y) for _, y in areas]})
+        figures.put_rows(self.areas, [(np.asarray(x), np.asarray(y)) for x, y in areas])
 
     def set(
-        self,
-        curves: Sequence[tuple[str, Any, Any]],
-        *,
-        dashes: Sequence[str] = (),
-        colours: Sequence[str] = (),
-        x: str = "",
-        y: str = "",
-        title: str = "",
-        cursor: float | None = None,
+        self, curves: Sequence[Curve], *, x: str = "", y: str = "", title: str = "", cursor: float | None = None
     ) -> None:
-        """Curves as (name, x, y), at most ``MOST``; labels that are given replace the old ones."""
-        shown = list(curves)[:MOST]
-        looks = [figures.look(k) for k in range(len(shown))]
-        figures.put(
-            self.source,
-            {
-                "xs": [np.asarray(a, dtype=float) for _, a, _ in shown],
-                "ys": [np.asarray(b, dtype=float) for _, _, b in shown],
-                "colour": [colours[k] if k < len(colours) else look["line_color"] for k, look in enumerate(looks)],
-                "dash": [dashes[k] if k < len(dashes) else look["line_dash"] for k, look in enumerate(looks)],
-                "width": [2.0] * len(shown),
-                "name": [name for name, _, _ in shown],
-            },
-        )
+        """At most ``MOST`` curves; labels that are given replace the old ones."""
+        rows = []
+        for k, one in enumerate(curves[:MOST]):
+            usual = figures.look(k)
+            colour, dash = one.colour or usual["line_color"], one.dash or usual["line_dash"]
+            rows.append((np.asarray(one.x, dtype=float), np.asarray(one.y, dtype=float), colour, dash, 2.0, one.name))
+        figures.put_rows(self.source, rows)
         self._make_room()
         self.cursor.location = cursor
         if x:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tornado.web import HTTPError, RequestHandler
 
+from trunnion.app.session import Session
 from trunnion.errors import TrunnionError
-
-if TYPE_CHECKING:
-    from trunnion.app.session import Session
 
 TYPES = {
     "png": "image/png",

@@ -9,7 +9,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from trunnion.app.document import Group
+from trunnion.app.form import Field, Group
 from trunnion.driveline.kinds import KINDS
 
 _SCRIPT = """
@@ -184,5 +184,5 @@ class Editor(JSComponent):
         self._on_edit(data)
 
 
-def _field(field: Any) -> dict[str, Any]:
+def _field(field: Field) -> dict[str, Any]:
     return asdict(field) | {"path": list(field.path), "choices": list(field.choices)}

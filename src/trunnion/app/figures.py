@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import html
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from bokeh.models import BasicTickFormatter, ColumnDataSource, HoverTool, Legend
+from bokeh.models import BasicTickFormatter, ColumnDataSource, HoverTool, Span
 from bokeh.plotting import figure
 
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -21,7 +21,7 @@ def look(k: int) -> dict[str, Any]:
     return {"line_color": COLOURS[k % len(COLOURS)], "line_dash": DASHES[k % len(DASHES)]}
 
 
-def plot(x: str, y: str, *, height: int = 340, title: str = "", about: str = "", **more: Any) -> Any:
+def plot(x: str, y: str, *, height: int = 340, title: str = "", **more: Any) -> Any:
     """A figure as wide as there is place, with labelled axes."""
     made = figure(
         height=height,
@@ -34,7 +34,7 @@ def plot(x: str, y: str, *, height: int = 340, title: str = "", about: str = "",
         **more,
     )
     made.toolbar.logo = None
-    made.name = about or title
+    made.name = title
     for axis in made.axis:
         axis.axis_label_text_font_style = "normal"
         axis.axis_label_text_font_size = "14px"
@@ -45,13 +45,18 @@ def plot(x: str, y: str, *, height: int = 340, title: str = "", about: str = "",
     return made
 
 
-def legend(made: Any, items: list[Any], place: str = "right") -> None:
-    """A legend beside the figure; a click hides a line."""
-    for old in list(made.legend):
-        made.right = [r for r in made.right if r is not old]
-        made.below = [r for r in made.below if r is not old]
-    box = Legend(items=items, click_policy="hide", label_text_font_size="12px", spacing=1, padding=4)
-    made.add_layout(box, place)
+def shape(height: int) -> Any:
+    """A figure of how much every inertia turns, named below; see ``name_inertias``."""
+    made = plot("", "rotation, largest 1", height=height, x_range=[], tools="")
+    made.xaxis.major_label_orientation = 0.6
+    made.add_layout(Span(location=0, dimension="width", line_color=FAINT))
+    return made
+
+
+def name_inertias(made: Any, names: Sequence[str]) -> None:
+    """The names below a figure of shapes. Where they stay the browser is not asked to draw again."""
+    if list(made.x_range.factors) != list(names):
+        made.x_range.factors = list(names)
 
 
 def hover(made: Any, renderers: list[Any], tips: list[tuple[str, str]], **more: Any) -> None:
@@ -71,14 +76,14 @@ def put(into: ColumnDataSource, columns: dict[str, Any]) -> None:
         into.data = columns
 
 
+def put_rows(into: ColumnDataSource, rows: Sequence[Sequence[Any]]) -> None:
+    """The same of rows, whose parts stand in the order in which the columns were named."""
+    put(into, {name: [row[k] for row in rows] for k, name in enumerate(into.data)})
+
+
 def _alike(a: Any, b: Any) -> bool:
     if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
         return a.shape == b.shape and a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind in "fc")
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
         return len(a) == len(b) and all(map(_alike, a, b))
     return type(a) is type(b) and bool(a == b)
-
-
-def text(words: object) -> str:
-    """Words for an HTML pane."""
-    return html.escape(str(words))

@@ -1,16 +1,16 @@
-"""What goes between the server and its workers: jobs, their answers, and the frames that carry both."""
+"""What goes between the server and its workers: jobs, their answers, and how both are written and read."""
 
 from __future__ import annotations
 
 import pickle
-import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import IO, Any
 
 from trunnion.app.calls import Call
 
-_HEAD = struct.Struct(">Q")
+CUT_OFF = (EOFError, OSError, pickle.UnpicklingError)
+"""What reading raises where the other side has gone, be it in the middle of a message."""
 
 
 @dataclass(frozen=True)
@@ -28,23 +28,16 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Start:
-    """To a worker: begin ``job``, whose answers carry ``number``."""
+class Request:
+    """To a worker: begin ``job``, whose answers carry ``number``; without one leave that job at its next report."""
 
     number: int
-    job: Job
-
-
-@dataclass(frozen=True)
-class Stop:
-    """To a worker: leave job ``number`` at its next report of progress."""
-
-    number: int
+    job: Job | None = None
 
 
 @dataclass(frozen=True)
 class Answer:
-    """From a worker: "ready", "progress" (a share), "done" (data), "refused", "failed" or "stopped" (a sentence)."""
+    """From a worker: "progress" (a share), "done" (data), "refused", "failed" or "stopped" (a sentence)."""
 
     number: int
     kind: str
@@ -52,25 +45,12 @@ class Answer:
     remarks: tuple[str, ...] = ()
 
 
-def write_frame(stream: IO[bytes], message: object) -> None:
-    """One message, its length before it."""
-    body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
-    stream.write(_HEAD.pack(len(body)) + body)
+def send(stream: IO[bytes], message: Request | Answer) -> None:
+    """Write one message, whole or not at all where it cannot be pickled."""
+    stream.write(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL))
     stream.flush()
 
 
-def read_frame(stream: IO[bytes]) -> Any:
-    """The next message; EOFError where the other side has gone."""
-    (length,) = _HEAD.unpack(_exactly(stream, _HEAD.size))
-    return pickle.loads(_exactly(stream, length))
-
-
-def _exactly(stream: IO[bytes], count: int) -> bytes:
-    parts = []
-    while count:
-        part = stream.read(count)
-        if not part:
-            raise EOFError
-        parts.append(part)
-        count -= len(part)
-    return b"".join(parts)
+def receive(stream: IO[bytes]) -> Any:
+    """The next message; raises what is ``CUT_OFF`` where there is none."""
+    return pickle.load(stream)

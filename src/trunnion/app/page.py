@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import html
 import time
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import panel as pn
 
 from trunnion.app.guard import POLICY
-
-if TYPE_CHECKING:
-    from trunnion.app.views.base import View
+from trunnion.app.pieces import Quiet, column, heading, pane
+from trunnion.app.views.base import View
 
 MOST_OFTEN = 0.1
 """Seconds between two reports of progress."""
@@ -76,17 +75,15 @@ a { color: #00558a; }
 class Page:
     """Panel objects of the page; the session says what stands in them."""
 
-    def __init__(self, choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
-        from trunnion.app.views import VIEWS
-
+    def __init__(self, views: Mapping[str, str], choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
+        """``views``: names of the views by their titles."""
         pn.config.raw_css = [_STYLE]
-        names = {kind.title: kind.name for kind in VIEWS}
-        self._quiet = False
+        self.quiet = Quiet()
         self.navigation = pn.widgets.RadioButtonGroup(
-            label="View", options=names, button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
+            label="View", options=dict(views), button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
         )
-        self.navigation.param.watch(lambda event: choose(event.new) if not self._quiet else None, "value")
-        self.said = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 0), css_classes=["refusal"])
+        self.navigation.param.watch(lambda event: choose(event.new) if not self.quiet else None, "value")
+        self.said = pane(margin=(4, 0), css_classes=["refusal"])
         self.bar = pn.indicators.Progress(
             name="progress", value=0, max=100, width=220, active=False, visible=False, margin=(8, 0)
         )
@@ -95,9 +92,8 @@ class Page:
         self.cancel_button.on_click(lambda event: cancel())
         self.mark = pn.pane.HTML("", width=0, height=0, margin=0)
         told = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
-        self.status = pn.Column(self.said, told, sizing_mode="stretch_width", margin=0)
-        self.main = pn.Column(sizing_mode="stretch_width", margin=0)
-        self.aside = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.status = column(self.said, told)
+        self.main, self.aside = column(), column()
         self._shown: tuple[Any, ...] = ()
         self._told = 0.0
         self._done = 0
@@ -108,41 +104,28 @@ class Page:
 
     def fill(self, sliders: Any, keep: Sequence[Any], difference: Any) -> None:
         """What stands beside the pictures."""
-        self.aside.extend(
-            [
-                _heading("Move a number"),
-                sliders,
-                _heading("Two variants side by side"),
-                keep[0],
-                pn.Row(*keep[1:], margin=0),
-                difference,
-            ]
-        )
+        first, *others = keep
+        variants = (heading("Two variants side by side"), first, pn.Row(*others, margin=0), difference)
+        self.aside.extend([heading("Move a number"), sliders, *variants])
 
-    def show(self, view: View, sides: Sequence[tuple[str, Any]]) -> None:
+    def show(self, view: View, variants: Sequence[str]) -> None:
         """Put a view, with a picture for each variant, on the page."""
-        key = (view.name, tuple(name for name, _ in sides))
+        key = (view.name, *variants)
         if key == self._shown:
             return
         self._shown = key
-        self._quiet = True
-        self.navigation.value = view.name
-        self._quiet = False
-        for _, side in sides:
-            side.narrow(len(sides) > 1)
+        with self.quiet:
+            self.navigation.value = view.name
+        one = len(variants) == 1
         titles = {"kept": "the kept variant", "now": "now"}
-        pictures = [
-            pn.Column(
-                *([_heading(titles[name])] if len(sides) > 1 else []),
-                side.panel,
-                sizing_mode="stretch_width",
-                margin=0,
-                min_width=460 if len(sides) == 1 else 240,  # two fit beside the sliders at 1024
-            )
-            for name, side in sides
-        ]
-        whole = pictures[0] if len(pictures) == 1 else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
-        about = pn.pane.HTML(f"<p style='margin:0'>{html.escape(view.about)}</p>", sizing_mode="stretch_width")
+        pictures = []
+        for variant in variants:
+            side = view.of(variant)
+            side.narrow(not one)
+            above = [] if one else [heading(titles[variant])]
+            pictures.append(column(*above, side.panel, min_width=460 if one else 240))  # two fit beside the sliders
+        whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
+        about = pane(f"<p style='margin:0'>{html.escape(view.about)}</p>")
         self.main.objects = [about, view.controls, whole, view.downloads]
 
     def message(self, text: str) -> None:
@@ -189,7 +172,3 @@ _NAVIGATION = """
 .bk-btn.bk-active { background: #fff !important; color: #12324a !important; font-weight: 600; }
 .bk-btn:focus-visible { outline: 3px solid #f0b400; outline-offset: 1px; z-index: 2; }
 """
-
-
-def _heading(text: str) -> Any:
-    return pn.pane.HTML(f"<h2 style='font-size:16px;margin:8px 0 0'>{html.escape(text)}</h2>", margin=(0, 5))

@@ -12,8 +12,9 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from typing import IO
 
-from trunnion.app.jobs import Answer, Job, Start, Stop, read_frame, write_frame
+from trunnion.app.jobs import CUT_OFF, Answer, Job, Request, receive, send
 from trunnion.errors import ComputationError, InputError
 
 GRACE = 0.25
@@ -32,13 +33,15 @@ class Worker:
         environment = {**os.environ, **limits, "MPLBACKEND": "Agg"}
         command = [sys.executable, "-m", "trunnion.app.worker", str(threads)]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+        assert self.process.stdin and self.process.stdout
+        self.inward: IO[bytes] = self.process.stdin
         self.loop = loop
         self.number = 0
         self.answered: asyncio.Future[Answer] | None = None
         self.tell: Callable[[float], None] = _nobody
         self.used_by: object = None
         self.ended = False
-        threading.Thread(target=self._listen, daemon=True).start()
+        threading.Thread(target=self._listen, args=(self.process.stdout,), daemon=True).start()
 
     @property
     def alive(self) -> bool:
@@ -50,32 +53,28 @@ class Worker:
         self.tell = tell
         self.answered = self.loop.create_future()
         try:
-            assert self.process.stdin
-            write_frame(self.process.stdin, Start(self.number, job))
+            send(self.inward, Request(self.number, job))
         except OSError:
             self._ended()
         return self.answered
 
     def ask_to_stop(self) -> None:
         with suppress(OSError):
-            assert self.process.stdin
-            write_frame(self.process.stdin, Stop(self.number))
+            send(self.inward, Request(self.number))
 
     def end(self) -> None:
         """End the process, whatever it does."""
         self.ended = True
         self.process.kill()
         with suppress(OSError):
-            assert self.process.stdin
-            self.process.stdin.close()
+            self.inward.close()
 
-    def _listen(self) -> None:
-        assert self.process.stdout
+    def _listen(self, outward: IO[bytes]) -> None:
         with suppress(RuntimeError):  # the loop has closed
             try:
                 while True:
-                    self.loop.call_soon_threadsafe(self._heard, read_frame(self.process.stdout))
-            except (EOFError, OSError, ValueError):
+                    self.loop.call_soon_threadsafe(self._heard, receive(outward))
+            except (*CUT_OFF, ValueError):
                 self.process.wait()
                 self.loop.call_soon_threadsafe(self._ended)
 

@@ -13,12 +13,10 @@ import webbrowser
 from collections.abc import Callable
 from contextlib import closing, suppress
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from trunnion.app.pool import Pool
 from trunnion.errors import ComputationError, InputError
-
-if TYPE_CHECKING:
-    from trunnion.app.pool import Pool
 
 ADDRESS = "127.0.0.1"
 LARGEST_MESSAGE = 4_000_000
@@ -59,9 +57,6 @@ def serve(
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     loop.set_exception_handler(left)
-
-    from trunnion.app.pool import Pool
-
     pool = Pool(loop, threads)
     try:
         with closing(listening), closing(pool):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import secrets
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
+from itertools import zip_longest
 from typing import Any
 
 import panel as pn
@@ -19,6 +20,7 @@ from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
 from trunnion.app.jobs import Answer, Job
 from trunnion.app.page import Page
+from trunnion.app.pieces import pane
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.variants import Sliders, buttons, difference
 from trunnion.app.views import VIEWS
@@ -56,23 +58,24 @@ class Session:
         self.side_tasks: set[asyncio.Task[None]] = set()
         self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
         self.took: dict[tuple[str, str], float] = {}
-        query = _query()
-        failure = self._read_lines(query)
-        self.page = Page(self.show_view, self.cancel)
-        self.sliders = Sliders(self, self._slid)
-        self.keep_buttons = buttons(self._keep, self._drop, self._swap)
-        self.query = query
+        self.query = _query()
+        failure = self._read_lines()
+        self.page = Page({kind.name.capitalize(): kind.name for kind in VIEWS}, self.show_view, self.cancel)
+        self.sliders = Sliders(
+            self.document.line, lambda line, path: self.edit(lambda document: document.set_numbers(line, path))
+        )
+        self.keep_buttons = buttons(lambda: self._keep(self.document.toml), lambda: self._keep(None), self._swap)
         self.views: dict[str, View] = {}
-        name = query.get("view", "")
+        name = self.query.get("view", "")
         self.view = self.view_of(name if name in KINDS else VIEWS[0].name)
-        self.difference = pn.pane.HTML("", sizing_mode="stretch_width")
+        self.difference = pane()
         self.page.fill(self.sliders.panel, self.keep_buttons, self.difference)
         self.template = self.page.template
         self.doc = pn.state.curdoc
         self.location = pn.state.location
         sessions[self.token] = self
         pn.state.on_session_destroyed(lambda context: self._destroyed(sessions))
-        pn.state.onload(self._loaded)
+        pn.state.onload(lambda: self.guarded(self._line_changed))
         self.page.message(failure)
 
     def view_of(self, name: str) -> View:
@@ -83,31 +86,22 @@ class Session:
             view.read({k.removeprefix(start): v for k, v in self.query.items() if k.startswith(start)})
         return self.views[name]
 
-    def _read_lines(self, query: Mapping[str, str]) -> str:
-        for key in ("line", "kept"):
-            if key not in query:
-                continue
-            try:
-                text = address.unpack(query[key])
-                read = Document(text)
-            except InputError as error:
-                return f"The address holds no driveline that can be read: {error}"
-            if key == "line":
-                self.document = read
-            else:
-                self.kept = text
+    def _read_lines(self) -> str:
+        """Take over the lines of the address; what is wrong with them."""
+        try:
+            if "line" in self.query:
+                self.document = Document(address.unpack(self.query["line"]))
+            if "kept" in self.query:
+                self.kept = Document(address.unpack(self.query["kept"])).toml
+        except InputError as error:
+            return f"The address holds no driveline that can be read: {error}"
         return ""
-
-    def _loaded(self) -> None:
-        self.guarded(self._line_changed)
 
     def _destroyed(self, sessions: dict[str, Session]) -> None:
         sessions.pop(self.token, None)
         if self.rest:
             self.rest.cancel()
-        for task in (self.task, *self.side_tasks):
-            if task:
-                task.cancel()
+        self._drop_tasks()
 
     # -- what the user does ---------------------------------------------------------------------------------------
 
@@ -148,18 +142,11 @@ class Session:
 
         self.guarded(work)
 
-    def _slid(self, line: Driveline) -> None:
-        self.edit(lambda document: document.set_numbers(line, str(self.sliders.which.value)))
-
-    def _keep(self, event: Any) -> None:
-        self.kept = self.document.toml
+    def _keep(self, toml: str | None) -> None:
+        self.kept = toml
         self._line_changed()
 
-    def _drop(self, event: Any) -> None:
-        self.kept = None
-        self._line_changed()
-
-    def _swap(self, event: Any) -> None:
+    def _swap(self) -> None:
         if self.kept is not None:
             other, self.kept = self.kept, self.document.toml
             self.edit(lambda document: document.replace_text(other))
@@ -192,7 +179,7 @@ class Session:
 
     def _view_changed(self) -> None:
         self.view.adapt(self.document.line)
-        self.view.downloads.object = links(self.token, self.view, self.files(self.view))
+        self.view.downloads.object = links(self.token, self.view, self.document.line)
         self._look()
 
     def setting_chosen(self) -> None:
@@ -203,18 +190,15 @@ class Session:
     def _look(self) -> None:
         """Compute what the visible view shows; whatever was under way for it is dropped."""
         sides = [NOW] if self.kept is None else [KEPT, NOW]
-        self.page.show(self.view, [(side, self.view.of(side)) for side in sides])
+        self.page.show(self.view, sides)
         self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
         under_way = self.task is not None and not self.task.done() and not self.resting
-        self.start(self._compute(sides, QUIET if under_way else 0.0))
+        if self.task:
+            self.task.cancel(SUPERSEDED)
+        work = self._compute(sides, QUIET if under_way else 0.0)
+        self.task = asyncio.get_event_loop().create_task(self._watched(work))
 
     # -- computations ---------------------------------------------------------------------------------------------
-
-    def start(self, work: Any) -> None:
-        """Begin the computation of the visible view in place of the one under way."""
-        if self.task and not self.task.done():
-            self.task.cancel(SUPERSEDED)
-        self.task = asyncio.get_event_loop().create_task(self._watched(work))
 
     def beside(self, work: Any) -> None:
         """Begin a small computation beside that of the view, for a click say."""
@@ -224,16 +208,17 @@ class Session:
 
     def cancel(self) -> None:
         """End what is under way."""
-        for task in (self.task, *self.side_tasks):
-            if task and not task.done():
-                task.cancel()
+        self._drop_tasks()
         self.page.idle("cancelled")
+
+    def _drop_tasks(self) -> None:
+        for task in (self.task, *self.side_tasks):
+            if task:
+                task.cancel()
 
     async def _watched(self, work: Any) -> None:
         try:
             await work
-        except asyncio.CancelledError:
-            raise
         except Exception as error:
             if not isinstance(error, TrunnionError):
                 traceback.print_exception(error)
@@ -254,27 +239,23 @@ class Session:
         lines = {side: self._toml(side) for side in sides}
         remarks: list[str] = []
         steps = {side: self._unknown(view, side, lines[side], remarks) for side in sides}
-        done, total = 0, sum(map(len, steps.values()))
-        for place in range(max(map(len, steps.values()), default=0)):
-            for side in reversed(sides):
-                if place >= len(steps[side]):
-                    continue
-                step, begin = steps[side][place], asyncio.get_running_loop().time()
-                job = step.job(lines[side])
-                try:
-                    await self._rest(step.rest)
-                    answer = await self.pool.run(job, self, partial(self._progress, done, total))
-                except TrunnionError as error:
-                    if not step.soft:
-                        raise
-                    self.locked(partial(view.of(side).refused, step.name, str(error)))
-                else:
-                    remarks += answer.remarks
-                    if step.lasting:
-                        self.known[view.name, side, step.name] = job, answer
-                    self.locked(partial(view.of(side).show, step.name, answer.value))
-                self.took[view.name, step.name] = asyncio.get_running_loop().time() - begin
-                done += 1
+        turns = zip_longest(*(steps[side] for side in reversed(sides)))
+        order = [(side, step) for turn in turns for side, step in zip(reversed(sides), turn, strict=True) if step]
+        for done, (side, step) in enumerate(order):
+            begin, job = asyncio.get_running_loop().time(), step.job(lines[side])
+            try:
+                await self._rest(step.rest)
+                answer = await self.pool.run(job, self, partial(self._progress, done, len(order)))
+            except TrunnionError as error:
+                if not step.soft:
+                    raise
+                self.locked(partial(view.of(side).refused, step, str(error)))
+            else:
+                remarks += answer.remarks
+                if step.lasting:
+                    self.known[view.name, side, step.name] = job, answer
+                self.locked(partial(view.of(side).show, step, answer.value))
+            self.took[view.name, step.name] = asyncio.get_running_loop().time() - begin
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
         self.pool.warm(WARMING, self)
 
@@ -289,16 +270,22 @@ class Session:
 
     def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[Step]:
         """The steps of a side that are to be computed; what is known is shown at once, its remarks are added."""
-        left, known = [], []
+        left: list[Step] = []
+        known: list[tuple[Step, Any]] = []
         for step in view.steps(self.line(side)):
             job, answer = self.known.get((view.name, side, step.name), (None, None))
             if answer is None or job != step.job(toml):
                 left.append(step)
             else:
-                known.append((step.name, answer.value))
+                known.append((step, answer.value))
                 remarks += answer.remarks
+
+        def show_known() -> None:
+            for known_step, value in known:
+                view.of(side).show(known_step, value)
+
         if known:
-            self.locked(lambda: [view.of(side).show(*one) for one in known])
+            self.locked(show_known)
         names = {step.name for step in left}
         slow = {s.preview_of for s in left if s.preview_of in names and self._is_slow(view, s.preview_of)}
         quick = {s.preview_of for s in left if s.preview_of} - slow  # shown without a preview, and before all else
@@ -344,34 +331,21 @@ class Session:
 
     # -- files ----------------------------------------------------------------------------------------------------
 
-    def files(self, view: View) -> list[tuple[Step, tuple[str, ...]]]:
-        """What of a view may be downloaded."""
-        found = {}
-        for step in view.steps(self.document.line):
-            endings = (("png", "svg") if step.picture else ()) + step.files
-            if endings and (step.picture or step.files):
-                found[step.title or step.name] = (step, endings)
-        return list(found.values())
-
     async def file(self, view_name: str, name: str, ending: str) -> bytes:
         """The content of a download. KeyError where there is none of that name."""
-        view, toml = self.view_of(view_name), self.document.toml
+        view, line, toml = self.view_of(view_name), self.document.line, self.document.toml
         if (name, ending) == ("driveline", "toml"):
             return toml.encode()
         if (name, ending) == ("driveline", "html"):
-            call = Call("tn.report", (LINE,))
-            return await self._bytes(Job(toml, call, "report"))
-        steps = {step.name: step for step in view.steps(self.document.line)}
+            return await self._bytes(Job(toml, Call("tn.report", (LINE,)), "report"))
+        steps = {step.name: step for step in view.steps(line)}
         if (name, ending) == ("view", "py"):
             calls = {step.name: (step.call, step.toml(toml)) for step in steps.values()}
             soft = {step.name for step in steps.values() if step.soft}
-            return script(toml, calls, f"{view.title} of {self.document.line.name or 'a driveline'}", soft).encode()
-        step = steps[name]
-        drawn = ("png", "svg") if step.picture else ()
-        if ending not in (*drawn, *step.files):
+            return script(toml, calls, f"{view_name.capitalize()} of {line.name or 'a driveline'}", soft).encode()
+        if ending not in steps[name].endings:
             raise KeyError(ending)
-        options = {"ending": ending, "method": step.picture, "options": dict(step.drawing), "columns": step.columns}
-        return await self._bytes(Job(step.toml(toml), step.call, "file", options))
+        return await self._bytes(steps[name].file(toml, ending))
 
     async def _bytes(self, job: Job) -> bytes:
         body: bytes = (await self.pool.run(job, self)).value

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from trunnion.analyses.orders.result import order_name
+from trunnion.driveline.quantities import eye_unit
+from trunnion.results.written import write_numbers
 
 Plain = dict[str, Any]
 MOST_ORDERS = 8
@@ -29,7 +32,7 @@ def sketch(result: Any) -> str:
     """The driveline as SVG."""
     from trunnion.plots.driveline_sketch import draw
 
-    return _picture(draw(result), "svg").decode("utf-8")
+    return drawn(draw(result))
 
 
 def assessment(result: Any) -> Plain:
@@ -39,7 +42,6 @@ def assessment(result: Any) -> Plain:
         "verdict": str(result.verdict),
         "sentence": result.sentence,
         "unit": result.unit,
-        "binding": bind.name if bind else "",
         "element": bind.element if bind else "",
         "limit": bind.limit if bind else math.nan,
         "quantity": bind.unit if bind else "",
@@ -47,16 +49,12 @@ def assessment(result: Any) -> Plain:
         "rows": result.table(),
         "rules": [_rule(c) for c in result.checks],
         "margin": [c.margin for c in result.checks],
-        "required": [c.required_margin for c in result.checks],
         "findings": [str(f) for f in result.findings],
     }
 
 
 def _course(course: Any) -> Plain:
     """What a check compares over speed: limits, the value, and its largest orders, in a unit for the eye."""
-    from trunnion.analyses.orders.result import order_name
-    from trunnion.driveline.quantities import eye_unit
-
     symbol, size = eye_unit(max(float(one.max()) for one in course.limits.values()), course.kind)
     strongest = np.sort(np.argsort(-np.nan_to_num(course.by_order).max(axis=0, initial=0.0))[:3])
     orders = {order_name(course.order[k], course.frequency[k]): course.by_order[:, k] for k in strongest}
@@ -81,25 +79,9 @@ def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[s
     """A picture (png, svg) or the data (csv, nc) of a result."""
     if ending in ("png", "svg"):
         return _picture(getattr(result, method)(**options), ending)
-    if ending == "csv":
-        if hasattr(result, "to_csv"):
-            return _written(result.to_csv, "data.csv")
-        from trunnion.results.tables import write_table
-
-        stream = StringIO()
-        write_table(stream, result.data[list(columns)] if columns else result.data)
-        return stream.getvalue().encode()
-    if hasattr(result, "save"):
-        return _written(result.save, "data.nc")
-    from trunnion.results.files import dataset_bytes
-
-    return dataset_bytes(result.data)
-
-
-def _written(write: Callable[[Path], Any], name: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / name
-        write(path)
+        path = Path(folder) / f"data.{ending}"
+        write_numbers(result, path, result.data[list(columns)] if columns else None)
         return path.read_bytes()
 
 
@@ -127,8 +109,6 @@ def torque_limits(result: Any) -> Plain:
 
 def orders(result: Any, spring: str) -> Plain:
     """Torque of one shaft over speed: by order, the largest first, and over the cycle."""
-    from trunnion.analyses.orders.result import order_name
-
     at = result.springs.index(spring)
     size = np.abs(result.torque[:, :, at])
     most = np.nan_to_num(size).max(axis=0)
@@ -192,7 +172,7 @@ def chart(result: Any, zoom: Any = None) -> Plain:
         result = result.zoom(*zoom)
     with np.errstate(divide="ignore"):
         growth = np.expm1(np.log(result.spectral_radius) * 2 * np.pi / result.period)
-    return {"x": result.x, "y": result.y, "growth": growth, "verdict": result.verdict, "text": str(result)}
+    return {"x": result.x, "y": result.y, "growth": growth, "text": str(result)}
 
 
 def point(result: Any) -> Plain:

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from math import pi
-
 from trunnion.app.calls import LINE, Call
 from trunnion.app.jobs import Job
+from trunnion.driveline.quantities import RPM
 from trunnion.driveline.starter import starter
 
-_RPM = 2 * pi / 60
-_ANGLE = "HookeJoint 1.angle"
-
-
-def _job(call: Call, show: str = "nothing") -> Job:
-    return Job(starter("two-shaft"), call, show)
-
-
-WARMING = (
-    _job(Call("tn.assess", (LINE,))),
-    _job(Call("tn.stability", (LINE,))),
-    _job(Call("tn.order_response", (LINE, (100.0, 150.0)))),
-    _job(Call("tn.stability_chart", (LINE, ("speed", 300 * _RPM, 3000 * _RPM, 8), (_ANGLE, 0.0, 0.3, 6)))),
-    _job(Call("tn.campbell_diagram", (LINE, (100.0, 150.0)))),
-    _job(Call("tn.kinetostatics", (LINE,))),
+CALLS = (
+    Call("tn.assess", (LINE,)),
+    Call("tn.stability", (LINE,)),
+    Call("tn.order_response", (LINE, (100.0, 150.0))),
+    Call("tn.stability_chart", (LINE, ("speed", 300 * RPM, 3000 * RPM, 8), ("HookeJoint 1.angle", 0.0, 0.3, 6))),
+    Call("tn.campbell_diagram", (LINE, (100.0, 150.0))),
+    Call("tn.kinetostatics", (LINE,)),
 )
+WARMING = tuple(Job(starter("two-shaft"), call, "nothing") for call in CALLS)

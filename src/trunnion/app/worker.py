@@ -16,7 +16,7 @@ from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from typing import IO, Any
 
-from trunnion.app.jobs import Answer, Job, Start, Stop, read_frame, write_frame
+from trunnion.app.jobs import CUT_OFF, Answer, Job, Request, receive, send
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
 MOST_KEPT = 4
@@ -30,55 +30,50 @@ class _Stopped(Exception):
 class Worker:
     def __init__(self, inward: IO[bytes], outward: IO[bytes], threads: int) -> None:
         self.inward, self.outward, self.threads = inward, outward, threads
-        self.jobs: queue.Queue[Start] = queue.Queue()
+        self.jobs: queue.Queue[tuple[int, Job]] = queue.Queue()
         self.stopped: set[int] = set()
         self.kept: defaultdict[str, OrderedDict[str, Any]] = defaultdict(OrderedDict)
 
     def run(self) -> None:
         threading.Thread(target=self._listen, daemon=True).start()
-        self._say(Answer(0, "ready"))
         while True:
-            start = self.jobs.get()
-            self._say(self._answer(start))
+            send(self.outward, self._answer(*self.jobs.get()))
 
     def _listen(self) -> None:
         while True:
             try:
-                message = read_frame(self.inward)
-            except (EOFError, OSError):
+                request: Request = receive(self.inward)
+            except CUT_OFF:
                 os._exit(0)  # the server has gone, whatever is being computed
-            if isinstance(message, Stop):
-                self.stopped.add(message.number)
+            if request.job is None:
+                self.stopped.add(request.number)
             else:
-                self.jobs.put(message)
+                self.jobs.put((request.number, request.job))
 
-    def _say(self, answer: Answer) -> None:
-        write_frame(self.outward, answer)
-
-    def _answer(self, start: Start) -> Answer:
+    def _answer(self, number: int, job: Job) -> Answer:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", InputRemark)
             try:
-                value = self.compute(start.job, self._progress(start.number))
+                value = self.compute(job, self._progress(number))
             except _Stopped:
-                return Answer(start.number, "stopped", "stopped")
+                return Answer(number, "stopped", "stopped")
             except InputError as error:
-                return Answer(start.number, "refused", str(error))
+                return Answer(number, "refused", str(error))
             except TrunnionError as error:
-                return Answer(start.number, "failed", str(error))
+                return Answer(number, "failed", str(error))
             except MemoryError:
-                return Answer(start.number, "failed", "not enough memory; ask for fewer points")
+                return Answer(number, "failed", "not enough memory; ask for fewer points")
             except Exception as error:
-                return Answer(start.number, "failed", f"unexpected {type(error).__name__}: {error}")
+                return Answer(number, "failed", f"unexpected {type(error).__name__}: {error}")
         remarks = dict.fromkeys(str(w.message) for w in said if issubclass(w.category, InputRemark))
-        return Answer(start.number, "done", value, tuple(remarks))
+        return Answer(number, "done", value, tuple(remarks))
 
     def _progress(self, number: int) -> Callable[[float], None]:
         def report(share: float) -> None:
             if number in self.stopped:
                 self.stopped.discard(number)
                 raise _Stopped
-            self._say(Answer(number, "progress", float(share)))
+            send(self.outward, Answer(number, "progress", float(share)))
 
         return report
 

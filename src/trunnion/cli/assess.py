@@ -1,4 +1,4 @@
-"""The commands ``assess`` and ``campbell-diagram``: is the line fit for its speeds, what meets which mode."""
+"""The commands ``assess``, ``campbell-diagram`` and ``envelope``: is the line fit for its speeds and loads."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Unit, read_case
+from trunnion.cli.options import File, Json, LoadCase, Output, SpeedRange, Unit, read_case, read_speed_ends
+from trunnion.cli.places import check_places, deliver
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -74,6 +75,29 @@ def campbell_diagram(
     output.say(result.describe(unit))
     if picture is not None:
         output.say(f"  written: {picture}")
+
+
+def envelope(
+    file: File,
+    speeds: SpeedRange = None,
+    points: Annotated[int, typer.Option("--points", help="Of each schedule, beside those it states.")] = 5,
+    parameter: Annotated[
+        str, typer.Option("--parameter", "-p", metavar="PARAMETER", help="Also its largest stable value everywhere.")
+    ] = "",
+    unit: Unit = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """The worst of every check over all load cases and schedules of the file, and where it stands.
+
+    Example: trunnion envelope truck.toml -o envelope.png
+    """
+    line, unit = read_case(file, unit)
+    span = read_speed_ends(speeds, unit)
+    check_places(to)
+    with output.progress("envelope") as advance:
+        found = tn.envelope(line, span, points=points, parameter=parameter, unit=unit, progress=advance)
+    deliver("envelope", file, found, to, as_json)
 
 
 def print_assessment(result: Assessment) -> None:

@@ -19,12 +19,7 @@ OTHER_FILES = (".pdf", ".png", ".svg", ".json", ".txt", ".md", ".docx", ".xlsx",
 def check_report(path: Path) -> None:
     """Refuse where a report cannot be written: to a file, NAME.html, or into a folder."""
     if path.suffix.lower() in REPORTS:
-        if path.is_dir():
-            _refuse(path, "is a folder", "name a file in it, such as " + str(path / "report.html"))
-        if not path.parent.is_dir():
-            _refuse(path, "lies in no folder", f"create the folder {path.parent}")
-        if not os.access(path.parent, os.W_OK):
-            _refuse(path, "cannot be written")
+        _check_file(path, "report.html")
         return
     if path.suffix.lower() in OTHER_FILES and not path.is_dir():
         _refuse(path, "is no format of a report", f"write {path.with_suffix('.html')}, or name a folder")
@@ -45,15 +40,19 @@ def check_folder(folder: Path) -> None:
 def check_outputs(paths: Sequence[Path]) -> None:
     """Refuse endings that say no format, folders in the place of files, and places that cannot be written."""
     for path in paths:
-        if path.is_dir():
-            _refuse(path, "is a folder", f"name a file in it, such as {path / 'chart.png'}")
-        if path.suffix.removeprefix(".").lower() not in (*FORMATS, *DATA_FORMATS):
+        if not path.is_dir() and path.suffix.removeprefix(".").lower() not in (*FORMATS, *DATA_FORMATS):
             known = ", ".join(f".{ending}" for ending in (*FORMATS, *DATA_FORMATS))
             _refuse(path, "has no ending that names a format", f"end it in one of {known}")
-        if not path.parent.is_dir():
-            _refuse(path, "lies in no folder", f"create the folder {path.parent}")
-        if not os.access(path.parent, os.W_OK):
-            _refuse(path, "cannot be written")
+        _check_file(path, "chart.png")
+
+
+def _check_file(path: Path, example: str) -> None:
+    if path.is_dir():
+        _refuse(path, "is a folder", f"name a file in it, such as {path / example}")
+    if not path.parent.is_dir():
+        _refuse(path, "lies in no folder", f"create the folder {path.parent}")
+    if not os.access(path.parent, os.W_OK):
+        _refuse(path, "cannot be written")
 
 
 def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> NoReturn:

@@ -99,8 +99,7 @@ def kinetostatics(
         }
 
     def more() -> None:
-        if result.shafts:
-            output.table(result.table(unit), "Shafts")
+        output.table(result.table(unit), "Shafts")
         if phasing is not None:
             output.heading("Fork phasing")
             output.say(str(phasing))

@@ -1,7 +1,9 @@
-"""The commands about nonlinear motion: simulate, periodic-response, run-up."""
+"""The commands about nonlinear motion: simulate, periodic-response, linearity-check, run-up."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -40,7 +42,6 @@ Set = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Parameter of a reference system; repeat it for more."),
 ]
-OF_SYSTEM = "use --set for a reference system"
 START = Annotated[str | None, typer.Option("--start", metavar="X,Y,…", help="State to start from.")]
 
 
@@ -63,24 +64,20 @@ def simulate(
     Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
     """
     with output.compile_notice():
-        system = _system(file, parameters)
-        if system is not None:
-            only_for_lines(OF_SYSTEM, {"--speed": speed, "--to-speed": to_speed, "--load-case": load_case})
+        subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed, "--to-speed": to_speed})
+        if isinstance(subject, tn.Driveline):
+            check_places(to)
+            profile = _course(subject, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
+            length = None if duration is not None else 20.0 if turns is None else turns
+            begin = read_state(start)
+            result: Any = tn.simulate(subject, duration, speed=profile, turns=length, start=begin, tolerance=tolerance)
+        else:
             only_for_lines("use --duration, in seconds", {"--turns": turns})
             check_places(to)
             seconds = 100.0 if duration is None else duration
-            result: Any = tn.simulate(system, seconds, start=read_state(start), tolerance=tolerance)
-        else:
-            line, unit = read_case(file, unit, load_case, _reference_systems())
-            check_places(to)
-            profile = _course(line, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
-            length = None if duration is not None else 20.0 if turns is None else turns
-            result = tn.simulate(
-                line, duration, speed=profile, turns=length, start=read_state(start), tolerance=tolerance
-            )
+            result = tn.simulate(subject, seconds, start=read_state(start), tolerance=tolerance)
     written = deliver(
-        "simulate", file, result, to, as_json, what="motion",
-        draw=result.plot if system is not None else lambda: result.plot(unit=unit),
+        "simulate", file, result, to, as_json, what="motion", draw=_draw(subject, result, unit),
         content=lambda: _simulation_json(result),
     )  # fmt: skip
     output.finish(result.outcome, written)
@@ -105,29 +102,60 @@ def periodic_response(
     Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
     """
     with output.compile_notice():
-        system = _system(file, parameters)
-        if system is not None:
-            only_for_lines(OF_SYSTEM, {"--speed": speed, "--load-case": load_case})
-            guess = read_time(period, "--period")
-            check_places(to)
-            result: Any = tn.periodic_response(system, start=read_state(start), period=guess, periods=periods)
-        else:
-            line, unit = read_case(file, unit, load_case, _reference_systems())
+        subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed})
+        if isinstance(subject, tn.Driveline):
             if period is not None:
                 remedy = "leave it out; the speed of a driveline gives it"
                 raise InputError("belongs to reference systems", key="--period", value=period, remedy=remedy)
             check_places(to)
-            result = tn.periodic_response(line, read_speed(speed, unit), start=read_state(start), periods=periods)
+            at = read_speed(speed, unit)
+            result: Any = tn.periodic_response(subject, at, start=read_state(start), periods=periods)
+        else:
+            guess = read_time(period, "--period")
+            check_places(to)
+            result = tn.periodic_response(subject, start=read_state(start), period=guess, periods=periods)
     result.outcome.require()
-    if system is not None:
-        deliver("periodic-response", file, result, to, as_json, content=lambda: _orbit_json(result))
+    if isinstance(subject, tn.Driveline):
+        shown: dict[str, Any] = {
+            "content": lambda: _orbit_json(result) | _response_json(result),
+            "text": lambda: result.describe(unit),
+            "more": lambda: _print_orders(result, unit),
+        }
     else:
-        shown = unit or "rad/s"
-        deliver(
-            "periodic-response", file, result, to, as_json, draw=lambda: result.plot(unit=shown),
-            content=lambda: _orbit_json(result) | _response_json(result),
-            text=lambda: result.describe(shown), more=lambda: _print_orders(result, shown),
-        )  # fmt: skip
+        shown = {"content": lambda: _orbit_json(result)}
+    deliver("periodic-response", file, result, to, as_json, draw=_draw(subject, result, unit), **shown)
+
+
+def linearity_check(
+    file: File,
+    speed: Speed = None,
+    allowed: Annotated[
+        float, typer.Option("--allowed", help="Difference up to which linear theory holds, of the largest order.")
+    ] = 0.05,
+    acceleration: Annotated[
+        float | None, typer.Option("--acceleration", help="Also run through the speed, in rad/s².")
+    ] = None,
+    spring: Annotated[
+        str | None, typer.Option("--spring", help="Shaft or mesh to draw; default: where the two differ most.")
+    ] = None,
+    unit: Unit = None,
+    load_case: LoadCase = None,
+    to: Output = None,
+    as_json: Json = False,
+) -> None:
+    """How far linear theory holds at a speed: order-response beside periodic-response, and what misleads it.
+
+    Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
+    """
+    line, unit = read_case(file, unit, load_case)
+    check_places(to)
+    with output.compile_notice():
+        found = tn.linearity_check(line, read_speed(speed, unit), allowed=allowed, acceleration=acceleration)
+    found.nonlinear.outcome.require()
+    deliver(
+        "linearity-check", file, found, to, as_json,
+        draw=lambda: found.plot(spring=spring, unit=unit), text=lambda: found.describe(unit),
+    )  # fmt: skip
 
 
 def run_up(
@@ -172,22 +200,25 @@ def run_up(
     )  # fmt: skip
 
 
-def _reference_systems() -> tuple[str, ...]:
-    """Names that stand for equations of motion, not for drivelines."""
+def _subject(
+    file: str, parameters: list[str] | None, unit: str | None, load_case: str | None, of_lines: dict[str, str | None]
+) -> tuple[tn.System | tn.Driveline, str]:
+    """The reference system that FILE names, with ``--set`` applied, or a driveline; and the unit of its speeds."""
     from trunnion.systems.reference import SYSTEMS
 
-    return tuple(SYSTEMS)
-
-
-def _system(name: str, parameters: list[str] | None) -> tn.System | None:
-    """The reference system of that name, with ``--set`` applied; None for a driveline."""
-    names = _reference_systems()
-    if name in names:
-        return tn.reference_system(name, **read_set(parameters))
+    if file in SYSTEMS:
+        system = tn.reference_system(file, **read_set(parameters))
+        only_for_lines("use --set for a reference system", {**of_lines, "--load-case": load_case})
+        return system, unit or "rad/s"
     if parameters:
-        remedy = f"edit the file instead; reference systems are: {', '.join(names)}"
+        remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
         raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
-    return None
+    return read_case(file, unit, load_case, SYSTEMS)
+
+
+def _draw(subject: object, result: Any, unit: str) -> Callable[[], Any]:
+    """How a motion is drawn: of a driveline in the unit of its speeds."""
+    return partial(result.plot, unit=unit) if isinstance(subject, tn.Driveline) else result.plot
 
 
 def _course(line: tn.Driveline, first: float | None, last: float | None, duration: float | None) -> Any:

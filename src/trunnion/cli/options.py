@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import trunnion as tn
 from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
-    from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.quantities import Kind
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of the catalogue.")]
@@ -51,7 +51,7 @@ AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30d
 
 def read_case(
     file: str, unit: str | None, load_case: str | None = None, besides: Collection[str] = ()
-) -> tuple[Driveline, str]:
+) -> tuple[tn.Driveline, str]:
     """The driveline under its own torques or those of a load case, and the unit asked for or else that of the file."""
     from trunnion.driveline.operating_speed import speed_unit
 
@@ -64,22 +64,19 @@ def read_case(
     return line, unit
 
 
-def read_line(file: str, besides: Collection[str] = ()) -> Driveline:
+def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
     """The driveline in a file, or of the catalogue where no such file exists; ``besides`` are also names to tell."""
-    from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.files import load
-
     path = Path(file)
     if path.exists() or path.suffix or len(path.parts) != 1:
-        return load(path)
+        return tn.load(path)
     # The studies load much that a file does not need.
     from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import catalogue, entries
+    from trunnion.studies.entries import entries
 
     names = [e.name for e in entries()]
     if file in names:
-        line = catalogue(file)
-        if not isinstance(line, Driveline):
+        line = tn.catalogue(file)
+        if not isinstance(line, tn.Driveline):
             rattle, chaos = "frequency-response, sweep", "lyapunov-spectrum, poincare-map, certify-chaos"
             remedy = f"use it with {rattle if file == 'gear-rattle' else chaos} or reproduce {file}"
             raise InputError("is no driveline but equations of motion", key="FILE", value=file, remedy=remedy)
@@ -128,7 +125,7 @@ def read_speed_ends(text: str | None, unit: str) -> tuple[float, float] | None:
     return read[0], read[1]
 
 
-def read_speed_range(text: str | None, line: Driveline, unit: str) -> tuple[float, float]:
+def read_speed_range(text: str | None, line: tn.Driveline, unit: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s, or the file's range."""
     from trunnion.reporting.ranges import speed_range
 
@@ -166,16 +163,15 @@ def is_number(text: str) -> bool:
     return True
 
 
-def read_axis(text: str, line: Driveline, unit: str, points: int, key: str) -> tuple[str, float, float, int, str]:
+def read_axis(text: str, line: tn.Driveline, unit: str, points: int, key: str) -> tuple[str, float, float, int, str]:
     """``PARAMETER:LOW:HIGH:POINTS[:log]``, or PARAMETER alone for the range of the file, as an axis request.
 
     Read from the right, so that names with colons remain possible.
     """
-    from trunnion.driveline.parameters import pack
     from trunnion.driveline.quantities import KINDS, SPEED
     from trunnion.reporting.ranges import angle_range, speed_range
 
-    packed, parts = pack(line), text.split(":")
+    packed, parts = tn.pack(line), text.split(":")
     scale = "log" if len(parts) > 4 and parts[-1].strip() == "log" else "linear"
     if scale == "log":
         parts.pop()
@@ -198,7 +194,7 @@ def read_axis(text: str, line: Driveline, unit: str, points: int, key: str) -> t
     return columns.label, low, high, _count(count, key), scale
 
 
-def read_box_range(text: str, line: Driveline, unit: str, key: str) -> tuple[tuple[str, float, float], int]:
+def read_box_range(text: str, line: tn.Driveline, unit: str, key: str) -> tuple[tuple[str, float, float], int]:
     """``PARAMETER:LOW:HIGH[:ROWS]`` as a range and a number of rows."""
     parts = text.split(":")
     if parts[-1].strip() == "log":

@@ -51,10 +51,12 @@ def heading(text: str) -> None:
 
 
 def table(rows: Sequence[Mapping[str, object]], title: str = "") -> None:
-    """Rows with common keys; numbers right-aligned with six figures, nothing for None."""
+    """Rows with common keys; numbers right-aligned with six figures, nothing for None; no table without rows."""
     from rich import box
     from rich.table import Table
 
+    if not rows:
+        return
     if title:
         heading(title)
     drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -117,8 +119,7 @@ def progress(what: str) -> Iterator[Callable[[float], None]]:
 
     Time spent on compiling, which happens once, is not taken for the pace of the work.
     """
-    with compile_notice() as compiling:
-        clock = _Clock(compiling)
+    with compile_notice() as clock:
         if not sys.stderr.isatty():
             yield _Lines(what, clock)
             return
@@ -141,39 +142,50 @@ def _say_compiling() -> None:
     print(COMPILING, file=sys.stderr, flush=True)
 
 
-class _Compiling:
-    """Seconds spent on compiling so far, what is being compiled included."""
+class _Clock:
+    """Time at work since the start, what is spent on compiling set aside, and what is left by the share done."""
 
     def __init__(self) -> None:
+        self.start = time.monotonic()
         self.spent, self.depth, self.since = 0.0, 0, 0.0
 
     def begin(self) -> None:
+        """Something is being compiled."""
         _say_compiling()
         if not self.depth:
             self.since = time.monotonic()
         self.depth += 1
 
     def end(self) -> None:
+        """It is compiled."""
         self.depth = max(0, self.depth - 1)
         if not self.depth:
             self.spent += time.monotonic() - self.since
 
     def seconds(self) -> float:
+        """Spent on compiling so far, what is being compiled included."""
         return self.spent + (time.monotonic() - self.since if self.depth else 0.0)
+
+    def left(self, share: float) -> str:
+        """Time left of the work."""
+        if share <= 0:
+            return ""
+        worked = time.monotonic() - self.start - self.seconds()
+        return f"about {max(worked, 0.0) * (1 - share) / share:.0f} s left"
 
 
 @contextmanager
-def compile_notice() -> Iterator[_Compiling]:
+def compile_notice() -> Iterator[_Clock]:
     """Says so once if something has to be compiled, which otherwise looks like a hang, and how long it took.
 
     The compiler is loaded by what needs it, not here.
     """
-    compiling = _Compiling()
+    clock = _Clock()
     with ExitStack() as stack:
 
         def listen() -> None:
             with suppress(ImportError):  # only the notice depends on this corner of numba
-                stack.enter_context(_listening(compiling))
+                stack.enter_context(_listening(clock))
 
         if COMPILER in sys.modules:
             listen()
@@ -181,7 +193,7 @@ def compile_notice() -> Iterator[_Compiling]:
             waiting = _Before(COMPILER, listen)
             sys.meta_path.insert(0, waiting)
             stack.callback(waiting.leave)
-        yield compiling
+        yield clock
 
 
 COMPILER = "trunnion.numerics.jit"
@@ -204,31 +216,18 @@ class _Before(MetaPathFinder):
             sys.meta_path.remove(self)
 
 
-def _listening(compiling: _Compiling) -> AbstractContextManager[Any]:
+def _listening(clock: _Clock) -> AbstractContextManager[Any]:
     from numba.core import event
 
     class Notice(event.Listener):  # type: ignore[misc]
         def on_start(self, event: Any) -> None:
-            compiling.begin()
+            clock.begin()
 
         def on_end(self, event: Any) -> None:
-            compiling.end()
+            clock.end()
 
     listening: AbstractContextManager[Any] = event.install_listener("numba:compile", Notice())
     return listening
-
-
-class _Clock:
-    """Time at work since the start, and what is left of it by the share done."""
-
-    def __init__(self, compiling: _Compiling) -> None:
-        self.start, self.compiling = time.monotonic(), compiling
-
-    def left(self, share: float) -> str:
-        if share <= 0:
-            return ""
-        worked = time.monotonic() - self.start - self.compiling.seconds()
-        return f"about {max(worked, 0.0) * (1 - share) / share:.0f} s left"
 
 
 class _Lines:

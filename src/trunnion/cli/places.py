@@ -82,18 +82,22 @@ def deliver(
 
 def answer(
     command: str,
-    written: Sequence[Path],
+    written: Sequence[Path] | None,
     as_json: bool,
     content: Callable[[], Mapping[str, Any]],
     text: Callable[[], str],
     more: Callable[[], None] | None = None,
     wrap: bool = False,
 ) -> None:
-    """A result as one JSON object, or in words with ``more`` below them, and where it was written."""
+    """A result as one JSON object, or in words with ``more`` below them, and where it was written.
+
+    written : None of a command that writes nothing. wrap : whether the words are broken at the width of the tables.
+    """
     if as_json:
-        output.write_json(command, {**content(), "written": [str(path) for path in written]})
+        places = {} if written is None else {"written": [str(path) for path in written]}
+        output.write_json(command, {**content(), **places})
         return
     output.say(text(), wrap=wrap)
     if more is not None:
         more()
-    output.written(written)
+    output.written(written or ())

@@ -19,21 +19,16 @@ from typer.core import TyperGroup
 from trunnion._version import __version__
 from trunnion.cli import describe, study
 from trunnion.cli.app import app as serve_app
-from trunnion.cli.assess import assess, campbell_diagram
+from trunnion.cli.assess import assess, campbell_diagram, envelope
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
-from trunnion.cli.compare import compare
 from trunnion.cli.crash import crash_line
-from trunnion.cli.envelope import envelope
+from trunnion.cli.design import compare, optimise, sensitivity
 from trunnion.cli.kinetostatics import kinetostatics
-from trunnion.cli.limits import minimum_damping, stable_windows, tongues
-from trunnion.cli.linearity import linearity_check
-from trunnion.cli.motion import periodic_response, run_up, simulate
-from trunnion.cli.optimise import optimise
+from trunnion.cli.limits import certify_stability, minimum_damping, stable_windows, tolerance_study, tongues
+from trunnion.cli.motion import linearity_check, periodic_response, run_up, simulate
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
-from trunnion.cli.sensitivity import sensitivity
-from trunnion.cli.tolerance import certify_stability, tolerance_study
 from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark, TrunnionError, short
 

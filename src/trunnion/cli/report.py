@@ -38,8 +38,7 @@ def print_answer(given: Answer) -> None:
     output.say(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold")
     output.heading(f"Checks from {low} to {high}")
     rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
-    if rows:
-        output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
+    output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
     output.findings(given.findings)
     output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 
@@ -54,8 +53,7 @@ def print_overview(seen: Overview) -> None:
     span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
     output.heading(f"Resonance speeds {span} that can open: {len(able) or 'none'}")
-    if able:
-        output.table([{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
+    output.table([{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
     if len(able) > MOST_ROWS:
         output.say(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds", wrap=True)
     if seen.turn is not None and seen.turn.joints:

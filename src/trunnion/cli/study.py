@@ -24,7 +24,7 @@ from trunnion.cli.options import (
     read_points,
     read_speed,
 )
-from trunnion.cli.places import DEFAULT_FOLDER, check_places, deliver, write_result
+from trunnion.cli.places import DEFAULT_FOLDER, answer, check_places, deliver, write_result
 
 if TYPE_CHECKING:
     from trunnion.reporting.answer import Answer
@@ -56,11 +56,11 @@ def analyze(
     size, at = read_points(points) if points else None, read_speed(speed, unit)
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_answer, print_overview
-    from trunnion.reporting.answer import answer
+    from trunnion.reporting.answer import answer as answer_of
 
     check_report(to)
     with output.compile_notice():
-        given = answer(line, speed=at, unit=unit)
+        given = answer_of(line, speed=at, unit=unit)
     if not as_json:
         print_answer(given)
     seen, written = _reported(given, file, to, size)
@@ -116,15 +116,14 @@ def stability(
     """Floquet stability at one speed, with the linear forced response."""
     line, unit = read_case(file, unit, load_case)
     at = read_speed(speed, unit)
+    from trunnion.cli.report import stability_json
+
     with output.compile_notice():
         result = tn.stability(line, at)
-    if as_json:
-        from trunnion.cli.report import stability_json
-
-        output.write_json("stability", stability_json(result, unit))
-        return
-    output.say(result.describe(unit), wrap=True)
-    output.findings(result.findings_in(unit))
+    answer(
+        "stability", None, as_json, lambda: stability_json(result, unit), lambda: result.describe(unit),
+        lambda: output.findings(result.findings_in(unit)), wrap=True,
+    )  # fmt: skip
 
 
 def stability_chart(
@@ -171,11 +170,11 @@ def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) ->
     unit = unit or frequency_unit(speed_unit(line))
     speed_factor(unit)
     modes = tn.natural_frequencies(line)
-    if as_json:
-        output.write_json("natural-frequencies", modes_json(modes, unit))
-        return
-    output.say(f"{len(modes.frequency)} natural frequencies, all joints straight", wrap=True)
-    output.table(modes.table(unit))
+    answer(
+        "natural-frequencies", None, as_json, lambda: modes_json(modes, unit),
+        lambda: f"{len(modes.frequency)} natural frequencies, all joints straight",
+        lambda: output.table(modes.table(unit)), wrap=True,
+    )  # fmt: skip
 
 
 def resonance_speeds(
@@ -186,17 +185,15 @@ def resonance_speeds(
     as_json: Json = False,
 ) -> None:
     """Named parametric resonance speeds in the operating range, and which of them can open."""
+    from trunnion.cli.report import resonances_json
+
     line, unit = read_case(file, unit)
     found = tn.resonance_speeds(line, orders)
     limits = line.operation.speed_range if line.operation else None
     shown = found if everywhere or limits is None else found.within(*limits)
-    if as_json:
-        from trunnion.cli.report import resonances_json
-
-        output.write_json("resonance-speeds", resonances_json(shown, unit))
-        return
     rows = shown.table(unit)
     where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
-    output.say(f"{len(rows)} resonance speeds up to order {orders}{where}", wrap=True)
-    if rows:
-        output.table(rows)
+    answer(
+        "resonance-speeds", None, as_json, lambda: resonances_json(shown, unit),
+        lambda: f"{len(rows)} resonance speeds up to order {orders}{where}", lambda: output.table(rows), wrap=True,
+    )  # fmt: skip

@@ -5,28 +5,31 @@ from __future__ import annotations
 import html
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, Generic, Protocol, TypeVar
 
 import panel as pn
 
+from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.app.calls import Call
 from trunnion.app.curves import Curves
+from trunnion.app.document import Document
 from trunnion.app.jobs import Job
+from trunnion.app.pieces import Quiet, pane
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import assemble
+from trunnion.reporting import ranges
 from trunnion.results.speeds import speed_factor
-
-if TYPE_CHECKING:
-    from trunnion.app.session import Session
 
 Setting = str | float | int | bool | None
 """Of a view; one whose default is None is a number that is found by itself where none is typed."""
 NAMES = {
     "png": "PNG", "svg": "SVG", "csv": "CSV", "nc": "netCDF", "html": "HTML", "py": "Python", "toml": "TOML",
 }  # fmt: skip
+PICTURES = ("png", "svg")
 MOST_POINTS = 400
 """Points along an axis that the browser may ask for."""
 
@@ -65,12 +68,65 @@ class Step:
         """The file of the line that is computed."""
         return toml if self.line is None else dumps(self.line)
 
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Of the files that may be downloaded: pictures, then data."""
+        return (PICTURES if self.picture else ()) + self.files
 
-class Side(ABC):
-    """The picture of one variant; ``variant`` is "now" or "kept", set by the view."""
+    def file(self, toml: str, ending: str) -> Job:
+        """The computation of a download."""
+        options = {"ending": ending, "method": self.picture, "options": dict(self.drawing), "columns": self.columns}
+        return Job(self.toml(toml), self.call, "file", options)
+
+
+class Host(Protocol):
+    """What a view asks of the page it stands on."""
+
+    document: Document
+
+    def line(self, side: str) -> Driveline:
+        """The line of a variant, "now" or "kept"."""
+
+    def edit(self, change: Callable[[Document], Any]) -> None:
+        """Change the line, and everything that follows from it."""
+
+    def state_limits(self) -> None:
+        """Give every spring without a limit one to fill in, and go there."""
+
+    def setting_chosen(self) -> None:
+        """Hear that a setting of the visible view is another."""
+
+    def ask(self, call: Call, show: str, side: str, **options: Any) -> Coroutine[Any, Any, Any]:
+        """One further computation for the line of a variant."""
+
+    def beside(self, work: Coroutine[Any, Any, None]) -> None:
+        """Begin what a click asks for, beside the computation of the view."""
+
+    def locked(self, action: Callable[[], Any]) -> None:
+        """Change the page from such work."""
+
+
+V = TypeVar("V", bound="View")
+
+
+class Side(ABC, Generic[V]):
+    """The picture of one variant, "now" or "kept": a method ``show_KIND`` for what each kind of step gives."""
 
     panel: Any
-    variant = "now"
+
+    def __init__(self, view: V, variant: str) -> None:
+        self.view, self.variant = view, variant
+        self.what = ""
+        self.make()
+
+    @abstractmethod
+    def make(self) -> None:
+        """Make ``panel``, and what in it changes."""
+
+    @property
+    def line(self) -> Driveline:
+        """The line that the picture is of."""
+        return self.view.session.line(self.variant)
 
     def narrow(self, narrow: bool) -> None:
         """Take half of the page, or all of it again."""
@@ -78,36 +134,53 @@ class Side(ABC):
             if isinstance(held, Curves):
                 held.narrow(narrow)
 
-    @abstractmethod
-    def show(self, name: str, data: Any) -> None:
-        """Show what the step ``name`` gave."""
+    def begin(self, what: str) -> None:
+        """Forget what belongs to another question."""
+        if what != self.what:
+            self.what = what
+            self.clear()
 
-    def refused(self, name: str, sentence: str) -> None:  # noqa: B027 - views without soft steps leave it
-        """Say why the step ``name`` gave nothing; asked for of soft steps only."""
+    def clear(self) -> None:
+        """Show nothing."""
+
+    def show(self, step: Step, data: Any) -> None:
+        """Show what a step gave: by the method of the name of what made ``data`` in ``trunnion.app.shown``."""
+        getattr(self, f"show_{step.show}")(step, data)
+
+    def refused(self, step: Step, sentence: str) -> None:
+        """Say why a step gave nothing; asked for of soft steps only."""
 
 
 class View(ABC):
     """One view of a session. A subclass says its settings, controls, steps and side."""
 
     name = ""
-    title = ""
     about = ""
     defaults: Mapping[str, Setting] = {}
+    fields: Mapping[str, Callable[[], Any]] = {}
+    """What makes the control of a setting."""
+    asks: Mapping[str, Sequence[str]] = {}
+    """Of a view with several questions: the controls that each choice of the setting "what" has."""
+    asked_by: Sequence[str] = ()
+    """Settings that say which question it is."""
+    side: type[Side[Any]]
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Host) -> None:
         self.session = session
         self.settings: dict[str, Setting] = dict(self.defaults)
         self.widgets: dict[str, Any] = {}
-        self.sides: dict[str, Side] = {}
-        self._quiet = False
-        self.downloads = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.controls = self.make_controls()
+        self.sides: dict[str, Side[Any]] = {}
+        self.quiet = Quiet()
+        self.downloads = pane()
+        for key, make in self.fields.items():
+            self._bind(key, make())
+        self.controls = self.arrange()
 
     # -- what a subclass writes -----------------------------------------------------------------------------------
 
-    def make_controls(self) -> Any:
-        """Widgets, made once."""
-        return pn.FlexBox()
+    def arrange(self) -> Any:
+        """The controls and what stands beside them, made once."""
+        return self.row(*self.widgets)
 
     def adapt(self, line: Driveline) -> None:  # noqa: B027 - views whose choices stay leave it
         """Choices that depend on the line."""
@@ -116,22 +189,27 @@ class View(ABC):
     def steps(self, line: Driveline) -> list[Step]:
         """What is computed, in order."""
 
-    @abstractmethod
-    def side(self) -> Side:
-        """A picture."""
-
     # -- what they share ------------------------------------------------------------------------------------------
 
-    def of(self, variant: str) -> Side:
+    def of(self, variant: str) -> Side[Any]:
         """The picture of a variant, made when it is first needed."""
         if variant not in self.sides:
-            self.sides[variant] = self.side()
-            self.sides[variant].variant = variant
+            side = self.sides[variant] = self.side(self, variant)
+            side.begin(str(self.settings.get("what", "")))
         return self.sides[variant]
 
-    def line_of(self, side: Side) -> Driveline:
-        """The line that a picture is of."""
-        return self.session.line(side.variant)
+    def show_question(self) -> None:
+        """Show the controls of the question, and in the pictures nothing of another one."""
+        what = self.widgets["what"].value
+        for key, widget in self.widgets.items():
+            widget.visible = key == "what" or key in self.asks[what]
+        for side in self.sides.values():
+            side.begin(what)
+
+    def load(self) -> dict[str, Setting]:
+        """The load case of the setting "load" as an argument of calls, none for its default."""
+        case = self.settings["load"]
+        return {} if case == self.defaults["load"] else {"load_case": case}
 
     def read(self, query: Mapping[str, str]) -> None:
         """Take settings from an address; what does not fit is left at its default."""
@@ -158,19 +236,12 @@ class View(ABC):
 
     def fill(self) -> None:
         """Show the settings in the controls."""
-        self._quiet = True
-        try:
+        with self.quiet:
             for key, widget in self.widgets.items():
-                value = self.settings[key]
-                if widget.value != value:
-                    choices = getattr(widget, "options", None)
-                    if choices is not None and value not in (
-                        choices.values() if isinstance(choices, dict) else choices
-                    ):
-                        continue
+                value, choices = self.settings[key], getattr(widget, "options", None)
+                known = choices.values() if isinstance(choices, dict) else choices
+                if widget.value != value and (known is None or value in known):
                     widget.value = value
-        finally:
-            self._quiet = False
 
     def put(self, key: str, value: Setting) -> None:
         """Change a setting as if it had been typed."""
@@ -178,44 +249,49 @@ class View(ABC):
         self.fill()
         self.session.setting_chosen()
 
-    def bind(self, key: str, widget: Any) -> Any:
-        """Tie a widget to a setting."""
-        self.widgets[key] = widget
+    def chosen(self, key: str, value: Setting) -> None:
+        """Take a setting that the user changed."""
+        self.settings[key] = value
+        if key in self.asked_by:
+            self.show_question()
+        self.session.setting_chosen()
 
+    def _bind(self, key: str, widget: Any) -> None:
         def changed(event: Any) -> None:
-            if self._quiet or (event.new is None and self.defaults[key] is not None):
-                return
-            self.settings[key] = event.new
-            self.session.setting_chosen()
+            if not (self.quiet or (event.new is None and self.defaults[key] is not None)):
+                self.chosen(key, event.new)
 
+        self.widgets[key] = widget
         widget.param.watch(changed, "value")
-        return widget
 
-    def choose(self, key: str, choices: list[str] | dict[str, str]) -> None:
+    def row(self, *keys: str) -> Any:
+        """The controls of settings beside each other, as far as there is place."""
+        return pn.FlexBox(*(self.widgets[key] for key in keys))
+
+    def choose(self, key: str, choices: list[str]) -> None:
         """Give a widget its choices; a setting that is none of them becomes the first."""
-        values = list(choices.values()) if isinstance(choices, dict) else choices
-        self._quiet = True
-        try:
-            if self.settings[key] not in values and values:
-                self.settings[key] = values[0]
-            self.widgets[key].options = choices
-            if values:
-                self.widgets[key].value = self.settings[key]
-            self.widgets[key].disabled = not values
-        finally:
-            self._quiet = False
+        widget = self.widgets[key]
+        with self.quiet:
+            if choices and self.settings[key] not in choices:
+                self.settings[key] = choices[0]
+            widget.options = choices
+            if choices:
+                widget.value = self.settings[key]
+            widget.disabled = not choices
 
 
-def links(token: str, view: View, files: list[tuple[Step, tuple[str, ...]]]) -> str:
+def links(token: str, view: View, line: Driveline) -> str:
     """Links to everything of a view that may be downloaded."""
-    rows = []
-    for step, endings in files:
-        parts = " ".join(_link(token, view.name, step.name, ending, NAMES[ending]) for ending in endings)
-        rows.append(f"<li>{html.escape(step.title or step.name)}: {parts}</li>")
-    rows.append(f"<li>Python that computes what is shown: {_link(token, view.name, 'view', 'py', 'Python')}</li>")
+    rows = {}
+    for step in view.steps(line):
+        if step.endings:
+            parts = " ".join(_link(token, view.name, step.name, ending, NAMES[ending]) for ending in step.endings)
+            rows[step.title or step.name] = parts
+    rows["Python that computes what is shown"] = _link(token, view.name, "view", "py", "Python")
     whole = [_link(token, view.name, "driveline", ending, NAMES[ending]) for ending in ("toml", "html")]
-    rows.append(f"<li>the driveline: {whole[0]}, its report: {whole[1]}</li>")
-    return f"<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{''.join(rows)}</ul>"
+    rows["the driveline"] = f"{whole[0]}, its report: {whole[1]}"
+    found = "".join(f"<li>{html.escape(title)}: {parts}</li>" for title, parts in rows.items())
+    return f"<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{found}</ul>"
 
 
 def _link(token: str, view: str, name: str, ending: str, text: str) -> str:
@@ -265,6 +341,11 @@ def count(label: str, value: int, start: int, end: int) -> Any:
     return pn.widgets.IntInput(label=label, value=value, start=start, end=end, width=100)
 
 
+def slider(label: str, start: float, end: float, step: float) -> Any:
+    """A slider that begins at zero, with its label."""
+    return pn.widgets.FloatSlider(label=label, start=start, end=end, step=step, value=0, width=260)
+
+
 def unit_of(line: Driveline) -> tuple[str, float]:
     """Unit of speeds, and how many of it a rad/s is."""
     unit = speed_unit(line)
@@ -273,10 +354,18 @@ def unit_of(line: Driveline) -> tuple[str, float]:
 
 def speed_range(line: Driveline) -> tuple[float, float]:
     """Lowest and highest speed [rad/s] that the line's pictures cover."""
-    from trunnion.reporting.ranges import speed_range as of_line
-
-    low, high = of_line(line)
+    low, high = ranges.speed_range(line)
     return max(low, high / 1000), high
+
+
+def springs_of(line: Driveline) -> list[str]:
+    """Names of the shafts and meshes that twist."""
+    return list(shaft_names(assemble(line)))
+
+
+def load_cases(line: Driveline) -> list[str]:
+    """Names of the line's load cases."""
+    return [case.name for case in line.operation.load_cases] if line.operation else []
 
 
 def at_speed(line: Driveline, typed: float | None) -> float:

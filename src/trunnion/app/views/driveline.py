@@ -2,47 +2,62 @@
 
 from __future__ import annotations
 
-import base64
-import html
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import panel as pn
 
-from trunnion.app.calls import LINE, THE_LINE, Call
+from trunnion.app.calls import LINE, Call
 from trunnion.app.document import LARGEST_FILE, Document
 from trunnion.app.editor import Editor
+from trunnion.app.pieces import column, pane, picture, pre
 from trunnion.app.upload import Upload
 from trunnion.app.views.base import Side, Step, View
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
 
-if TYPE_CHECKING:
-    from trunnion.app.session import Session
+
+class _Side(Side["DrivelineView"]):
+    """The table with sketch and modes, or of a kept variant these alone."""
+
+    def make(self) -> None:
+        """Panes and figures, made once."""
+        self.sketch, self.modes = pane(), pane()
+        table = [self.view.editor] if self.variant == "now" else []
+        self.panel = column(self.sketch, *table, self.modes)
+
+    def show_sketch(self, step: Step, svg: str) -> None:
+        """The line as a picture."""
+        self.sketch.object = picture(svg, "sketch of the driveline, elements numbered as in the table", 1000)
+
+    def show_text(self, step: Step, text: str) -> None:
+        """Its modes."""
+        self.modes.object = pre(text)
 
 
 class DrivelineView(View):
     """Edit the line."""
 
     name = "driveline"
-    title = "Driveline"
     about = "Elements from the drive to the load. A quantity is a number with its unit; an empty field is left out."
+    side = _Side
 
-    def __init__(self, session: Session) -> None:
-        super().__init__(session)
-        self.editor = Editor(self._edited, sizing_mode="stretch_width")
-
-    def make_controls(self) -> Any:
+    def arrange(self) -> Any:
         """Where a line comes from, undo, and the whole file as text."""
+        self.editor = Editor(self._edited, sizing_mode="stretch_width")
         self.begin = pn.widgets.Select(label="Begin with", options=_beginnings(), width=400)
         load = pn.widgets.Button(label="Begin", width=70, align="end")
         load.on_click(lambda event: self.session.edit(self._begin))
-        self.upload = Upload(self._uploaded, LARGEST_FILE, label="Open a TOML file")
+        upload = Upload(
+            lambda text: self.session.edit(lambda document: document.replace_text(text)),
+            LARGEST_FILE,
+            label="Open a TOML file",
+        )
         self.undo = pn.widgets.Button(label="Undo", width=70, align="end")
         self.redo = pn.widgets.Button(label="Redo", width=70, align="end")
         self.undo.on_click(lambda event: self.session.edit(Document.undo))
         self.redo.on_click(lambda event: self.session.edit(Document.redo))
-        return pn.FlexBox(self.begin, load, self.upload, self.undo, self.redo, gap="4px", align_items="end")
+        return pn.FlexBox(self.begin, load, upload, self.undo, self.redo, gap="4px", align_items="end")
 
     def _begin(self, document: Document) -> None:
         name = self.begin.value
@@ -52,9 +67,6 @@ class DrivelineView(View):
             from trunnion.studies.entries import catalogue
 
             document.replace_text(dumps(catalogue(name)))
-
-    def _uploaded(self, text: str) -> None:
-        self.session.edit(lambda document: document.replace_text(text))
 
     def _edited(self, data: dict[str, Any]) -> None:
         def change(document: Document) -> None:
@@ -73,48 +85,20 @@ class DrivelineView(View):
                     document.add_load_case()
 
         self.session.edit(change)
-        self.show_document()
+        self.adapt(self.session.document.line)
 
     def adapt(self, line: Driveline) -> None:
-        """Show the document."""
-        self.show_document()
-
-    def show_document(self) -> None:
         """Fields and undo as they stand."""
         document = self.session.document
         self.editor.show(document.groups())
-        self.undo.disabled, self.redo.disabled = not document.can_undo, not document.can_redo
+        self.undo.disabled, self.redo.disabled = not document.can_step(-1), not document.can_step(1)
 
     def steps(self, line: Driveline) -> list[Step]:
         """The sketch, and where the natural frequencies are."""
         return [
-            Step("sketch", THE_LINE, "sketch", picture="", files=()),
+            Step("sketch", LINE, "sketch", picture="", files=()),
             Step("modes", Call("tn.natural_frequencies", (LINE,)), "text", title="mode shapes"),
         ]
-
-    def side(self) -> Any:
-        """The table, or of a kept variant its sketch."""
-        return _Side(self.editor if not self.sides else None)
-
-
-class _Side(Side):
-    def __init__(self, editor: Editor | None) -> None:
-        self.sketch = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.modes = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.panel = pn.Column(
-            self.sketch, *([editor] if editor else []), self.modes, sizing_mode="stretch_width", margin=0
-        )
-
-    def show(self, name: str, data: Any) -> None:
-        """The sketch as a picture, modes as text."""
-        if name == "sketch":
-            picture = base64.b64encode(data.encode()).decode()
-            self.sketch.object = (
-                f"<img alt='sketch of the driveline, elements numbered as in the table' "
-                f"src='data:image/svg+xml;base64,{picture}' style='width:100%;max-width:1000px'>"
-            )
-        else:
-            self.modes.object = f"<pre>{html.escape(data)}</pre>"
 
 
 def _beginnings() -> dict[str, str]:

@@ -7,30 +7,31 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.app import figures
+from trunnion.app.axis import Axis
 from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curves
-from trunnion.app.variants import kind_of, parameters, shown_unit, with_number
+from trunnion.app.curves import Curve, Curves
+from trunnion.app.pieces import column, pane, pre
+from trunnion.app.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
     MOST_POINTS,
     Side,
     Step,
     View,
+    at_speed,
     bounded,
     count,
     number,
     optional,
     select,
     speed_range,
+    springs_of,
     tell_default,
     unit_of,
 )
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import pack
 from trunnion.driveline.quantities import DEGREE
-from trunnion.equations.coefficients import assemble
-from trunnion.errors import InputError
 
 STABLE, WINDOWS, TOLERANCES = "stable limit of a parameter", "stable windows of a parameter", "tolerances"
 RANKED, ASSEMBLY = "what the checks follow most", "errors of assembly"
@@ -57,6 +58,7 @@ SAYS = {
 AIMS = ("least spare margin", "irregularity", "growth rate")
 DESIGNS = 40
 """Lines computed in the search for one best value."""
+MOST_BARS = 16
 SCATTER = (".stiffness", ".inertia", ".damping", ".angle")
 """What scatters in a study of tolerances, where it is not zero."""
 AT_SPEEDS, AT_END = "largest stable at single speeds", "stable up to the end searched"
@@ -66,33 +68,115 @@ SAMPLES = 4096
 """Lines of such a study: the probability to within 1.5 % in the middle, and better at its ends."""
 
 
+class _Side(Side["LimitsView"]):
+    """A picture and a text."""
+
+    def make(self) -> None:
+        """Panes and figures, made once."""
+        self.curves = Curves("input speed", "limit")
+        self.curves.mark(AT_SPEEDS, "circle", figures.INK)
+        self.curves.mark(AT_END, "triangle", figures.FAINT)
+        self.bars = figures.plot("", "", height=200, y_range=[], tools="")
+        self.rows = figures.source(name=[], value=[])
+        bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
+        figures.hover(self.bars, [bar], [("", "@name"), ("", "@value")])
+        self.text = pane()
+        self.bars.visible = False
+        self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
+        self.panel = column(self.curves.panel, self.bar_panel, self.text)
+
+    def clear(self) -> None:
+        """Show neither picture."""
+        self.curves.panel.visible = self.bar_panel.visible = False
+        self.text.object = ""
+
+    def show_best(self, step: Step, data: Any) -> None:
+        """The best value in words, and for the button."""
+        self.text.object = pre(data["text"])
+        if self.variant == "now":
+            self.view.found(data["value"])
+
+    def _bars(self, step: Step, data: Any) -> None:
+        """What matters most, the largest on top."""
+        self._picture(data, drawn=False)
+        order = np.argsort(-np.abs(np.asarray(data["value"])))[:MOST_BARS]
+        rows = [(data["name"][i], float(data["value"][i])) for i in order]
+        self.bars.y_range.factors = [name for name, _ in reversed(rows)]
+        self.bars.height = 80 + 24 * len(rows)
+        self.bars.xaxis.axis_label = data["label"]
+        figures.put_rows(self.rows, rows)
+
+    show_tolerances = show_ranked = show_assembly = _bars
+
+    def show_limit(self, step: Step, data: Any) -> None:
+        """How far the parameter may go."""
+        self._over_speed(data, "largest stable")
+
+    def show_windows(self, step: Step, data: Any) -> None:
+        """Where it may be."""
+        self._over_speed(data, "regions of instability and stable windows of")
+
+    def _picture(self, data: Any, drawn: bool) -> None:
+        """The words, and the curves or else the bars."""
+        self.text.object = pre(data["text"])
+        self.curves.panel.visible = self.curves.figure.visible = drawn
+        self.bar_panel.visible = self.bars.visible = not drawn
+
+    def _over_speed(self, data: Any, title: str) -> None:
+        """The unstable regions, the ends of what is stable at every speed, and the limits at single speeds.
+
+        The limits at single speeds are marks: a line through them would claim what lies between."""
+        self._picture(data, drawn=True)
+        axis, (speed_unit, factor) = self.view.axis(self.line), unit_of(self.line)
+        path, size = axis.path, axis.size
+        span = np.array(data["speeds"]) * factor
+
+        def level(name: str, value: float, colour: str, dash: str) -> Curve:
+            return Curve(name, span, np.full(2, value / size), colour, dash)
+
+        curves = [Curve(name, x * factor, y / size, figures.ORANGE, "solid") for name, x, y in data["regions"]]
+        self.curves.fill([(one.x, one.y) for one in curves])
+        curves += [level("end of stable at every speed", value, figures.INK, "dotted") for value in data["ends"]]
+        for k, (name, values) in enumerate(data.get("others", ())):
+            colour, dash = OTHERS[k % len(OTHERS)], figures.DASHES[k // len(OTHERS) % 4]
+            curves.append(Curve(f"{name} reached", data["speed"] * factor, values / size, colour, dash))
+        curves.append(level("the line now", pack(self.line).value(path), figures.BLUE, "dashed"))
+        self.curves.set(curves, x=f"input speed [{speed_unit}]", y=axis.label, title=f"{title} {path}")
+        speed, limit = (np.asarray(data.get(key, ())) for key in ("speed", "limit"))
+        at_end = limit >= data.get("high", np.inf)
+        for name, which in ((AT_SPEEDS, ~at_end), (AT_END, at_end)):
+            self.curves.put_marks(name, speed[which] * factor, limit[which] / size)
+
+
 class LimitsView(View):
     """Stable limits, sensitivities, tolerances."""
 
     name = "limits"
-    title = "Limits"
     about = "How far a number may go, how sure that is, and which numbers matter most."
+    side = _Side
+    asks, asked_by = ASKS, ("what",)
     defaults = {
         "what": STABLE, "parameter": "", "low": None, "high": None, "speeds": 31, "error": 1.0, "tolerance": 5.0,
         "aim": AIMS[0],
     }  # fmt: skip
 
-    def make_controls(self) -> Any:
+    fields = {
+        "what": lambda: select("Limit", options=list(ASKS), width=230),
+        "parameter": lambda: select("Parameter", options=[]),
+        "low": lambda: optional("low"),
+        "high": lambda: optional("high"),
+        "speeds": lambda: count("Speeds", 31, 2, MOST_POINTS),
+        "error": lambda: number("Error of assembly [deg]", 1.0, start=0.01, width=170),
+        "tolerance": lambda: number("Tolerance [±%]", 5.0, start=0.01),
+        "aim": lambda: select("Best in", options=list(AIMS), width=260),
+    }
+
+    def arrange(self) -> Any:
         """What is asked, of which parameter, over which range."""
-        what = self.bind("what", select("Limit", options=list(ASKS), width=230))
-        what.param.watch(lambda event: self._ask(), "value")
-        self.bind("parameter", select("Parameter", options=[]))
-        for key in ("low", "high"):
-            self.bind(key, optional(key, width=130))
-        self.bind("speeds", count("Speeds", 31, 2, MOST_POINTS))
-        self.bind("error", number("Error of assembly [deg]", 1.0, start=0.01, width=170))
-        self.bind("tolerance", number("Tolerance [±%]", 5.0, start=0.01, width=130))
-        self.bind("aim", select("Best in", options=list(AIMS), width=260))
         self.use = pn.widgets.Button(label="Use the best value", width=160, align="end", disabled=True)
         self.use.on_click(lambda event: self._use())
-        self.says = pn.pane.HTML("", sizing_mode="stretch_width", margin=(0, 5))
-        row = pn.FlexBox(*self.widgets.values(), self.use)
-        return pn.Column(row, self.says, sizing_mode="stretch_width", margin=0)
+        self.says = pane(margin=(0, 5))
+        return column(pn.FlexBox(*self.widgets.values(), self.use), self.says)
 
     def adapt(self, line: Driveline) -> None:
         """Parameters of the line."""
@@ -100,25 +184,21 @@ class LimitsView(View):
         if self.settings["parameter"] not in paths:
             self.settings["parameter"] = next((p for p in paths if p.endswith(".angle")), paths[0])
         self.choose("parameter", paths)
-        unit, size = self.unit(line)
-        for key, word, value in zip(("low", "high"), ("from", "to"), self._own_ends(line), strict=True):
-            self.widgets[key].label = f"{word} [{unit}]"
-            tell_default(self.widgets[key], value / size)
-        torques = [f"{kind} torque of {n}" for n in shaft_names(assemble(line)) for kind in ("vibratory", "peak")]
+        axis = self.axis(line)
+        for key, word, value in zip(("low", "high"), ("from", "to"), axis.ends, strict=True):
+            self.widgets[key].label = f"{word} [{axis.unit}]"
+            tell_default(self.widgets[key], value)
+        torques = [f"{kind} torque of {n}" for n in springs_of(line) for kind in ("vibratory", "peak")]
         self.choose("aim", [*AIMS, *torques])
         self.best: float | None = None
-        self._ask()
+        self.show_question()
 
-    def _ask(self) -> None:
-        """Show the controls of the question, and nothing of another one."""
-        what = str(self.widgets["what"].value)
-        for key, widget in self.widgets.items():
-            widget.visible = key == "what" or key in ASKS[what]
+    def show_question(self) -> None:
+        """And what it asks, and the button that belongs to one of them."""
+        super().show_question()
+        what = self.widgets["what"].value
         self.use.visible, self.use.disabled = what == BEST, True
         self.says.object = SAYS[what]
-        for side in self.sides.values():
-            assert isinstance(side, _Side)
-            side.begin(what)
 
     def found(self, value: float) -> None:
         """The best value of the parameter in SI units, which the button takes over."""
@@ -129,10 +209,15 @@ class LimitsView(View):
             line = with_number(self.session.document.line, str(self.settings["parameter"]), self.best)
             self.session.edit(lambda document: document.set_numbers(line))
 
-    def unit(self, line: Driveline) -> tuple[str, float]:
-        """The unit of the parameter, and its size in SI."""
+    def axis(self, line: Driveline) -> Axis:
+        """The parameter with ends by themselves."""
         path = str(self.settings["parameter"])
-        return shown_unit(kind_of(line, path), pack(line).value(path))
+        (unit, size), now = shown_unit(line, path), pack(line).value(path)
+        if path.endswith(".angle"):
+            return Axis(path, 0.0, 45 * DEGREE, unit, size)
+        if unit == "deg":
+            return Axis(path, -90 * DEGREE, 90 * DEGREE, unit, size)
+        return Axis(path, 0.0, 4 * now if now > 0 else size, unit, size)
 
     def steps(self, line: Driveline) -> list[Step]:
         """The one that is asked for."""
@@ -145,7 +230,9 @@ class LimitsView(View):
             return [Step("assembly", call, "assembly", picture="", files=())]
         if what == TOLERANCES:
             return [self._tolerances(line)]
-        path, (low, high) = str(self.settings["parameter"]), self.range(line)
+        axis = self.axis(line).typed(self.typed("low"), self.typed("high"))
+        axis.require_rising()
+        path, low, high = axis.path, axis.low, axis.high
         if what == BEST:
             free = {path: (low, high)}
             call = Call("tn.optimise", (LINE, free, str(self.settings["aim"])), {"designs": DESIGNS})
@@ -160,120 +247,9 @@ class LimitsView(View):
         columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
         return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit", columns=columns)]
 
-    def range(self, line: Driveline) -> tuple[float, float]:
-        """Ends of the parameter in SI units: as typed, or by themselves.
-
-        Raises
-        ------
-        InputError : they do not rise.
-        """
-        (_, size), (low, high) = self.unit(line), self._own_ends(line)
-        first, last = self.typed("low"), self.typed("high")
-        low, high = low if first is None else first * size, high if last is None else last * size
-        if not low < high:
-            problem, remedy = (
-                f"runs from {low / size:g} to {high / size:g}",
-                "type two ends that rise, or leave the fields empty",
-            )
-            raise InputError(problem, key=str(self.settings["parameter"]), remedy=remedy)
-        return low, high
-
-    def _own_ends(self, line: Driveline) -> tuple[float, float]:
-        path, (unit, size) = str(self.settings["parameter"]), self.unit(line)
-        now = pack(line).value(path)
-        if path.endswith(".angle"):
-            return 0.0, 45 * DEGREE
-        if unit == "deg":
-            return -90 * DEGREE, 90 * DEGREE
-        return 0.0, 4 * now if now > 0 else size
-
     def _tolerances(self, line: Driveline) -> Step:
         """Uniform tolerances of everything that is not zero."""
         packed, share = pack(line), min(max(self.value("tolerance"), 0.01), 90.0) / 100
         scatter = {p: share for p in parameters(line) if p.endswith(SCATTER) and packed.value(p)}
-        low, high = speed_range(line)
-        speed = line.operation.speed if line.operation and line.operation.speed else (low + high) / 2
-        call = Call("tn.tolerance_study", (LINE, scatter, float(speed)), {"samples": SAMPLES})
+        call = Call("tn.tolerance_study", (LINE, scatter, at_speed(line, None)), {"samples": SAMPLES})
         return Step("tolerances", call, "tolerances", title="tolerances")
-
-    def side(self) -> Any:
-        """A picture and a text."""
-        return _Side(self)
-
-
-class _Side(Side):
-    def __init__(self, view: LimitsView) -> None:
-        self.view = view
-        self.curves = Curves("input speed", "limit")
-        self.curves.mark(AT_SPEEDS, "circle", figures.INK)
-        self.curves.mark(AT_END, "triangle", figures.FAINT)
-        self.bars = figures.plot("", "", height=200, y_range=[], tools="")
-        self.rows = figures.source(name=[], value=[])
-        bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
-        figures.hover(self.bars, [bar], [("", "@name"), ("", "@value")])
-        self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.bars.visible = False
-        self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
-        self.panel = pn.Column(self.curves.panel, self.bar_panel, self.text, sizing_mode="stretch_width", margin=0)
-        self.what = ""
-        self.begin(str(view.settings["what"]))
-
-    def begin(self, what: str) -> None:
-        """Forget what belongs to another question."""
-        if what != self.what:
-            self.what = what
-            self.curves.panel.visible = self.bar_panel.visible = False
-            self.text.object = ""
-
-    def show(self, name: str, data: Any) -> None:
-        """What was asked for."""
-        self.text.object = f"<pre>{figures.text(data['text'])}</pre>"
-        if name == "best":
-            if self.variant == "now":
-                self.view.found(data["value"])
-            return
-        drawn = name in ("limit", "windows")
-        for shown, panel, figure in (
-            (drawn, self.curves.panel, self.curves.figure),
-            (not drawn, self.bar_panel, self.bars),
-        ):
-            panel.visible = figure.visible = shown
-        if not drawn:
-            order = np.argsort(-np.abs(np.asarray(data["value"])))[:16]
-            names = [data["name"][i] for i in order]
-            self.bars.y_range.factors = names[::-1]
-            self.bars.height = 80 + 24 * len(names)
-            self.bars.xaxis.axis_label = data["label"]
-            figures.put(self.rows, {"name": names, "value": [float(data["value"][i]) for i in order]})
-            return
-        line = self.view.line_of(self)
-        (unit, size), (speed, factor) = self.view.unit(line), unit_of(line)
-        path = str(self.view.settings["parameter"])
-        now = pack(line).value(path) / size
-        self._over_speed(data, now, size, factor)
-        title = "regions of instability and stable windows of" if name == "windows" else "largest stable"
-        figure = self.curves.figure
-        self.curves.title(f"{title} {path}")
-        figure.xaxis.axis_label, figure.yaxis.axis_label = f"input speed [{speed}]", f"{path} [{unit}]"
-
-    def _over_speed(self, data: Any, now: float, size: float, factor: float) -> None:
-        """The unstable regions, the ends of what is stable at every speed, and the limits at single speeds.
-
-        The limits at single speeds are marks: a line through them would claim what lies between."""
-        span = np.array(data["speeds"]) * factor
-        curves = [(name, x * factor, y / size) for name, x, y in data["regions"]]
-        ends = [("end of stable at every speed", span, np.full(2, value / size)) for value in data["ends"]]
-        others = [(f"{name} reached", data["speed"] * factor, v / size) for name, v in data.get("others", ())]
-        looks = [(figures.ORANGE, "solid")] * len(curves) + [(figures.INK, "dotted")] * len(ends)
-        looks += [(OTHERS[k % len(OTHERS)], figures.DASHES[k // len(OTHERS) % 4]) for k in range(len(others))]
-        looks.append((figures.BLUE, "dashed"))
-        self.curves.set(
-            [*curves, *ends, *others, ("the line now", span, np.full(2, now))],
-            colours=[colour for colour, _ in looks],
-            dashes=[dash for _, dash in looks],
-        )
-        self.curves.fill([(x, y) for _, x, y in curves])
-        speed, limit = (np.asarray(data.get(key, ())) for key in ("speed", "limit"))
-        at_end = limit >= data.get("high", np.inf)
-        for name, which in ((AT_SPEEDS, ~at_end), (AT_END, at_end)):
-            self.curves.put_marks(name, speed[which] * factor, limit[which] / size)

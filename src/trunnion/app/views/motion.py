@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import base64
-import html
 from typing import Any
 
 import numpy as np
-import panel as pn
 
+from trunnion.analyses.orbits.frequency_response import methods_of
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curves
+from trunnion.app.curves import Curve, Curves
+from trunnion.app.pieces import column, pane, picture, pre
 from trunnion.app.views.base import (
     Side,
     Step,
@@ -24,6 +23,7 @@ from trunnion.app.views.base import (
     optional,
     select,
     speed_range,
+    springs_of,
     unit_of,
 )
 from trunnion.driveline.driveline import Driveline
@@ -66,15 +66,119 @@ LINEAR, DOTS, SMALL = "linear theory", 16, 5
 """Drawn as so many small points upon every curve."""
 
 
+class _Side(Side["MotionView"]):
+    """Curves, or the picture of the result, and its text."""
+
+    def make(self) -> None:
+        """Panes and figures, made once."""
+        self.curves = Curves("time [ms]", "torque [N·m]", height=380)
+        for title, shape, colour in SWEEPS.values():
+            self.curves.mark(title, shape, colour)
+        self.curves.mark(LINEAR, "circle", figures.INK, SMALL)
+        self.picture, self.text = pane(), pane()
+        self.panel = column(self.curves.panel, self.picture, self.text)
+        self.found: dict[str, Any] = {}
+
+    def clear(self) -> None:
+        """No curves, no marks, no picture."""
+        self.found = {}
+        self.curves.set([])
+        self.curves.panel.visible = False
+        self.picture.object = self.text.object = ""
+        for title in self.curves.marks:
+            self.curves.put_marks(title, [], [])
+
+    def show_plotted(self, step: Step, data: Any) -> None:
+        """The picture that the result draws of itself."""
+        self.curves.panel.visible = False
+        self.picture.object = picture(data["svg"], step.name, 820)
+        self.text.object = pre(data["text"])
+
+    def show_periodic(self, step: Step, data: Any) -> None:
+        """The true motion over a period."""
+        self.curves.panel.visible = True
+        self.text.object = pre(data["text"])
+        curves = [Curve(n, 1e3 * data["time"], v) for n, v in zip(data["names"], data["torque"], strict=True)]
+        self.curves.set(curves, x="time [ms]", y="torque [N·m]", title="torque over one period")
+        self.curves.put_marks(LINEAR, [], [])
+
+    def show_waves(self, step: Step, data: Any) -> None:
+        """The motion by linear theory, as marks beside it."""
+        every = slice(None, None, max(len(data["time"]) // DOTS, 1))
+        time, torque = 1e3 * data["time"][every], [values[every] for values in data["torque"]]
+        self.curves.put_marks(LINEAR, np.tile(time, len(torque)), np.concatenate([[], *torque]))
+
+    def show_run_up(self, step: Step, data: Any) -> None:
+        """The largest torque turn by turn, and of the steady motions where they are known."""
+        self.curves.panel.visible = True
+        unit, factor = unit_of(self.line)
+        curves = []
+        for k, (name, largest) in enumerate(zip(data["names"], data["largest"], strict=True)):
+            curves.append(Curve(name, data["speed"] * factor, largest, figures.look(k)["line_color"], "solid"))
+        if len(data["steady_speed"]):
+            speed = data["steady_speed"] * factor
+            for one, steady in zip(tuple(curves), data["steady"], strict=True):
+                curves.append(Curve(f"{one.name}, steady", speed, steady, one.colour, "dashed"))
+        title = "largest torque in each turn of the run-up"
+        self.curves.set(curves, x=f"input speed [{unit}]", y="torque [N·m]", title=title)
+        self.text.object = pre(data["text"])
+
+    def refused(self, step: Step, sentence: str) -> None:
+        """Why a soft step gave nothing."""
+        if step.name == "linear":
+            self.text.object += pre(f"no linear theory beside it: {sentence}")
+        elif step.name == "run_up":
+            self.text.object += pre(f"no steady motions beside it: {sentence}")
+        else:
+            self._rattle(step, {"text": sentence})
+
+    def _rattle(self, step: Step, data: Any) -> None:
+        """All methods on one picture; what each said below."""
+        self.curves.panel.visible = True
+        asked = {one.name: one.title for one in self.view.steps(self.line)}
+        if step.name == next(iter(asked)):
+            self.found = {}
+        self.found[step.name] = data
+        unit, factor = unit_of(self.line)
+        for way, (title, _, _) in SWEEPS.items():
+            swept = self.found.get(f"sweep_{way}", {})
+            self.curves.put_marks(title, np.asarray(swept.get("speed", ())) * factor, swept.get("half", ()))
+        curves = []
+        for method, colour in METHODS.items():
+            followed = self.found.get(method.replace(" ", "_"), {})
+            for name, stable, dash in ((method, True, "solid"), (f"{method}, unstable", False, "dashed")):
+                if len(part := _part(followed, stable)):
+                    curves.append(Curve(name, followed["speed"] * factor, part, colour, dash))
+        title = f"vibration of {self.view.settings['spring']} by every method"
+        self.curves.set(curves, x=f"input speed [{unit}]", y="half peak-to-peak torque [N·m]", title=title)
+        said = (f"{asked[name]}\n{self.found[name]['text']}" for name in asked if name in self.found)
+        self.text.object = "".join(map(pre, said))
+
+    show_swept = show_followed = _rattle
+
+
+def _part(followed: Any, stable: bool) -> Any:
+    """The curve where it is stable, or where not with the points next to that; NaN elsewhere."""
+    if not followed or "half" not in followed:
+        return ()
+    there = np.asarray(followed["stable"], dtype=bool) == stable
+    if not there.any():
+        return ()
+    if not stable:
+        there = there | np.roll(there, 1) | np.roll(there, -1)
+    return np.where(there, followed["half"], np.nan)
+
+
 class MotionView(View):
     """One motion at a time; some take long, and can be cancelled."""
 
     name = "motion"
-    title = "Motion"
     about = (
         "Motions of the line with everything that linear theory leaves out. Long computations can be cancelled; what "
         "is found by then stays."
     )
+    side = _Side
+    asks, asked_by = ASKS, ("what", "of")
     defaults = {
         "what": "periodic",
         "of": OF_LINE,
@@ -85,38 +189,27 @@ class MotionView(View):
         "returns": 400,
     }
 
-    def make_controls(self) -> Any:
-        """Which motion, at which speed."""
-        what = self.bind("what", select("Motion", options=MOTIONS))
-        what.param.watch(lambda event: self._ask(), "value")
-        self.bind("of", select("Motion of", options=SUBJECTS, width=290)).param.watch(
-            lambda event: self._ask(), "value"
-        )
-        self.speed = self.bind("speed", optional("Speed", start=0.0, width=170))
-        self.bind("rate", number("Acceleration [rad/s²]", 100.0, start=0.01, width=170))
-        self.bind("spring", select("Torque of", options=[]))
-        self.bind("points", count("Points of a sweep", 40, 2, 400))
-        self.bind("returns", count("Points of the map", 400, 10, 20_000))
-        return pn.FlexBox(*self.widgets.values())
+    fields = {
+        "what": lambda: select("Motion", options=MOTIONS),
+        "of": lambda: select("Motion of", options=SUBJECTS, width=290),
+        "speed": lambda: optional("Speed", start=0.0, width=170),
+        "rate": lambda: number("Acceleration [rad/s²]", 100.0, start=0.01, width=170),
+        "spring": lambda: select("Torque of", options=[]),
+        "points": lambda: count("Points of a sweep", 40, 2, 400),
+        "returns": lambda: count("Points of the map", 400, 10, 20_000),
+    }
 
     def adapt(self, line: Driveline) -> None:
         """The unit of speeds, the shafts."""
-        from trunnion.analyses.linear.forced_response import shaft_names
-        from trunnion.equations.coefficients import assemble
+        label_speed(self.widgets["speed"], line)
+        self.choose("spring", springs_of(line))
+        self.show_question()
 
-        label_speed(self.speed, line)
-        self.choose("spring", list(shaft_names(assemble(line))))
-        self._ask()
-
-    def _ask(self) -> None:
-        """Show the controls of the motion, and nothing of another one."""
-        what = str(self.widgets["what"].value)
-        for key, widget in self.widgets.items():
-            widget.visible = key == "what" or key in ASKS[what]
-        self.speed.visible &= "of" not in ASKS[what] or self.widgets["of"].value == OF_LINE
-        for side in self.sides.values():
-            assert isinstance(side, _Side)
-            side.begin(what)
+    def show_question(self) -> None:
+        """And no speed for equations that have none."""
+        super().show_question()
+        of = self.widgets["of"]
+        self.widgets["speed"].visible &= not of.visible or of.value == OF_LINE
 
     def steps(self, line: Driveline) -> list[Step]:
         """The motion that is asked for."""
@@ -163,8 +256,6 @@ class MotionView(View):
 
     def _rattle(self, line: Driveline) -> list[Step]:
         """Sweeps up and down, and the response followed by every method that there is for the line."""
-        from trunnion.analyses.orbits.frequency_response import methods_of
-
         (low, high), spring = speed_range(line), str(self.settings["spring"])
         points = bounded(self.settings["points"], 2)
         ends = {"up": (low, high), "down": (high, low)}
@@ -181,147 +272,3 @@ class MotionView(View):
                  title=f"response: {method}", soft=True)
             for method in known
         ]  # fmt: skip
-
-    def side(self) -> Any:
-        """Curves, or the picture of the result, and its text."""
-        return _Side(self)
-
-
-class _Side(Side):
-    def __init__(self, view: MotionView) -> None:
-        self.view = view
-        self.curves = Curves("time [ms]", "torque [N·m]", height=380)
-        for title, shape, colour in SWEEPS.values():
-            self.curves.mark(title, shape, colour)
-        self.curves.mark(LINEAR, "circle", figures.INK, SMALL)
-        self.picture = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.text = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.panel = pn.Column(self.curves.panel, self.picture, self.text, sizing_mode="stretch_width", margin=0)
-        self.what = ""
-        self.found: dict[str, Any] = {}
-        self.begin(str(view.settings["what"]))
-
-    def begin(self, what: str) -> None:
-        """Forget what belongs to another motion."""
-        if what == self.what:
-            return
-        self.what = what
-        self.found = {}
-        self.curves.set([])
-        self.curves.panel.visible = False
-        self.picture.object = self.text.object = ""
-        for title in self.curves.marks:
-            self.curves.put_marks(title, [], [])
-
-    def show(self, name: str, data: Any) -> None:
-        """What a step gave."""
-        self.curves.panel.visible = name not in PICTURES
-        if name in ("periodic", "linear"):
-            self._periodic(name, data)
-        elif name in ("alone", "run_up"):
-            self._run_up(data)
-        elif name not in PICTURES:
-            self._rattle(name, data)
-        else:
-            image = base64.b64encode(data["svg"].encode()).decode()
-            self.picture.object = (
-                f"<img alt='{html.escape(name)}' style='width:100%;max-width:820px' "
-                f"src='data:image/svg+xml;base64,{image}'>"
-            )
-            self.text.object = _text(data["text"])
-
-    def refused(self, name: str, sentence: str) -> None:
-        """Why a soft step gave nothing."""
-        if name == "linear":
-            self.text.object += _text(f"no linear theory beside it: {sentence}")
-        elif name == "run_up":
-            self.text.object += _text(f"no steady motions beside it: {sentence}")
-        else:
-            self._rattle(name, {"text": sentence})
-
-    def _periodic(self, name: str, data: Any) -> None:
-        if name == "periodic":
-            self.found = {}
-            self.text.object = _text(data["text"])
-        self.found[name] = [(n, 1e3 * np.asarray(data["time"]), v) for n, v in _torques(data)]
-        motion, linear = (self.found.get(key, []) for key in ("periodic", "linear"))
-        self.curves.set(motion, x="time [ms]", y="torque [N·m]", title="torque over one period")
-        every = slice(None, None, max(len(data["time"]) // DOTS, 1))
-        self.curves.put_marks(LINEAR, *_together([(x[every], y[every]) for _, x, y in linear]))
-
-    def _run_up(self, data: Any) -> None:
-        unit, factor = unit_of(self.view.line_of(self))
-        x = data["speed"] * factor
-        curves = [(n, x, v) for n, v in zip(data["names"], data["largest"], strict=True)]
-        steady = [
-            (f"{n}, steady", data["steady_speed"] * factor, v)
-            for n, v in zip(data["names"], data["steady"], strict=True)
-            if len(data["steady_speed"])
-        ]
-        looks = [figures.look(k)["line_color"] for k in range(len(curves))]
-        self.curves.set(
-            [*curves, *steady],
-            colours=[*looks, *looks],
-            dashes=["solid"] * len(curves) + ["dashed"] * len(steady),
-            x=f"input speed [{unit}]",
-            y="torque [N·m]",
-            title="largest torque in each turn of the run-up",
-        )
-        self.text.object = _text(data["text"])
-
-    def _rattle(self, name: str, data: Any) -> None:
-        """All methods on one picture; what each said below."""
-        asked = {step.name: step.title for step in self.view.steps(self.view.line_of(self))}
-        if name == next(iter(asked)):
-            self.found = {}
-        self.found[name] = data
-        unit, factor = unit_of(self.view.line_of(self))
-        for way, (title, _, _) in SWEEPS.items():
-            swept = self.found.get(f"sweep_{way}", {})
-            self.curves.put_marks(title, np.asarray(swept.get("speed", ())) * factor, swept.get("half", ()))
-        curves, colours, dashes = [], [], []
-        for method, colour in METHODS.items():
-            followed = self.found.get(method.replace(" ", "_"), {})
-            for stable, dash in ((True, "solid"), (False, "dashed")):
-                if len(part := _part(followed, stable)):
-                    curves.append((method if stable else f"{method}, unstable", followed["speed"] * factor, part))
-                    colours.append(colour)
-                    dashes.append(dash)
-        self.curves.set(
-            curves,
-            colours=colours,
-            dashes=dashes,
-            x=f"input speed [{unit}]",
-            y="half peak-to-peak torque [N·m]",
-            title=f"vibration of {self.view.settings['spring']} by every method",
-        )
-        titles = {step.name: step.title for step in self.view.steps(self.view.line_of(self))}
-        self.text.object = "".join(
-            _text(f"{titles[key]}\n{self.found[key]['text']}") for key in asked if key in self.found
-        )
-
-
-def _part(followed: Any, stable: bool) -> Any:
-    """The curve where it is stable, or where not with the points next to that; NaN elsewhere."""
-    if not followed or "half" not in followed:
-        return ()
-    there = np.asarray(followed["stable"], dtype=bool) == stable
-    if not there.any():
-        return ()
-    if not stable:
-        there = there | np.roll(there, 1) | np.roll(there, -1)
-    return np.where(there, followed["half"], np.nan)
-
-
-def _together(curves: list[tuple[Any, Any]]) -> tuple[Any, Any]:
-    """The points of all curves, abscissae and ordinates."""
-    x, y = (np.concatenate([[], *(curve[axis] for curve in curves)]) for axis in (0, 1))
-    return x, y
-
-
-def _torques(data: Any) -> list[Any]:
-    return list(zip(data["names"], data["torque"], strict=True))
-
-
-def _text(text: str) -> str:
-    return f"<pre>{figures.text(text)}</pre>"

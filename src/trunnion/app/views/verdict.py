@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,10 @@ from bokeh.models import Span
 from trunnion.analyses.assessment.own_limits import WITHOUT_LIMIT
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curves
-from trunnion.app.helping import Help
-from trunnion.app.views.base import Side, Step, View, select, speed_range, unit_of
+from trunnion.app.curves import Curve, Curves
+from trunnion.app.pieces import column, items, pane, plain
+from trunnion.app.views.base import Side, Step, View, load_cases, select, speed_range, unit_of
+from trunnion.app.views.helping import Help
 from trunnion.driveline.driveline import Driveline
 
 ALL = "as stated and every load case"
@@ -27,65 +27,12 @@ PLACE = 0.04
 COLOURS = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
 
 
-class VerdictView(View):
-    """The assessment."""
+class _Side(Side["VerdictView"]):
+    """Sentence, margins, table."""
 
-    name = "verdict"
-    title = "Verdict"
-    about = "Every limit of the line and every rule that applies, over its speeds; the check that binds comes first."
-    defaults = {"load": ALL}
-
-    def make_controls(self) -> Any:
-        """The load."""
-        return pn.FlexBox(self.bind("load", select("Load", options=[ALL], width=260)))
-
-    def adapt(self, line: Driveline) -> None:
-        """Load cases of the line."""
-        self.choose("load", [ALL, *load_cases(line)])
-
-    def steps(self, line: Driveline) -> list[Step]:
-        """The assessment, then the torques that its limits stand against."""
-        keywords = self.keywords()
-        low, high = speed_range(line)
-        speeds = Call("tn.sweep_speeds", (LINE, low, high))
-        return [
-            Step(
-                "assessment",
-                Call("tn.assess", (LINE,), keywords),
-                "assessment",
-                picture="",
-                files=("csv", "nc"),
-                title="checks",
-            ),
-            Step(
-                "torque",
-                Call("tn.order_response", (LINE, speeds), keywords),
-                "torque_limits",
-                picture="plot",
-                files=("nc",),
-                title="torque over speed",
-            ),
-        ]
-
-    def keywords(self) -> dict[str, Any]:
-        """The load as an argument of the calls."""
-        case = self.settings["load"]
-        return {} if case == ALL else {"load_case": case}
-
-    def side(self) -> Any:
-        """Sentence, margins, table."""
-        return _Side(self)
-
-
-def load_cases(line: Driveline) -> list[str]:
-    """Names of the line's load cases."""
-    return [case.name for case in line.operation.load_cases] if line.operation else []
-
-
-class _Side(Side):
-    def __init__(self, view: VerdictView) -> None:
-        self.view, session = view, view.session
-        self.sentence = pn.pane.HTML("", sizing_mode="stretch_width")
+    def make(self) -> None:
+        """Panes and figures, made once."""
+        self.sentence, self.table = pane(), pane()
         self.margins = figures.plot("margin to the limit [%]", "", height=120, y_range=[], x_range=(0, 100), tools="")
         self.bars = figures.source(check=[], margin=[], colour=[], hatch=[], said=[], words=[], end=[])
         bar = self.margins.hbar(
@@ -98,35 +45,21 @@ class _Side(Side):
         self.margins.add_layout(Span(location=0, dimension="height", line_color=figures.INK))
         figures.hover(self.margins, [bar], [("check", "@check"), ("margin", "@margin{0.0} %"), ("", "@said")])
         self.torque = Curves("input speed", "torque [N·m]", height=320, title="torque over speed")
-        self.table = pn.pane.HTML("", sizing_mode="stretch_width")
-        self.help = Help(session)
-        self.panel = pn.Column(
-            self.sentence,
-            pn.pane.Bokeh(self.margins, sizing_mode="stretch_width"),
-            self.help.panel,
-            self.torque.panel,
-            self.table,
-            sizing_mode="stretch_width",
-            margin=0,
-        )
+        self.help = Help(self.view.session)
+        margins = pn.pane.Bokeh(self.margins, sizing_mode="stretch_width")
+        self.panel = column(self.sentence, margins, self.help.panel, self.torque.panel, self.table)
         self.binding = ""
         self.course: Any = {}
 
-    def show(self, name: str, data: Any) -> None:
-        """The verdict, or the torque of what binds."""
-        if name == "assessment":
-            self._verdict(data)
-        elif not self.course:
-            self._torque(data)
-
-    def _verdict(self, data: Any) -> None:
+    def show_assessment(self, step: Step, data: Any) -> None:
+        """The verdict, its margins and checks, and what binds over speed."""
         self.binding = data["element"]
         self.limit = (data["limit"], data["quantity"])
         self.course = data["course"] if data["quantity"] != "N*m" else {}
         if self.course:
             self._binding_course(self.course)
-        kind = html.escape(data["verdict"].replace(" ", "-"))
-        self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{html.escape(data['sentence'])}</p>"
+        kind = plain(data["verdict"].replace(" ", "-"))
+        self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{plain(data['sentence'])}</p>"
         judged = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True)
                   if np.isfinite(m) and r["status"] in COLOURS]  # fmt: skip
         rows = judged[:MOST] + [(r, 0.0) for r in data["rows"] if r["status"] == "not judged"][:MOST]
@@ -153,42 +86,40 @@ class _Side(Side):
         place = PLACE * longest * (high - low)  # for the words behind the longest bar
         self.margins.x_range.update(start=low, end=high + place)
         self.table.object = _table(data)
-        self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.keywords())
+        self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.load())
 
     def _binding_course(self, data: Any) -> None:
         """What binds over speed, with its limits, where that is not a torque."""
-        unit, factor = unit_of(self.view.line_of(self))
+        unit, factor = unit_of(self.line)
         x = data["speed"] * factor
-        curves = [(name, x, values) for name, values in zip(data["names"], data["values"], strict=True)]
-        free = len(curves) - data["limits"]
-        quantity = data["quantity"]
+        free, quantity = len(data["names"]) - data["limits"], data["quantity"]
+        looks = [(figures.COLOURS[k % len(figures.COLOURS)], "dashed" if k else "solid") for k in range(free)]
+        looks += [(figures.INK, ("dotted", "dotdash")[k % 2]) for k in range(data["limits"])]
         self.torque.set(
-            curves,
-            colours=[figures.COLOURS[k % len(figures.COLOURS)] for k in range(free)] + [figures.INK] * data["limits"],
-            dashes=["solid"] + ["dashed"] * (free - 1) + ["dotted", "dotdash"][: data["limits"]],
+            [Curve(name, x, y, *look) for name, y, look in zip(data["names"], data["values"], looks, strict=True)],
             x=f"input speed [{unit}]",
             y=f"{quantity.rpartition(' of ')[0]} [{data['unit']}]",
             title=f"{quantity} over speed, with its limit",
         )
 
-    def _torque(self, data: Any) -> None:
-        unit, factor = unit_of(self.view.line_of(self))
+    def show_torque_limits(self, step: Step, data: Any) -> None:
+        """The torque of what binds, or of all shafts, where no other quantity does."""
+        if self.course:
+            return
+        unit, factor = unit_of(self.line)
         springs = data["springs"]
         shown = [springs.index(self.binding)] if self.binding in springs else list(range(len(springs)))
         x = data["speed"] * factor
-        curves = [(f"{springs[i]}: vibratory", x, data["vibratory"][:, i]) for i in shown]
-        curves += [(f"{springs[i]}: largest", x, data["peak"][:, i]) for i in shown]
-        colours = [figures.COLOURS[k % len(figures.COLOURS)] for k in range(len(shown))] * 2
-        dashes = ["solid"] * len(shown) + ["dashed"] * len(shown)
+        curves = [
+            Curve(f"{springs[i]}: {word}", x, data[key][:, i], figures.COLOURS[k % len(figures.COLOURS)], dash)
+            for word, key, dash in (("vibratory", "vibratory", "solid"), ("largest", "peak", "dashed"))
+            for k, i in enumerate(shown)
+        ]
         limit, quantity = self.limit
         if len(shown) == 1 and quantity == "N*m" and np.isfinite(limit):
-            curves.append(("limit", x, np.full(len(x), limit)))
-            colours, dashes = [*colours, figures.ORANGE], [*dashes, "dotted"]
+            curves.append(Curve("limit", x, np.full(len(x), limit), figures.ORANGE, "dotted"))
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
-        title = f"torque of {whose}"
-        self.torque.set(
-            curves, colours=colours, dashes=dashes, x=f"input speed [{unit}]", y="torque [N·m]", title=title
-        )
+        self.torque.set(curves, x=f"input speed [{unit}]", y="torque [N·m]", title=f"torque of {whose}")
 
 
 def _words(status: str, margin: float) -> str:
@@ -208,6 +139,43 @@ def _table(data: Any) -> str:
         cells = (
             f"{v} {unit}" if v and key.startswith("speed") else str(v) for key, v in (row | {"rule": rule}).items()
         )
-        body += "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
-    said = "".join(f"<li>{html.escape(f)}</li>" for f in data["findings"])
-    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div><ul>{said}</ul>"
+        body += "<tr>" + "".join(f"<td>{plain(cell)}</td>" for cell in cells) + "</tr>"
+    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div>{items(data['findings'])}"
+
+
+class VerdictView(View):
+    """The assessment."""
+
+    name = "verdict"
+    about = "Every limit of the line and every rule that applies, over its speeds; the check that binds comes first."
+    side = _Side
+    defaults = {"load": ALL}
+    fields = {"load": lambda: select("Load", options=[ALL], width=260)}
+
+    def adapt(self, line: Driveline) -> None:
+        """Load cases of the line."""
+        self.choose("load", [ALL, *load_cases(line)])
+
+    def steps(self, line: Driveline) -> list[Step]:
+        """The assessment, then the torques that its limits stand against."""
+        keywords = self.load()
+        low, high = speed_range(line)
+        speeds = Call("tn.sweep_speeds", (LINE, low, high))
+        return [
+            Step(
+                "assessment",
+                Call("tn.assess", (LINE,), keywords),
+                "assessment",
+                picture="",
+                files=("csv", "nc"),
+                title="checks",
+            ),
+            Step(
+                "torque",
+                Call("tn.order_response", (LINE, speeds), keywords),
+                "torque_limits",
+                picture="plot",
+                files=("nc",),
+                title="torque over speed",
+            ),
+        ]

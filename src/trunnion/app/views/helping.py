@@ -2,43 +2,35 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import panel as pn
 
 from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.app.calls import LINE, Call
+from trunnion.app.pieces import column, pane, plain
 from trunnion.app.variants import with_number
+from trunnion.app.views.base import Host
 from trunnion.equations.coefficients import assemble
-
-if TYPE_CHECKING:
-    from trunnion.app.session import Session
 
 MOST = 2
 """Changes that are looked for at each check."""
 
 
-def remedies_call(keywords: Mapping[str, Any]) -> Call:
-    """The search for changes."""
-    return Call("tn.remedies", (LINE,), {**keywords, "most": MOST})
-
-
 class Help:
     """A button that searches, and a button beside each change that makes it."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Host) -> None:
         self.session = session
         self.keywords: Mapping[str, Any] = {}
         self.toml = ""
         self.search = pn.widgets.Button(label="What would help?", button_type="primary", width=180)
-        self.search.on_click(lambda event: self.session.beside(self._search()))
+        self.search.on_click(lambda event: session.beside(self._search()))
         self.limits = pn.widgets.Button(label="State limits", width=140)
-        self.limits.on_click(lambda event: self.session.state_limits())
-        self.list = pn.Column(sizing_mode="stretch_width", margin=0)
-        row = pn.Row(self.search, self.limits, margin=0)
-        self.panel = pn.Column(row, self.list, sizing_mode="stretch_width", margin=0)
+        self.limits.on_click(lambda event: session.state_limits())
+        self.list = column()
+        self.panel = column(pn.Row(self.search, self.limits, margin=0), self.list)
 
     def clear(self, needed: bool, keywords: Mapping[str, Any]) -> None:
         """A new verdict makes old remedies void."""
@@ -50,7 +42,8 @@ class Help:
 
     async def _search(self) -> None:
         self.toml = self.session.document.toml
-        found = await self.session.ask(remedies_call(self.keywords), "remedies", "now")
+        call = Call("tn.remedies", (LINE,), {**self.keywords, "most": MOST})
+        found = await self.session.ask(call, "remedies", "now")
         self.session.locked(lambda: self._show(found))
 
     def _show(self, found: list[dict[str, Any]]) -> None:
@@ -58,7 +51,7 @@ class Help:
         for remedy in found:
             button = pn.widgets.Button(label="Try it", width=80, align="center")
             button.on_click(lambda event, remedy=remedy: self._try(remedy))
-            text = pn.pane.HTML(f"<span>{html.escape(remedy['sentence'])}</span>", sizing_mode="stretch_width")
+            text = pane(f"<span>{plain(remedy['sentence'])}</span>")
             rows.append(pn.Row(button, text, sizing_mode="stretch_width", margin=0))
         none = "<p>No single change of stiffness, inertia, damping, angle or phase was found that helps.</p>"
         self.list.objects = rows or [pn.pane.HTML(none)]

@@ -1,0 +1,185 @@
+"""What the editor shows of a driveline file: groups of fields, with what is wrong beside the field it concerns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from trunnion.driveline.field_text import label_of, text_of
+from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.limits import LIMIT_KINDS, Limit
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
+from trunnion.errors import InputError
+
+Path = tuple[str | int, ...]
+_PLACE = re.compile(r"\(element ([0-9]+)\)$|^element ([0-9]+)$")
+_WHOLE = {"name": None, "description": None, "damping_ratio": RATIO, "damping_ratio_frequency": SPEED}
+_EXAMPLE_SPEEDS = {"rpm": "1500 rpm", "Hz": "25 Hz", "rad/s": "157 rad/s"}
+LOAD_CASE, LOADS, LOAD_KIND = "load_case", "loads", "load case"
+_HIDDEN = ("type", "after", "name")
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of the editor: where it stands, its name, text, hint and what is wrong with it."""
+
+    path: Path
+    label: str
+    text: str
+    hint: str = ""
+    message: str = ""
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Group:
+    """Fields that belong together: the whole line, its operation, an element, a limit."""
+
+    path: Path
+    title: str
+    kind: str
+    fields: tuple[Field, ...]
+    addable: tuple[str, ...] = ()
+    message: str = ""
+
+
+class _Complaints:
+    """What is still to be said of a file; each is taken off by the field or the group that says it."""
+
+    def __init__(self, problems: Iterable[InputError]) -> None:
+        self.left = list(problems)
+
+    def about(self, owners: tuple[Any, ...], key: str | None = None) -> list[InputError]:
+        """Those of an owner, by name or as ("element", number), and of one of its keys."""
+        return [e for e in self.left if _owns(e, owners) and key in (None, e.key)]
+
+    def said(self, owners: tuple[Any, ...], key: str) -> str:
+        """What is said of one field."""
+        mine = self._taken(owners, key)
+        return "; ".join(f"{e.problem}{'; ' + e.remedy if e.remedy else ''}" for e in mine)
+
+    def rest(self, owners: tuple[Any, ...]) -> str:
+        """What is said of a group, once its fields have taken theirs."""
+        return "\n".join(map(str, self._taken(owners)))
+
+    def _taken(self, owners: tuple[Any, ...], key: str | None = None) -> list[InputError]:
+        mine = self.about(owners, key)
+        for error in mine:
+            self.left.remove(error)
+        return mine
+
+
+def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Group, ...]:
+    """Everything that can be edited; what concerns no group is said of the whole."""
+    left = _Complaints(problems)
+    elements, operation = data.get("element", []), data.get("operation", {})
+    names, disks = names_of(elements), disks_of(elements)
+    groups = [_whole(data, left), _operation(operation, left)]
+    groups += [_load_case(i, case, disks, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
+    groups += [_element(i, table, names[i], left) for i, table in enumerate(elements)]
+    groups += [_limit(i, table, left) for i, table in enumerate(data.get("limit", []))]
+    if left.left:
+        groups[0] = replace(groups[0], message="\n".join(map(str, left.left)))
+    return tuple(groups)
+
+
+def _whole(data: Mapping[str, Any], left: _Complaints) -> Group:
+    fields = [
+        Field((key,), label_of(key), text_of(data[key], kind), message=left.said(("", "driveline"), key))
+        for key, kind in _WHOLE.items()
+        if key in data
+    ]
+    return Group((), "line", "", tuple(fields), tuple(k for k in _WHOLE if k not in data))
+
+
+def _operation(table: Mapping[str, Any], left: _Complaints) -> Group:
+    path = owners = ("operation",)
+    unit = table.get("speed_unit", "rpm")
+    example = _EXAMPLE_SPEEDS.get(unit, "157 rad/s")
+    speed = text_of(table.get("speed", ""), SPEED)
+    fields = [Field((*path, "speed"), "speed", speed, example, left.said(owners, "speed"))]
+    for key, kind, hint, names in (
+        ("speed_range", SPEED, example, ("lowest speed", "highest speed")),
+        ("angle_range", ANGLE, "15 deg", ("smallest angle", "largest angle")),
+    ):
+        stated = table.get(key)
+        ends = [*stated, "", ""] if isinstance(stated, list) else ["", ""]
+        said = (left.said(owners, key), "")
+        for i, name in enumerate(names):
+            fields.append(Field((*path, key, i), name, text_of(ends[i], kind), hint, said[i]))
+    said_unit = left.said(owners, "speed_unit")
+    fields.append(Field((*path, "speed_unit"), "unit of speeds", unit, "", said_unit, tuple(_EXAMPLE_SPEEDS)))
+    return Group(path, "operation", "", tuple(fields), (), left.rest(owners))
+
+
+def _load_case(place: int, table: Any, disks: Sequence[str], left: _Complaints) -> Group:
+    """A field for every disk; an empty one leaves the disk its own torque."""
+    path: Path = ("operation", LOAD_CASE, place)
+    table = table if isinstance(table, dict) else {}
+    name, stated = str(table.get("name", "")), table.get(LOADS)
+    owners = (f"load case {name}", f"load case {place + 1}")
+    fields = [Field((*path, "name"), "name", name, "full load", left.said(owners, "name"))]
+    loads = stated if isinstance(stated, dict) else {}
+    for disk in dict.fromkeys([*disks, *loads]):
+        text = text_of(loads.get(disk, ""), TORQUE)
+        fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", left.said(owners, disk)))
+    return Group(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
+
+
+def _element(place: int, table: Mapping[str, Any], name: str, left: _Complaints) -> Group:
+    path: Path = ("element", place)
+    kind = str(table.get("type", ""))
+    owners = (name, f"element {place + 1}", ("element", place + 1))
+    model = KINDS.get(kind)
+    known = list(model.model_fields) if model else []
+    wanting = {e.key for e in left.about(owners)}
+    shown = [k for k in known if k in table or k in wanting]
+    fields = [Field((*path, "name"), "name", str(table.get("name", "")), name, left.said(owners, "name"))]
+    for key in dict.fromkeys([*shown, *table]):
+        if key not in _HIDDEN:
+            quantity = model.quantity_of(key) if model and key in known else None
+            hint = quantity.example if quantity else ""
+            text = text_of(table.get(key, ""), quantity)
+            fields.append(Field((*path, key), label_of(key), text, hint, left.said(owners, key)))
+    if "after" in table or "after" in wanting:
+        after = str(table.get("after", ""))
+        fields.append(Field((*path, "after"), "after", after, "", left.said(owners, "after")))
+    addable = dict.fromkeys(k for k in (*known, "after") if k not in table and k != "name" and k not in shown)
+    return Group(path, name, kind, tuple(fields), tuple(addable), left.rest(owners))
+
+
+def _limit(place: int, table: Mapping[str, Any], left: _Complaints) -> Group:
+    path: Path = ("limit", place)
+    of = str(table.get("of", ""))
+    owners = (f"limit of {of}", f"limit {place + 1}")
+    fields = []
+    for key, value in table.items():
+        kind = LIMIT_KINDS.get(key)
+        hint = kind.example if kind else ""
+        fields.append(Field((*path, key), label_of(key), text_of(value, kind), hint, left.said(owners, key)))
+    addable = tuple(k for k in Limit.model_fields if k not in table)
+    return Group(path, f"limit of {of}", "limit", tuple(fields), addable, left.rest(owners))
+
+
+def names_of(tables: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Names of elements, those that a file leaves out included."""
+    seen: dict[str, int] = {}
+    names = []
+    for table in tables:
+        kind = str(table.get("type", "element"))
+        seen[kind] = seen.get(kind, 0) + 1
+        names.append(str(table.get("name") or f"{kind} {seen[kind]}"))
+    return names
+
+
+def disks_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Names of the elements that a load acts on."""
+    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") == "Disk"]
+
+
+def _owns(error: InputError, owners: tuple[Any, ...]) -> bool:
+    place = _PLACE.search(error.element)
+    number = int(place.group(1) or place.group(2)) if place else None
+    return error.element in owners or (number is not None and ("element", number) in owners)
