@@ -16,8 +16,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
@@ -29,7 +30,6 @@ from trunnion.systems.system import System
 if TYPE_CHECKING:
     from trunnion.numerics.integration.integration import Watch
 
-Array = NDArray[np.float64]
 SETTLED = 1e-8
 """Tolerance of motions that only have to come near an orbit."""
 SAME = 1e-9

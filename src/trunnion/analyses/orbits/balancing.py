@@ -12,22 +12,19 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
 from trunnion.analyses.orbits.branch import PeriodicBranch, Problem, collect, follow_both_ways
+from trunnion.arrays import Array
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.declared import Held, Result, over, remark
+from trunnion.results.drawing import Axes
 from trunnion.results.outcome import Outcome
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.analyses.orbits.piecewise_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
+from trunnion.arrays import Array, Integers
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 LEAST, MOST, SAME = 20, 2000, 1e-9
 """Periods that a start gets at least and at most; change per period that counts as settled."""
 ONE_ATTRACTOR = 1e-5
@@ -34,7 +30,7 @@ class Basins(Result):
 
     position: Array
     velocity: Array
-    number: NDArray[np.int64]
+    number: Integers
     attractors: tuple[PiecewiseOrbit, ...]
 
     @property

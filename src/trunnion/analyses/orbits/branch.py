@@ -14,24 +14,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
 from trunnion.numerics.continuation.newton import solve
 from trunnion.results.declared import Held, Result, axis, ending, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Progress = Callable[[float], None]
 CLOSE = 1e-9
 """Size of the last correction of a point, in units of the scales."""
@@ -138,7 +133,7 @@ class PeriodicBranch(Result):
     parameter: Array
     start: Array
     multipliers: Complex
-    verdict: NDArray[np.int8]
+    verdict: Codes
     peak_to_peak: Array
     largest: Array
     amplitude: Array
@@ -150,7 +145,7 @@ class PeriodicBranch(Result):
     unknowns: Array = field(repr=False)
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Flags:
         """Where the motion is stable, (points,)."""
         return np.asarray(self.verdict == Verdict.STABLE)
 

@@ -12,16 +12,14 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.branch import Names
+from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.systems.maps import Passage, PeriodMap
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 M = TypeVar("M", bound=PeriodMap)
 C = TypeVar("C", bound="Closing[Any]")
 SETTLING = (0, 50, 500)

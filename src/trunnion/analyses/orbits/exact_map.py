@@ -14,8 +14,8 @@ from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Integers
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
@@ -23,7 +23,6 @@ from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPas
 from trunnion.systems.maps import Observed, Passage
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-Array = NDArray[np.float64]
 SAMPLES = 512
 """Of a period, for the fundamental; a power of two times any usual number of periods."""
 LEAST_TWIST = 1e-6
@@ -151,7 +150,7 @@ class LineMap(ExactMap):
         return self.periods * self.line.period(self.value)
 
     @cached_property
-    def kept(self) -> NDArray[np.int64]:
+    def kept(self) -> Integers:
         """Places of the map's states among the line's."""
         still = {row for row, _ in self.stuck}
         return np.array([i for i in self.line.kept if i not in still])

@@ -12,13 +12,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.exact_motion import StageEvents, first_stages, stage_events, start_state
 from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close
 from trunnion.analyses.orbits.exact_map import LineMap
 from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
 from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
@@ -26,13 +27,11 @@ from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING, Verdict
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 SETTLED = 100
 """Periods after which a motion shows which sliders stick."""
 SINGULAR = 1e-12
@@ -105,16 +104,13 @@ class ExactOrbit(Result):
         yield axis("spring", self.springs)
         yield over("time spring", "twist", states[:, :count], "rad")
         yield over("time spring", "torque", torque, "N*m")
-        for name in ("twist_low", "twist_high", "twist_mean"):
-            yield over("spring", name, getattr(self, name), "rad")
-        for name in ("torque_low", "torque_high", "torque_mean", "torque_peak_to_peak"):
-            yield over("spring", name, getattr(self, name), "N*m")
+        yield from fields_over("spring", self, twist_low="rad", twist_high="rad", twist_mean="rad")
+        yield from fields_over("spring", self, torque_low="N*m", torque_high="N*m", torque_mean="N*m")
+        yield from fields_over("spring", self, torque_peak_to_peak="N*m")
         yield over("event", "event_time", self.events.time, "s")
         yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("", "period", self.period, "s")
-        yield over("", "clearance", self.clearance, "rad")
-        yield over("", "slowest_crossing", self.slowest_crossing, "rad/s")
+        yield from fields_over("", self, period="s", clearance="rad", slowest_crossing="rad/s")
         yield remark("driveline", self.line.name)
         yield remark("verdict", str(self.verdict))
         yield remark("value", self.value)
@@ -268,11 +264,8 @@ def contacts_of(line: StagedLine, start: Array, run: StagedPassage, length: floa
         landed = (sides[1:] != 0) & (sides[:-1] == 0)
         speeds = np.abs(events.rate[own][landed])
         shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / length
-        touched = {int(s) for s in line.sides[e, : line.counts[e]][shares > 0]}
-        where = "both" if {1, -1} <= touched else "upper" if 1 in touched else "lower" if -1 in touched else "none"
-        play = float(shares[line.sides[e, : line.counts[e]] == 0].sum())
-        energy = float(np.sum(speeds**2)) / (2 * line.inverse[e, e])
-        found.append(SpringContact(line.springs[e], shares, play, where, speeds, energy))
+        stages = line.sides[e, : line.counts[e]]
+        found.append(SpringContact.of(line.springs[e], shares, stages, speeds, 1 / line.inverse[e, e]))
     return tuple(found)
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.exact_map import LineMap
@@ -15,25 +14,21 @@ from trunnion.analyses.orbits.exact_orbit import contacts_of
 from trunnion.analyses.orbits.piecewise_branch import line_over
 from trunnion.analyses.orbits.spring_contacts import SpringContact
 from trunnion.analyses.orbits.sweeping import jumps, stepped, upwards
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remark
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, repr=False)
-class LineSweep(Result):
+class LineSweep(Described):
     """Steady motions of a line, in the order it was swept.
 
     value (points,) [rad/s]: speed, or common frequency of excitation in time; torque_low, torque_high (points, spring)
@@ -47,8 +42,8 @@ class LineSweep(Result):
     torque_low: Array
     torque_high: Array
     contacts: tuple[tuple[SpringContact, ...], ...] = field(repr=False)
-    settled: NDArray[np.bool_]
-    periods: NDArray[np.int64]
+    settled: Flags
+    periods: Integers
     state: Array
     outcome: Outcome
 
@@ -107,13 +102,11 @@ class LineSweep(Result):
         yield axis(clock, self.value, "rad/s")
         yield axis("spring", self.springs)
         yield axis("staged_spring", staged)
-        yield over(f"{clock} spring", "torque_low", self.torque_low, "N*m")
-        yield over(f"{clock} spring", "torque_high", self.torque_high, "N*m")
+        yield from fields_over(f"{clock} spring", self, torque_low="N*m", torque_high="N*m")
         yield over(f"{clock} staged_spring", "impacts", impacts)
         yield over(f"{clock} staged_spring", "impact_energy", energy, "J")
         yield over(f"{clock} staged_spring", "contact", sides)
-        yield over(clock, "settled", self.settled)
-        yield over(clock, "periods", self.periods)
+        yield from fields_over(clock, self, settled="", periods="")
         yield remark("driveline", self.line.name)
         yield remark("direction", "up" if self.up else "down")
         yield from ending(self.outcome)
@@ -153,9 +146,6 @@ class LineSweep(Result):
                 f"  jumps: {jumps}; {self.outcome}",
             ]
         )
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def exact_sweep(

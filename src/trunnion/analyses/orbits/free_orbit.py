@@ -14,12 +14,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.closing import Phase, close
 from trunnion.analyses.orbits.judging import IntegratedClosing, Neutral
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, closing_of, judged
+from trunnion.arrays import Array
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.aligned import rigid_rotation
@@ -30,7 +31,6 @@ from trunnion.errors import InputError
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 BESIDE = 1e-5
 """Step of differences by the mean speed, over it."""
 

@@ -4,28 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.branch import PeriodicBranch
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Described, Held, ending, over, remark
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
 from trunnion.results.verdict import Verdict
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, repr=False)
-class FrequencyResponse(Result):
+class FrequencyResponse(Described):
     """Half peak-to-peak over frequency by one method.
 
     frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
@@ -37,7 +32,7 @@ class FrequencyResponse(Result):
     method: str
     frequency: Array
     half_peak_to_peak: Array
-    stable: NDArray[np.bool_]
+    stable: Flags
     marks: tuple[tuple[str, float, float], ...]
     outcome: Outcome
     seconds: float
@@ -118,12 +113,9 @@ class FrequencyResponse(Result):
         )
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
-    def __str__(self) -> str:
-        return self.describe()
-
 
 @dataclass(frozen=True, repr=False)
-class ResponseComparison(Result):
+class ResponseComparison(Described):
     """Several methods side by side; the first is what the others are measured against."""
 
     responses: Mapping[str, FrequencyResponse]
@@ -181,9 +173,6 @@ class ResponseComparison(Result):
         return "\n".join(
             "  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows
         )
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def place_of(curves: Sequence[str], curve: str) -> int:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.balancing import SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP
@@ -24,6 +24,7 @@ from trunnion.analyses.orbits.harmonic_equations import FEWEST, HarmonicEquation
 from trunnion.analyses.orbits.judging import CLEAR, IntegratedClosing
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
@@ -34,8 +35,6 @@ from trunnion.numerics.curves import extremes
 from trunnion.results.declared import Held, over
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 MOST = 256
 """Harmonics that a tail is answered with, at most."""
 TAIL, KINKED_TAIL = 1e-6, 1e-4

@@ -16,12 +16,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP, Names
 from trunnion.analyses.orbits.closing import by_modulus
 from trunnion.analyses.orbits.piecewise_branch import check_range
+from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow
@@ -29,8 +30,6 @@ from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
 from trunnion.systems.second_order import SecondOrder, Spring
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 FEWEST, MOST = 10, 160
 """Harmonics to begin with, and the most that a tail is answered with."""
 PER_HARMONIC, FEWEST_SAMPLES = 8, 256

@@ -13,15 +13,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.balancing import Series
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 FEWEST = 8
 """Harmonics to begin with, and those whose samples are the fewest taken."""
 SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.closing import Closing, by_modulus
+from trunnion.arrays import Array, Complex
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
@@ -24,8 +24,6 @@ from trunnion.results.verdict import Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 EXACT_ERROR = 1e-9
 """What the spectral radius of a motion known to rounding may be off by."""
 COARSER = 30.0

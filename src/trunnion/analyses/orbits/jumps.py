@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from trunnion.arrays import Array
 
 JUMP, ABRUPT = 0.25, 2.0
 """A change between neighbours is a jump if it is this share of the larger swing and that many times those beside."""
@@ -11,7 +12,7 @@ STEEPENING = 4.0
 """How many times steeper the flank of a resonance may get from step to step of a coarse grid."""
 
 
-def abrupt_changes(swing: NDArray[np.float64]) -> list[int]:
+def abrupt_changes(swing: Array) -> list[int]:
     """Places i where a response (points,) changes abruptly from i to i + 1."""
     change = np.abs(np.diff(swing))
     if len(change) < 3:

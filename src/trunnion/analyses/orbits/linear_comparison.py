@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.stability import Stability, stability
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import ComputationError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

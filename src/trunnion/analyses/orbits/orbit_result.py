@@ -5,25 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array, Complex
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import Trajectory
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remark
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axis
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,10 +90,7 @@ class PeriodicOrbit(Result):
             yield over("time", name, self.state[:, i], unit)
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield over("", "spectral_radius", self.spectral_radius, "1")
-        yield over("", "error_estimate", self.error_estimate, "1")
-        yield over("", "growth_rate", self.growth_rate, "1/s")
-        yield over("", "period", self.period, "s")
+        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
         yield remark("system", self.system.name)
         yield remark("verdict", str(self.verdict))
         yield from ending(self.outcome)

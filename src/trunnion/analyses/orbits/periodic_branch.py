@@ -8,7 +8,7 @@ the parameter. A line that starts free keeps its mean speed by its drives, as in
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.analyses.orbits.closing import Phase
@@ -17,13 +17,13 @@ from trunnion.analyses.orbits.judging import IntegratedClosing
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.analyses.orbits.systems_over import LINE_SCALE, SystemOver, system_over
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 TOLERANCE = 1e-11
 MOST_POINTS = 2000
 

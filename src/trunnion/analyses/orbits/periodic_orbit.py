@@ -11,12 +11,13 @@ from the difference of Φ at two tolerances, and checked by Liouville's identity
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.analyses.orbits.closing import Phase, checked_periods, close
 from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, rests
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.integration.integration import End, Trajectory
@@ -26,7 +27,6 @@ from trunnion.results.verdict import Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 TOLERANCE = 1e-11
 SAMPLES = 512
 LEFT = 200.0

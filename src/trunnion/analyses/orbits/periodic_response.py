@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.simulation import simulate_system
 from trunnion.analyses.orbits.free_orbit import (
@@ -26,6 +25,7 @@ from trunnion.analyses.orbits.linear_comparison import LinearComparison, compare
 from trunnion.analyses.orbits.orbit_result import PeriodicOrbit, speed_in_words
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly
@@ -34,26 +34,21 @@ from trunnion.equations.loads import given_shares
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.curves import Extremes, extremes, fourier
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.system import System
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 FEWEST_SAMPLES = 2048
 """Of the torque over a period, as it is shown; with more than half as many steps it has more."""
 ORDERS = 12
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicResponse(Result):
+class PeriodicResponse(Judged):
     """The periodic motion of a line at one speed.
 
     torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
@@ -68,7 +63,7 @@ class PeriodicResponse(Result):
     no_comparison: str
 
     @property
-    def unit(self) -> str:
+    def unit(self) -> str:  # type: ignore[override]
         """Unit that speeds are printed in: that of the line's description."""
         return speed_unit(self.line.assembly.line)
 
@@ -172,7 +167,7 @@ class PeriodicResponse(Result):
     @cached_property
     def contacts(self) -> tuple[SpringContact, ...]:
         """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
-        return spring_contacts(self)
+        return spring_contacts(self.line, self.orbit)
 
     def order_torque(self, highest: float = ORDERS) -> tuple[Array, Complex]:
         """Orders (k,) in cycles per turn of the input, and complex torques (k, shaft) [N m]; order 0 is the mean.
@@ -199,11 +194,6 @@ class PeriodicResponse(Result):
         orders, torque = self.order_torque(highest)
         return orders, np.abs(torque)
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first."""
-        return self.findings_in(self.unit)
-
     def findings_in(self, unit: str) -> tuple[Finding, ...]:
         """What to read first, speeds in ``unit``."""
         return by_gravity(_findings(self, unit))
@@ -214,18 +204,12 @@ class PeriodicResponse(Result):
         yield axis("time", self.time, "s")
         yield axis("shaft", self.shafts)
         yield axis("order", orders, "1", "cycles per turn of the input")
-        yield over("time shaft", "twist", self.twist, "rad")
-        yield over("time shaft", "torque", self.torque, "N*m")
-        yield over("shaft", "torque_peak_to_peak", self.torque_peak_to_peak, "N*m")
-        yield over("shaft", "peak_torque", self.peak_torque, "N*m")
-        yield over("shaft", "torque_mean", self.torque_mean, "N*m")
+        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
+        yield from fields_over("shaft", self, torque_peak_to_peak="N*m", peak_torque="N*m", torque_mean="N*m")
         yield over("order shaft", "order_amplitude", amplitude, "N*m")
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("multiplier_number", "multiplier_error", self.orbit.multiplier_error, "1")
-        yield over("", "spectral_radius", self.spectral_radius, "1")
-        yield over("", "growth_rate", self.growth_rate, "1/s")
-        yield over("", "period", self.period, "s")
-        yield over("", "speed", self.speed, "rad/s")
+        yield from fields_over("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
         yield remark("driveline", self.orbit.system.name)
         yield remark("verdict", str(self.verdict))
         yield from ending(self.outcome)
@@ -261,9 +245,6 @@ class PeriodicResponse(Result):
                 f"  {self.outcome}",
             ]
         )
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def periodic_response(

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 from typing import overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close, refuse_speed
 from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.analyses.orbits.exact_orbit import ExactOrbit, exact_orbit
 from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
+from trunnion.analyses.orbits.spring_contacts import contact_state
+from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
@@ -29,16 +31,9 @@ from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "clearance")
 CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
-
-
-def contact_state(sides: str) -> str:
-    """none, one-sided or two-sided."""
-    return {"none": "none", "both": "two-sided"}.get(sides, "one-sided")
 
 
 @dataclass(frozen=True, repr=False)

@@ -10,29 +10,29 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.closing import refuse_speed
 from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.analyses.orbits.exact_sweep import LineSweep, exact_sweep
-from trunnion.analyses.orbits.piecewise_orbit import CONTACT, contact_state, refuse_unbounded
+from trunnion.analyses.orbits.piecewise_orbit import CONTACT, refuse_unbounded
+from trunnion.analyses.orbits.spring_contacts import contact_state
 from trunnion.analyses.orbits.sweeping import LEAST, MOST, SAME, jumps, stepped, upwards
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 BYTES_A_STEP = 128.0
 """What one frequency holds for each number of the state."""
 
@@ -55,8 +55,8 @@ class Sweep(Result):
     impacts: Array
     impact_energy: Array
     impact_impulse: Array
-    settled: NDArray[np.bool_]
-    periods: NDArray[np.int64]
+    settled: Flags
+    periods: Integers
     state: Array
     outcome: Outcome
 

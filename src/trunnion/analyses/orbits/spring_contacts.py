@@ -8,21 +8,25 @@ two ends of the spring, 1/m = eᵀM⁻¹e; its sum over a period is the rattle i
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.arrays import Array, Integers
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.line_regimes import StagedSpring, staged_springs
+from trunnion.equations.line_system import LineSystem
 
-if TYPE_CHECKING:
-    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
-
-Array = NDArray[np.float64]
 SIDES = {"lower": "drive side", "upper": "coast side", "both": "drive and coast sides"}
 AHEAD = 1e-6
 """Over the period: how long before an impact the rate of twist is taken."""
+_TOUCHED = {frozenset(): "none", frozenset({-1}): "lower", frozenset({1}): "upper", frozenset({-1, 1}): "both"}
+
+
+def contact_state(sides: str) -> str:
+    """none, one-sided or two-sided."""
+    return {"none": "none", "both": "two-sided"}.get(sides, "one-sided")
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,14 @@ class SpringContact:
     approach_speeds: Array
     impact_energy: float
 
+    @classmethod
+    def of(cls, spring: str, shares: Array, sides: Integers, approach_speeds: Array, inertia: float) -> Self:
+        """From the share of every stage, the side that it stands for (−1, 0 in the softest, 1), both (stages,), and the
+        landings of an effective inertia [kg m²]."""
+        touched = frozenset(sides[shares > 0].tolist()) - {0}
+        energy = 0.5 * inertia * float(np.sum(approach_speeds**2))
+        return cls(spring, shares, float(shares[sides == 0].sum()), _TOUCHED[touched], approach_speeds, energy)
+
     @property
     def impacts(self) -> int:
         """Landings per period of the motion."""
@@ -49,7 +61,7 @@ class SpringContact:
     @property
     def contact(self) -> str:
         """none, one-sided or two-sided."""
-        return {"none": "none", "both": "two-sided"}.get(self.sides, "one-sided")
+        return contact_state(self.sides)
 
     @property
     def rattles(self) -> bool:
@@ -69,41 +81,35 @@ class SpringContact:
         )
 
 
-def spring_contacts(response: PeriodicResponse) -> tuple[SpringContact, ...]:
-    """Contact of every gear mesh with backlash and every shaft with stages in a periodic response; () without any."""
-    if not response.outcome.ok or response.orbit.system.regimes is None:
+def spring_contacts(line: LineSystem, orbit: PeriodicOrbit) -> tuple[SpringContact, ...]:
+    """Contact of every gear mesh with backlash and every shaft with stages in a periodic motion of a line; () without
+    any."""
+    system, assembly = orbit.system, line.assembly
+    if not orbit.outcome.ok or system.regimes is None:
         return ()
-    line, system = response.line, response.orbit.system
-    row = np.array([system.parameters[label] for label in line.assembly.packed.labels])
-    springs = {e: s for e, s in staged_springs(line.assembly, row).items() if s.stages > 1}
-    assembly = line.assembly
+    row = np.array([system.parameters[label] for label in assembly.packed.labels])
     matrices = aligned_matrices(
         assembly.topology, assembly.coefficients(row[None], statically_twisted=False, free_play=True)
     )
     found = []
-    for e, spring in springs.items():
-        direction = assembly.topology.elongations[e]
-        inertia = 1 / float(np.sum(direction**2 / matrices.mass[0]))
-        found.append(_contact(response, e, spring, inertia))
+    for e, spring in staged_springs(assembly, row).items():
+        if spring.stages > 1:
+            inertia = 1 / float(np.sum(assembly.topology.elongations[e] ** 2 / matrices.mass[0]))
+            found.append(_contact(line, orbit, e, spring, inertia))
     return tuple(found)
 
 
-def _contact(response: PeriodicResponse, place: int, spring: StagedSpring, inertia: float) -> SpringContact:
-    run, line, system = response.orbit.trajectory, response.line, response.orbit.system
+def _contact(line: LineSystem, orbit: PeriodicOrbit, place: int, spring: StagedSpring, inertia: float) -> SpringContact:
+    run = orbit.trajectory
     stage = run.regime // spring.stride % spring.stages
     shares = np.bincount(stage, weights=run.length, minlength=spring.stages) / run.length.sum()
     side = spring.side[stage]
     # The motion is periodic, so the first step follows the last.
     landed = np.flatnonzero((side != 0) & (np.roll(side, 1) == 0))
-    ahead = AHEAD * response.period
-    speeds = []
-    for i in landed:
+    speeds = np.empty(len(landed))
+    for k, i in enumerate(landed):
         end = run.start[i] if i else run.start[-1] + run.length[-1]
-        times = np.array([max(end - ahead, run.start[0]), end])
-        twist = line.observe(system, times, run.at(times)).twist[:, place]
-        speeds.append(abs(twist[1] - twist[0]) / (times[1] - times[0]))
-    touched = {int(s) for s in side}
-    sides = "both" if {1, -1} <= touched else "upper" if 1 in touched else "lower" if -1 in touched else "none"
-    play = float(shares[spring.side == 0].sum())
-    energy = 0.5 * inertia * float(np.sum(np.square(speeds)))
-    return SpringContact(spring.name, shares, play, sides, np.array(speeds), energy)
+        times = np.array([max(end - AHEAD * orbit.period, run.start[0]), end])
+        twist = line.observe(orbit.system, times, run.at(times)).twist[:, place]
+        speeds[k] = abs(twist[1] - twist[0]) / (times[1] - times[0])
+    return SpringContact.of(spring.name, shares, spring.side, speeds, inertia)

@@ -9,13 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap, Settled
 from trunnion.analyses.orbits.jumps import abrupt_changes
+from trunnion.arrays import Array
 
-Array = NDArray[np.float64]
 Place = TypeVar("Place", OscillatorMap, LineMap)
 Seen = TypeVar("Seen")
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.branch import Names
 from trunnion.analyses.orbits.free_orbit import require_kept_speed
 from trunnion.analyses.orbits.periodic_response import require_forced
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.parameters import Parameter
@@ -21,7 +21,6 @@ from trunnion.errors import InputError
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 LINE_SCALE = 30
 """A branch of a line is measured in 0.3 rad, thirty times what its integration is."""
 STEP = 1e-4

@@ -9,22 +9,18 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
+from trunnion.arrays import Array, Flags
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, ending, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 POINTS = 1500
 CEILING = 20.0
 """Largest amplitude looked at, over the largest that damping allows anywhere in the range."""
@@ -51,7 +47,7 @@ class ApproximateResponse(Result):
     frequency: Array
     amplitude: Array
     mean: Array
-    stable: NDArray[np.bool_]
+    stable: Flags
     note: str
     outcome: Outcome
 
