@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from trunnion.analyses.orbits.basins import Basins
-    from trunnion.analyses.orbits.exact_sweep import LineSweep
-    from trunnion.analyses.orbits.piecewise_sweep import Sweep
+    from trunnion.analyses.orbits.sweep_result import LineSweep, Sweep
 
 STYLES = {
     "exact": ("#1a1a1a", 3.0),

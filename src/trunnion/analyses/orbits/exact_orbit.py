@@ -241,7 +241,7 @@ def orbit_at(place: LineMap, part: Array, iterations: int = 0) -> ExactOrbit:
         torque_low=seen[:, k.TORQUE_LOW],
         torque_high=seen[:, k.TORQUE_HIGH],
         torque_mean=seen[:, k.TORQUE_SUM] / length,
-        contacts=contacts_of(line, start, run, length),
+        contacts=contacts_of(place, start, run),
         clearance=float(seen[:, k.CLEARANCE].min()),
         slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
         iterations=iterations,
@@ -250,20 +250,20 @@ def orbit_at(place: LineMap, part: Array, iterations: int = 0) -> ExactOrbit:
     )
 
 
-def contacts_of(line: StagedLine, start: Array, run: StagedPassage, length: float) -> tuple[SpringContact, ...]:
-    """What every spring with stages touches in a watched passage, and how hard it lands.
+def contacts_of(place: LineMap, start: Array, run: StagedPassage) -> tuple[SpringContact, ...]:
+    """What every spring with stages touches in a watched passage from ``start`` (2m,), and how hard it lands.
 
     An impact is a passage from the softest stage to another, its energy ½ m q̇² with the inertia m that the rest of the
     line opposes to a push between the ends of the spring.
     """
+    line, found = place.line, []
     first, events = first_stages(line, start), stage_events(line, run)
-    found = []
     for e in line.staged:
         own = events.spring == e
         sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
         landed = (sides[1:] != 0) & (sides[:-1] == 0)
         speeds = np.abs(events.rate[own][landed])
-        shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / length
+        shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / place.length
         stages = line.sides[e, : line.counts[e]]
         found.append(SpringContact.of(line.springs[e], shares, stages, speeds, 1 / line.inverse[e, e]))
     return tuple(found)

@@ -23,3 +23,9 @@ def abrupt_changes(swing: Array) -> list[int]:
     usual = np.maximum(left, right)
     abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
     return [int(i) for i in np.flatnonzero(abrupt)]
+
+
+def jumps(values: Array, *swings: Array) -> tuple[tuple[float, float], ...]:
+    """Pairs of neighbouring values (points,) between which any swing (points,) changes abruptly, in the order swept."""
+    found = {i for swing in swings for i in abrupt_changes(swing)}
+    return tuple((float(values[i]), float(values[i + 1])) for i in sorted(found))

@@ -1,114 +1,47 @@
-"""A piecewise linear oscillator, or a driveline, on the bench: settled motion over frequency, up or down.
+"""A piecewise linear oscillator, or a driveline, on the bench: a value raised or lowered step by step.
 
-Also the rattle index, what the impacts of a period amount to, over frequency.
+Each step goes on from where the last one ended, settles and is then measured. Also the rattle index, what the impacts
+of a period amount to, over frequency.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, overload
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.closing import refuse_speed
-from trunnion.analyses.orbits.exact_map import OscillatorMap
-from trunnion.analyses.orbits.exact_sweep import LineSweep, exact_sweep
+from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
+from trunnion.analyses.orbits.exact_orbit import contacts_of
+from trunnion.analyses.orbits.piecewise_branch import line_over
 from trunnion.analyses.orbits.piecewise_orbit import CONTACT, refuse_unbounded
-from trunnion.analyses.orbits.spring_contacts import contact_state
-from trunnion.analyses.orbits.sweeping import LEAST, MOST, SAME, jumps, stepped, upwards
+from trunnion.analyses.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.analyses.orbits.sweep_result import LineSweep, Sweep
 from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
-from trunnion.results.drawing import Axes, drawing
+from trunnion.numerics.piecewise_linear.staged_flow import kernel
 from trunnion.results.outcome import Outcome
-from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Place = TypeVar("Place", OscillatorMap, LineMap)
+Seen = TypeVar("Seen")
+Torques = tuple[Array, Array, Array, tuple[SpringContact, ...]]
+"""Lowest and highest torque of every spring, the state that they follow from, and the contacts."""
+LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
+"""Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 BYTES_A_STEP = 128.0
 """What one frequency holds for each number of the state."""
-
-
-@dataclass(frozen=True, repr=False)
-class Sweep(Result):
-    """Steady motion over frequency, in the order it was swept.
-
-    frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
-    impacts, impact_energy Σ m v²/2 and impact_impulse Σ m |v| per period (points,); settled (points,): whether the
-    motion repeats every period; periods (points,): run until then; state (points, 2) at phase zero.
-    """
-
-    oscillator: PiecewiseOscillator
-    frequency: Array
-    lowest: Array
-    highest: Array
-    mean: Array
-    contact: tuple[str, ...]
-    impacts: Array
-    impact_energy: Array
-    impact_impulse: Array
-    settled: Flags
-    periods: Integers
-    state: Array
-    outcome: Outcome
-
-    @property
-    def peak_to_peak(self) -> Array:
-        """Highest minus lowest (points,)."""
-        return self.highest - self.lowest
-
-    @property
-    def up(self) -> bool:
-        """Whether the frequency was raised."""
-        return upwards(self.frequency)
-
-    @property
-    def jumps(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
-        return jumps(self.frequency, self.peak_to_peak[:, None])
-
-    def declared(self) -> Iterator[Held]:
-        """Extremes, impacts and contact over frequency."""
-        names = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "settled")
-        yield axis("frequency", self.frequency, "rad/s")
-        for name in names:
-            yield over("frequency", name, np.asarray(getattr(self, name)))
-        yield over("frequency", "contact", np.array(self.contact, dtype=str))
-        yield over("frequency", "periods", self.periods)
-        yield remark("oscillator", self.oscillator.name)
-        yield remark("direction", "up" if self.up else "down")
-        yield from ending(self.outcome)
-
-    def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
-        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit)
-
-    @property
-    def unit(self) -> str:
-        """What its frequencies read in: Hz, or rad/s for equations of one's own."""
-        return frequency_unit(self.oscillator.speed_unit)
-
-    def __str__(self) -> str:
-        best, factor = int(np.nanargmax(self.peak_to_peak)), speed_factor(self.unit)
-        jumps = ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in self.jumps) or "none"
-        low, high, largest = (self.frequency[i] * factor for i in (0, -1, best))
-        rough = int((~self.settled).sum())
-        kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
-        return (
-            f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
-            f"{low:.6g} to {high:.6g} {self.unit}, {rough} without a motion of one period\n"
-            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {largest:.6g}; "
-            f"jumps: {jumps}\n"
-            f"  contact: {kinds}; {self.outcome}"
-        )
 
 
 @overload
@@ -176,21 +109,17 @@ def sweep(
     needed = BYTES_A_STEP * states * len(omegas)
     require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
     if isinstance(oscillator, Driveline | Assembly):
-        return exact_sweep(oscillator, omegas, start=start, speed=speed, least=least, most=most, same=same)
+        return _of_line(oscillator, omegas, start, speed, least, most, same)
     refuse_speed(oscillator.name, speed)
     for omega in omegas:
         refuse_unbounded(oscillator.but(frequency=float(omega)))
     first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
     maps = [OscillatorMap(float(omega), 1, oscillator) for omega in omegas]
-    rows, settled = np.full((len(omegas), len(COLUMNS)), np.nan), np.zeros(len(omegas), dtype=bool)
-    periods, outcome = np.zeros(len(omegas), dtype=np.int64), Outcome(True, "swept", "every step was run")
-    for i, (found, row) in enumerate(stepped(maps, first, least, most, same, _measured)):
-        settled[i], periods[i] = found.repeats, found.periods
-        if row is None:
-            words = f"the motion at ω = {omegas[i]:g} crosses too often in a period; raise damping"
-            outcome = Outcome(False, "chatter", words)
-            break
-        rows[i] = list(row.values())
+    lost = "the motion at ω = {:g} crosses too often in a period; raise damping"
+    steps = _stepped(maps, first, least, most, same, _measured, lost)
+    rows = np.full((len(omegas), len(COLUMNS)), np.nan)
+    for row, seen in zip(rows, steps.seen, strict=False):
+        row[:] = list(seen.values())
     column = dict(zip(COLUMNS, rows.T, strict=True))
     sides = [CONTACT[int(c)] if np.isfinite(c) else "none" for c in column["contact"]]
     return Sweep(
@@ -203,16 +132,92 @@ def sweep(
         impacts=column["impacts"],
         impact_energy=oscillator.inertia * column["energy"],
         impact_impulse=oscillator.inertia * column["impulse"],
-        settled=settled,
-        periods=periods,
+        settled=steps.settled,
+        periods=steps.periods,
         state=np.stack([column["x"], column["v"]], axis=1),
-        outcome=outcome,
+        outcome=steps.outcome,
     )
 
 
-def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float] | None, Array]:
+def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float], Array] | None:
     row = place.measure(state)
-    return row or None, np.array([row.get("x", np.nan), row.get("v", np.nan)])
+    return (row, np.array([row["x"], row["v"]])) if row else None
+
+
+def _of_line(
+    line: Driveline | Assembly,
+    values: Array,
+    start: ArrayLike | None,
+    speed: float | None,
+    least: int,
+    most: int,
+    same: float,
+) -> LineSweep:
+    prepared = line_over(line, float(values[0]), speed)
+    maps = [LineMap(float(value), 1, prepared) for value in values]
+    first = start_state(prepared, start)[maps[0].kept]
+    lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"
+    steps = _stepped(maps, first, least, most, same, _watched, lost)
+    count, springs = len(values), len(prepared.springs)
+    low, high = np.full((2, count, springs), np.nan)
+    states = np.full((count, 2 * prepared.size), np.nan)
+    names = [prepared.springs[e] for e in prepared.staged]
+    nothing = tuple(SpringContact(name, np.zeros(0), np.nan, "none", np.zeros(0), np.nan) for name in names)
+    contacts = [nothing] * count
+    for i, seen in enumerate(steps.seen):
+        low[i], high[i], states[i], contacts[i] = seen
+    return LineSweep(prepared, values, low, high, tuple(contacts), steps.settled, steps.periods, states, steps.outcome)
+
+
+def _watched(
+    place: LineMap, state: Array
+) -> tuple[tuple[Array, Array, Array, tuple[SpringContact, ...]], Array] | None:
+    run, start, k = place.watched(state), place.whole(state), kernel()
+    if not run.done:
+        return None
+    seen = run.seen[: len(place.line.springs)]
+    contacts = contacts_of(place, start, run)
+    return (seen[:, k.TORQUE_LOW], seen[:, k.TORQUE_HIGH], start, contacts), run.state[place.kept]
+
+
+class _Steps(NamedTuple, Generic[Seen]):
+    """Whether each step settled and after how many periods, both (points,), and what was seen of those run."""
+
+    settled: Flags
+    periods: Integers
+    seen: list[Seen]
+    outcome: Outcome
+
+
+def _stepped(
+    maps: Sequence[Place],
+    start: Array,
+    least: int,
+    most: int,
+    same: float,
+    measure: Callable[[Place, Array], tuple[Seen, Array] | None],
+    lost: str,
+) -> _Steps[Seen]:
+    """Every map from where the one before it ended, measured over one period where the motion repeats, else over many.
+
+    measure : (map, state at phase zero) → what is seen over its periods, and the state after them; None where it cannot
+    be followed, of which ``lost`` is said with the value.
+    """
+    steps = _Steps[Seen](
+        np.zeros(len(maps), dtype=bool), np.zeros(len(maps), dtype=np.int64), [],
+        Outcome(True, "swept", "every step was run"),
+    )  # fmt: skip
+    state = start
+    for i, place in enumerate(maps):
+        found = place.steady(state, least, most, same)
+        steps.settled[i], steps.periods[i] = found.repeats, found.periods
+        over = replace(place, periods=1 if found.repeats else MEASURED)
+        measured = measure(over, found.state) if found.done else None
+        if measured is None:
+            return steps._replace(outcome=Outcome(False, "chatter", lost.format(place.value)))
+        steps.seen.append(measured[0])
+        state = measured[1]
+    return steps
 
 
 def rattle_index(

@@ -1,30 +1,95 @@
-"""A driveline with stages on the bench: speed, or frequency of the excitation, raised or lowered step by step."""
+"""Steady motions step by step, as a bench finds them: of one mass over frequency, of a line over speed or frequency."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from trunnion.analyses.motion.exact_motion import start_state
-from trunnion.analyses.orbits.exact_map import LineMap
-from trunnion.analyses.orbits.exact_orbit import contacts_of
-from trunnion.analyses.orbits.piecewise_branch import line_over
+from trunnion.analyses.orbits.jumps import jumps
 from trunnion.analyses.orbits.spring_contacts import SpringContact
-from trunnion.analyses.orbits.sweeping import jumps, stepped, upwards
 from trunnion.arrays import Array, Flags, Integers
-from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
-from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remark
+from trunnion.results.declared import Described, Held, Result, axis, ending, fields_over, over, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+
+@dataclass(frozen=True, repr=False)
+class Sweep(Result):
+    """Steady motion over frequency, in the order it was swept.
+
+    frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
+    impacts, impact_energy Σ m v²/2 and impact_impulse Σ m |v| per period (points,); settled (points,): whether the
+    motion repeats every period; periods (points,): run until then; state (points, 2) at phase zero.
+    """
+
+    oscillator: PiecewiseOscillator
+    frequency: Array
+    lowest: Array
+    highest: Array
+    mean: Array
+    contact: tuple[str, ...]
+    impacts: Array
+    impact_energy: Array
+    impact_impulse: Array
+    settled: Flags
+    periods: Integers
+    state: Array
+    outcome: Outcome
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Highest minus lowest (points,)."""
+        return self.highest - self.lowest
+
+    @property
+    def up(self) -> bool:
+        """Whether the frequency was raised."""
+        return bool(self.frequency[-1] >= self.frequency[0])
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
+        return jumps(self.frequency, self.peak_to_peak)
+
+    def declared(self) -> Iterator[Held]:
+        """Extremes, impacts and contact over frequency."""
+        yield axis("frequency", self.frequency, "rad/s")
+        yield from fields_over("frequency", self, lowest="", highest="", mean="", peak_to_peak="")
+        yield from fields_over("frequency", self, impacts="", impact_energy="", impact_impulse="", settled="")
+        yield over("frequency", "contact", np.array(self.contact, dtype=str))
+        yield over("frequency", "periods", self.periods)
+        yield remark("oscillator", self.oscillator.name)
+        yield remark("direction", "up" if self.up else "down")
+        yield from ending(self.outcome)
+
+    def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
+        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        return drawing(self, "plot")(self, axes, length=length, unit=unit)
+
+    @property
+    def unit(self) -> str:
+        """What its frequencies read in: Hz, or rad/s for equations of one's own."""
+        return frequency_unit(self.oscillator.speed_unit)
+
+    def __str__(self) -> str:
+        best, factor = int(np.nanargmax(self.peak_to_peak)), speed_factor(self.unit)
+        low, high, largest = (self.frequency[i] * factor for i in (0, -1, best))
+        rough = int((~self.settled).sum())
+        kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
+        return (
+            f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
+            f"{low:.6g} to {high:.6g} {self.unit}, {rough} without a motion of one period\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {largest:.6g}; "
+            f"jumps: {_in_words(self.jumps, self.unit)}\n"
+            f"  contact: {kinds}; {self.outcome}"
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -60,12 +125,12 @@ class LineSweep(Described):
     @property
     def up(self) -> bool:
         """Whether the value was raised."""
-        return upwards(self.value)
+        return bool(self.value[-1] >= self.value[0])
 
     @property
     def jumps(self) -> tuple[tuple[float, float], ...]:
         """Pairs of neighbouring values between which the torque of any spring changes abruptly, in the order swept."""
-        return jumps(self.value, self.torque_peak_to_peak)
+        return jumps(self.value, *self.torque_peak_to_peak.T)
 
     def swing_of(self, spring: str) -> Array:
         """Peak-to-peak torque of one spring (points,) [N m].
@@ -95,17 +160,13 @@ class LineSweep(Described):
         """Extremes of every spring's torque, impacts and contact of those with stages, over speed or frequency."""
         clock = "speed" if self.line.clock == "speed" else "frequency"
         staged = [self.springs[e] for e in self.line.staged]
-        shape = (len(self.value), len(staged))
-        impacts = np.array([[c.impacts for c in row] for row in self.contacts]).reshape(shape)
-        energy = np.array([[c.impact_energy for c in row] for row in self.contacts]).reshape(shape)
-        sides = np.array([[c.contact for c in row] for row in self.contacts], dtype=str).reshape(shape)
         yield axis(clock, self.value, "rad/s")
         yield axis("spring", self.springs)
         yield axis("staged_spring", staged)
         yield from fields_over(f"{clock} spring", self, torque_low="N*m", torque_high="N*m")
-        yield over(f"{clock} staged_spring", "impacts", impacts)
-        yield over(f"{clock} staged_spring", "impact_energy", energy, "J")
-        yield over(f"{clock} staged_spring", "contact", sides)
+        for name, unit, kind in (("impacts", "", None), ("impact_energy", "J", None), ("contact", "", str)):
+            values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
+            yield over(f"{clock} staged_spring", name, values.reshape(len(self.value), len(staged)), unit)
         yield from fields_over(clock, self, settled="", periods="")
         yield remark("driveline", self.line.name)
         yield remark("direction", "up" if self.up else "down")
@@ -136,52 +197,16 @@ class LineSweep(Described):
             worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
             impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
             rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
-        factor = speed_factor(unit)
-        jumps = ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in self.jumps) or "none"
         return "\n".join(
             [
                 f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(value)} steps from "
                 f"{value[0]:.6g} to {value[-1]:.6g} {unit}, {rough} without a motion of one period",
                 *rows,
-                f"  jumps: {jumps}; {self.outcome}",
+                f"  jumps: {_in_words(self.jumps, unit)}; {self.outcome}",
             ]
         )
 
 
-def exact_sweep(
-    line: Driveline | Assembly,
-    values: Array,
-    *,
-    start: ArrayLike | None,
-    speed: float | None,
-    least: int,
-    most: int,
-    same: float,
-) -> LineSweep:
-    """See ``sweep``, which has checked the values."""
-    prepared = line_over(line, float(values[0]), speed)
-    maps = [LineMap(float(value), 1, prepared) for value in values]
-    shape, size, k = (len(values), len(prepared.springs)), len(values), kernel()
-    low, high, states = np.full(shape, np.nan), np.full(shape, np.nan), np.full((size, 2 * prepared.size), np.nan)
-    settled, periods = np.zeros(size, dtype=bool), np.zeros(size, dtype=np.int64)
-    nothing = tuple(SpringContact(prepared.springs[e], np.zeros(0), np.nan, "none", np.zeros(0), np.nan)
-                    for e in prepared.staged)  # fmt: skip
-    contacts: list[tuple[SpringContact, ...]] = [nothing] * size
-    outcome = Outcome(True, "swept", "every step was run")
-    first = start_state(prepared, start)[maps[0].kept]
-    for i, (found, seen) in enumerate(stepped(maps, first, least, most, same, _watched)):
-        periods[i], settled[i] = found.periods, found.repeats
-        if seen is None:
-            words = f"the motion at {values[i]:g} rad/s changes its stages too often in a period; raise damping"
-            outcome = Outcome(False, "chatter", words)
-            break
-        run, length = seen
-        states[i] = maps[i].whole(found.state)
-        low[i], high[i] = run.seen[: shape[1], k.TORQUE_LOW], run.seen[: shape[1], k.TORQUE_HIGH]
-        contacts[i] = contacts_of(prepared, states[i], run, length)
-    return LineSweep(prepared, values, low, high, tuple(contacts), settled, periods, states, outcome)
-
-
-def _watched(place: LineMap, state: Array) -> tuple[tuple[StagedPassage, float] | None, Array]:
-    run = place.watched(state)
-    return ((run, place.length) if run.done else None), run.state[place.kept]
+def _in_words(jumps: Sequence[tuple[float, float]], unit: str) -> str:
+    factor = speed_factor(unit)
+    return ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in jumps) or "none"
