@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -232,3 +232,20 @@ def _spreading(frequency: Array) -> Array:
     """Fourier transform of the spreading at frequencies in cycles per point of the grid."""
     turns = np.cos(np.pi * WIDTH * np.outer(frequency, _SMOOTH))
     return np.asarray(turns @ (_SMOOTH_WEIGHTS * _kernel(_SMOOTH)) * (WIDTH / 2))
+
+
+def meetings(values: Array, level: float) -> Array:
+    """Where a polyline through ``values`` (points,) meets a level, in order, as places among its points: 2.25 is a
+    quarter of the way from the third to the fourth. NaN parts stretches."""
+    side = values - level
+    before, after = side[:-1], side[1:]
+    first = np.flatnonzero((before * after < 0) | (before == 0))
+    apart = before[first] - after[first]
+    found = first + before[first] / np.where(before[first] == 0, 1.0, apart)
+    return np.append(found, len(side) - 1.0) if len(side) and side[-1] == 0 else found
+
+
+def at_place(values: Array, place: float) -> Any:
+    """What lies at a place among ``values`` (points, …), linear between two of them."""
+    before, after = values[int(np.floor(place))], values[int(np.ceil(place))]
+    return before + (place - np.floor(place)) * (after - before)

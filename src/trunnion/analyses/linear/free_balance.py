@@ -15,13 +15,14 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.analyses.orbits.balancing import on_one_thread
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 
@@ -166,28 +167,25 @@ class FreeBalance:
 
     def _batch(self, speed: Array, h: int, guess: Array | None) -> FreeMotions:
         co = self.untwisted(speed)
-        rows = self._rigid(speed, h, co) if guess is None else guess.copy()
-        found, torque = np.zeros(len(speed), dtype=bool), np.zeros(len(speed))
-        whole = FreeMotions(self, speed, found, rows, torque, self.numbers(speed, co))
+        numbers, first = self.numbers(speed, co), self._rigid(speed, h, co) if guess is None else guess
         inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
         unit = ANGLE_SCALE * speed**2 * inertia / self.period
-        left, before = np.arange(len(speed)), np.full(len(speed), np.inf)
-        for _ in range(CORRECTIONS):
-            here = FreeMotions(self, speed[left], found[left], rows[left], torque[left], whole.numbers[left])
-            change, more = self._step(here, unit[left])
-            size = np.hypot(np.linalg.norm(change.reshape(len(left), -1), axis=1) / ANGLE_SCALE, more / unit[left])
-            closer = size < 2 * before[left]
-            rows[left], torque[left] = here.rows + change, here.torque + more
-            found[left], before[left] = closer & (size < CLOSED), size
-            left = left[closer & ~found[left]]
-            if not len(left):
-                break
-        rows[~found], torque[~found] = 0.0, 0.0
-        return whole
 
-    def _step(self, motions: FreeMotions, unit: Array) -> tuple[Array, Array]:
-        """Newton's change of the rows (case, n, 2h + 1) and of the torque (case,), whose size is ``unit`` (case,); NaN
-        where there is none."""
+        def motions(cases: Places, z: Array, found: Flags) -> FreeMotions:
+            rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
+            return FreeMotions(self, speed[cases], found, rows, unit[cases] * z[:, -1], numbers[cases])
+
+        def equations(cases: Places, z: Array) -> tuple[Array, Array]:
+            return self._equations(motions(cases, z, np.zeros(len(z), dtype=bool)), unit[cases])
+
+        start = np.append(first.reshape(len(speed), -1) / ANGLE_SCALE, np.zeros((len(speed), 1)), axis=1)
+        z, found = solve_many(equations, start, tolerance=CLOSED, most=CORRECTIONS)
+        z[~found] = 0.0
+        return motions(np.arange(len(speed)), z, found)
+
+    def _equations(self, motions: FreeMotions, unit: Array) -> tuple[Array, Array]:
+        """What is missing of the balance and of the phase (case, unknowns), and its derivative by the rows in units of
+        ``ANGLE_SCALE`` and by the torque in those of ``unit`` (case,)."""
         n, h, rate = len(self.turn), motions.h, motions.rate
         cases, wide = len(rate), 2 * h + 1
         rates, slopes = motions.sampled()
@@ -205,14 +203,12 @@ class FreeBalance:
         column = fourier.rows_of(along, h).reshape(cases, size)
         whole[:, :size, size] = -column * (unit / (ANGLE_SCALE * speed**2))[:, None]
         whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
-        left = (
-            fourier.rows_of(around, h) - fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
-        )
-        right = np.zeros((cases, size + 1))
-        right[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
-        right[:, size] = -(motions.rows[..., 0] @ self.phase) / np.linalg.norm(self.phase) / ANGLE_SCALE
-        found = fourier.solved(whole, right)
-        return found[:, :size].reshape(cases, n, wide) * ANGLE_SCALE, found[:, size] * unit
+        inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
+        left = inertial - fourier.rows_of(around, h)
+        missing = np.zeros((cases, size + 1))
+        missing[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
+        missing[:, size] = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
+        return missing, whole
 
     def _rigid(self, speed: Array, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.analyses.linear.free_balance import MOST, MOST_NUMBERS, FreeBalance, FreeMotions
+from trunnion.analyses.orbits.balancing import doubled
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.driveline.driveline import Driveline
@@ -182,17 +183,18 @@ class MotionsBySpeed:
     def _solve(self, speeds: Array) -> None:
         """From rigid shafts, where that leads nowhere from the nearest motion found; harmonics doubled until they are
         enough."""
-        h, guess = self.balance.fewest, None
-        most = max(h, MOST)
-        while len(speeds):
+        guess, orders = None, doubled(self.balance.fewest, MOST)
+        for h in orders:
+            if not len(speeds):
+                break
+            guess = None if guess is None else fourier.resized(guess, h)
             motions = self._from_neighbours(self.balance.solve(speeds, h, guess))
-            enough = motions.resolved | ~motions.found | (h >= most)
+            enough = motions.resolved | ~motions.found | (h == orders[-1])
             for i in np.flatnonzero(enough):
                 self.known[float(speeds[i])] = _One(
                     bool(motions.found[i]), motions.rows[i], float(motions.torque[i]), motions.numbers[i]
                 )
-            h = min(2 * h, most)
-            speeds, guess = speeds[~enough], fourier.resized(motions.rows[~enough], h)
+            speeds, guess = speeds[~enough], motions.rows[~enough]
 
     def _from_neighbours(self, motions: FreeMotions) -> FreeMotions:
         """With those that were not found looked for again from the nearest that were, outwards."""

@@ -1,9 +1,9 @@
 """Harmonic balance as one driver: a branch with so many harmonics, or with as many as its tail asks for.
 
-What differs is the residual: of any first-order system (``harmonic_equations``), and of masses on springs
+What differs is the residual: of any first-order system (``harmonic_balance``), and of masses on springs
 (``harmonic_balance_springs``). Own motions of free lines (``linear.free_balance``) lie on no branch: their speeds are
-given, and Newton's steps are taken for all of them together. The matrices of the balance are the same for all
-(``numerics.harmonics``).
+given, and one Newton's method takes its steps for all of them together (``numerics.continuation.newton``). Harmonics
+are doubled alike, and the matrices of the balance are the same for all (``numerics.harmonics``).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -24,8 +24,6 @@ from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.declared import Held, Result, over, remark
 from trunnion.results.drawing import Axes
 from trunnion.results.outcome import Outcome
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,22 +117,22 @@ def balanced(
     most_points: int,
 ) -> Found:
     """The branch with ``harmonics``, or doubled from ``fewest`` until the tail is below ``limit`` everywhere."""
-
-    def attempt(h: int, last: bool) -> Found | None:
-        final = last or harmonics is not None
-        found = _followed(make(h), begin, low, high, most_points, np.inf if final else limit)
-        return found if final or found is not None and not np.any(found.tail >= limit) else None
-
-    found = with_enough(attempt, harmonics or fewest, most)
+    *tried, last = [harmonics] if harmonics is not None else doubled(fewest, most)
+    with on_one_thread():
+        for h in tried:
+            found = _followed(make(h), begin, low, high, most_points, limit)
+            if found is not None and np.all(found.tail < limit):
+                return found
+        found = _followed(make(last), begin, low, high, most_points, np.inf)
+    assert found is not None
     return found if harmonics is not None else _judged(found, limit)
 
 
-def with_enough(attempt: Callable[[int, bool], T | None], fewest: int, most: int) -> T:
-    """What ``attempt(h, last)`` finds first, h doubled from ``fewest`` to ``most``, where ``last`` is True: it must."""
-    h = fewest
-    with on_one_thread():
-        while (found := attempt(h, h >= most)) is None:
-            h = min(2 * h, most)
+def doubled(fewest: int, most: int) -> list[int]:
+    """Numbers of harmonics to try one after the other: doubled from ``fewest``, ``most`` the last."""
+    found = [fewest]
+    while found[-1] < most:
+        found.append(min(2 * found[-1], most))
     return found
 
 

@@ -14,14 +14,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
 from trunnion.numerics.continuation.newton import solve
-from trunnion.results.declared import Held, Result, axis, ending, over
+from trunnion.numerics.curves import at_place, meetings
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
@@ -100,6 +101,24 @@ class Problem(Protocol):
         """Peak-to-peak and largest absolute value of the curves, amplitude of the fundamental of the states, period."""
 
 
+P = TypeVar("P")
+T = TypeVar("T")
+
+
+def once(tell: Callable[[P, CurvePoint], T]) -> Callable[[P, CurvePoint], T]:
+    """A method that tells something of a point of a curve, computed once for each point of each problem."""
+    place = f"_{tell.__name__}"
+
+    def told(self: P, point: CurvePoint) -> T:
+        known: dict[bytes, T] = vars(self).setdefault(place, {})
+        key = point.z.tobytes()
+        if key not in known:
+            known[key] = tell(self, point)
+        return known[key]
+
+    return told
+
+
 @dataclass(frozen=True)
 class SpecialPoint:
     """A point where the branch turns or its stability changes.
@@ -167,22 +186,15 @@ class PeriodicBranch(Result):
         return [(self.problem.observed(point)[0], verdict) for point, verdict in self._points_at(value)]
 
     def _points_at(self, value: float) -> list[tuple[CurvePoint, Verdict]]:
-        side, found = self.parameter - value, []
-        for i in np.flatnonzero((side[:-1] * side[1:] < 0) | (side[:-1] == 0)):
-            share = side[i] / (side[i] - side[i + 1]) if side[i] else 0.0
-            guess = self.unknowns[i] + share * (self.unknowns[i + 1] - self.unknowns[i])
-            found.append(_motion_at(self.problem, guess, value))
-        if len(side) and side[-1] == 0:
-            found.append(_motion_at(self.problem, self.unknowns[-1], value))
-        return found
+        guesses = [at_place(self.unknowns, place) for place in meetings(self.parameter, value)]
+        return [_motion_at(self.problem, guess, value) for guess in guesses]
 
     def declared(self) -> Iterator[Held]:
         """Size, period and multipliers over the points of the branch, and its special points."""
         yield axis("curve", self.curves)
         yield over("point", "parameter", self.parameter, self.unit, self.label)
         yield over("point", "period", self.period, "s")
-        yield over("point curve", "peak_to_peak", self.peak_to_peak, self.curve_unit)
-        yield over("point curve", "largest", self.largest, self.curve_unit)
+        yield from fields_over("point curve", self, peak_to_peak=self.curve_unit, largest=self.curve_unit)
         yield over("point multiplier_number", "multiplier", self.multipliers, "1")
         yield over("point", "verdict", self.verdict, **flag_attributes())
         yield over("special", "special_kind", np.array([p.kind for p in self.special], dtype=str))

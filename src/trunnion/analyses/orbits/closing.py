@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from trunnion.analyses.orbits.branch import Names
+from trunnion.analyses.orbits.branch import Names, once
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.arclength import CurvePoint
@@ -55,7 +55,6 @@ class Closing(Generic[M]):
     within: tuple[float, float] = (-np.inf, np.inf)
     over: Names = field(default_factory=Names)
     last: Passage | None = None
-    passages: dict[bytes, Passage] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -106,12 +105,10 @@ class Closing(Generic[M]):
 
         return solve(residual, guess, self.scale, tolerance=self.tolerance)
 
+    @once
     def passage(self, point: CurvePoint) -> Passage:
-        """The closed motion at a point of the curve, computed once."""
-        key = point.z.tobytes()
-        if key not in self.passages:
-            self.passages[key] = self.place(point.z)(point.z[: self.size], watch=True)
-        return self.passages[key]
+        """The closed motion at a point of the curve."""
+        return self.place(point.z)(point.z[: self.size], watch=True)
 
     def start(self, point: CurvePoint) -> Array:
         """State at t = 0."""

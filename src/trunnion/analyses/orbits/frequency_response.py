@@ -45,15 +45,19 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder
 from trunnion.systems.system import System
 
-METHODS = (
-    "exact",
-    "harmonic balance",
-    "describing function",
-    "averaging",
-    "multiple scales",
-    "sweep up",
-    "sweep down",
-)
+WORKS: dict[str, Callable[..., Any]] = {
+    "exact": piecewise_branch,
+    "harmonic balance": harmonic_balance,
+    "describing function": DescribingFunction,
+    "averaging": averaging,
+    "multiple scales": multiple_scales,
+    "sweep up": sweep,
+    "sweep down": sweep,
+    "shooting": periodic_branch,
+}
+"""What does the work of a method, and whose arguments the method takes."""
+METHODS = tuple(WORKS)[:-1]
+"""Those of a piecewise oscillator."""
 OF_SYSTEMS = ("harmonic balance", "shooting")
 REPORTING = ("exact", "shooting")
 BALANCED = 20
@@ -144,14 +148,16 @@ def frequency_response(
     options = {name: value for name, value in given.items() if value is not None}
     if chosen not in REPORTING:
         options.pop("progress", None)  # it changes no number, so nothing is refused
-    _check_options(system, chosen, options, list(given))
+    springs = isinstance(system, PiecewiseOscillator | SecondOrder)
+    work: Callable[..., Any] = balance_springs if springs and chosen == "harmonic balance" else WORKS[chosen]
+    _check_options(chosen, work, options, list(given))
     began = perf_counter()
     if isinstance(system, PiecewiseOscillator):
         result = _of_oscillator(system, low, high, chosen, options)
-    elif isinstance(system, SecondOrder):
-        result = balance_springs(system, low, high, **options)
+    elif isinstance(system, SecondOrder) or chosen == "exact":
+        result = work(system, low, high, **options)
     else:
-        result = _of_system(system, low, high, chosen, parameter, options)
+        result = work(system, _parameter(system, parameter), low, high, **options)
     found = _gathered(chosen, result, perf_counter() - began, curve)
     if isinstance(system, PiecewiseOscillator):
         return replace(found, unit=frequency_unit(system.speed_unit))
@@ -173,18 +179,8 @@ def compare_responses(
     )
 
 
-def _check_options(system: object, method: str, options: Mapping[str, Any], known: Sequence[str]) -> None:
+def _check_options(method: str, work: Callable[..., Any], options: Mapping[str, Any], known: Sequence[str]) -> None:
     """Refuse arguments that belong to other methods."""
-    springs = isinstance(system, PiecewiseOscillator | SecondOrder)
-    works: dict[str, Callable[..., Any]] = {
-        "exact": piecewise_branch,
-        "shooting": periodic_branch,
-        "harmonic balance": balance_springs if springs else harmonic_balance,
-        "describing function": DescribingFunction,
-        "averaging": averaging,
-        "multiple scales": multiple_scales,
-    }
-    work = works.get(method, sweep)
     takes = {name for name in signature(work).parameters if name in known}
     takes |= {"points"} if work is sweep else set()
     for name, value in options.items():
@@ -197,18 +193,16 @@ def _of_oscillator(o: PiecewiseOscillator, low: float, high: float, method: str,
     require_forced(o)
     if method in METHODS[:2]:
         require_contact(o, low)
-    if method == "exact":
-        return piecewise_branch(o, low, high, **options)
     if method == "harmonic balance":
         return _balanced(o, low, high, {"harmonics": BALANCED, **options})
-    if method == "describing function":
-        return DescribingFunction(o, **options).response(low, high)
-    if method in ("averaging", "multiple scales"):
-        flow = averaging(o, **options) if method == "averaging" else multiple_scales(o, **options)
-        return flow.response(low, high)
-    more = dict(options)
-    grid = np.linspace(low, high, more.pop("points", SWEPT))
-    return sweep(o, grid if method == "sweep up" else grid[::-1], **more)
+    work = WORKS[method]
+    if work is sweep:
+        grid = np.linspace(low, high, options.get("points", SWEPT))
+        more = {name: value for name, value in options.items() if name != "points"}
+        return sweep(o, grid if method == "sweep up" else grid[::-1], **more)
+    if method == "exact":
+        return piecewise_branch(o, low, high, **options)
+    return work(o, **options).response(low, high)
 
 
 def _balanced(o: PiecewiseOscillator, low: float, high: float, options: dict[str, Any]) -> SpringBalance:
@@ -225,20 +219,17 @@ def _balanced(o: PiecewiseOscillator, low: float, high: float, options: dict[str
     return balance_springs(system, low, high, **{**options, "start": rows})
 
 
-def _of_system(
-    system: System | Driveline, low: float, high: float, method: str, parameter: str, options: Mapping[str, Any]
-) -> Any:
-    name = parameter or ("frequency" if isinstance(system, System) else "speed")
-    if isinstance(system, System) and name not in system.parameters:
+def _parameter(system: System | Driveline, parameter: str) -> str:
+    """The one that is the frequency, or the speed of a line."""
+    if isinstance(system, Driveline):
+        return parameter or "speed"
+    name = parameter or "frequency"
+    if name not in system.parameters:
         raise InputError(
             "is not a parameter", element=system.name, key=name,
             remedy=f"name the one that is the frequency: {', '.join(system.parameters) or 'it has none'}",
         )  # fmt: skip
-    if method == METHODS[0]:
-        assert isinstance(system, Driveline)
-        return piecewise_branch(system, low, high, **options)
-    work = harmonic_balance if method == "harmonic balance" else periodic_branch
-    return work(system, name, low, high, **options)
+    return name
 
 
 def _gathered(method: str, result: Any, seconds: float, curve: str) -> FrequencyResponse:

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from trunnion.analyses.orbits.branch import PeriodicBranch
+from trunnion.analyses.perturbation.slow_flow import largest_stable
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.results.declared import Described, Held, ending, over, remark
+from trunnion.numerics.curves import at_place, meetings
+from trunnion.results.declared import Described, Held, ending, fields_over, over, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import speed_factor
@@ -43,11 +45,7 @@ class FrequencyResponse(Described):
     @property
     def peak(self) -> tuple[float, float]:
         """Frequency and half peak-to-peak of the largest stable motion."""
-        known = self.stable & np.isfinite(self.half_peak_to_peak)
-        if not known.any():
-            return float("nan"), float("nan")
-        best = int(np.argmax(np.where(known, self.half_peak_to_peak, -np.inf)))
-        return float(self.frequency[best]), float(self.half_peak_to_peak[best])
+        return largest_stable(self.frequency, self.half_peak_to_peak, self.stable)
 
     def folds(self) -> tuple[float, ...]:
         """Frequencies of the folds, falling; of a sweep, where it jumps."""
@@ -63,21 +61,13 @@ class FrequencyResponse(Described):
             i = place_of(branch.curves, self.curve)
             seen = branch.swings_at(frequency)
             return sorted(((float(swing[i]) / 2, verdict is Verdict.STABLE) for swing, verdict in seen), reverse=True)
-        side, size = self.frequency - frequency, self.half_peak_to_peak
-        found = []
-        for i in range(len(side) - 1):
-            if side[i] == 0 or side[i] * side[i + 1] < 0:
-                share = side[i] / (side[i] - side[i + 1])
-                found.append((float(size[i] + share * (size[i + 1] - size[i])), bool(self.stable[i])))
-        if len(side) and side[-1] == 0:
-            found.append((float(size[-1]), bool(self.stable[-1])))
-        return sorted(found, reverse=True)
+        places = meetings(self.frequency, frequency)
+        size = self.half_peak_to_peak
+        return sorted(((float(at_place(size, p)), bool(self.stable[int(p)])) for p in places), reverse=True)
 
     def declared(self) -> Iterator[Held]:
         """Half peak-to-peak and stability over the points of the curve, and its marks."""
-        yield over("point", "frequency", self.frequency, "rad/s")
-        yield over("point", "half_peak_to_peak", self.half_peak_to_peak)
-        yield over("point", "stable", self.stable)
+        yield from fields_over("point", self, frequency="rad/s", half_peak_to_peak="", stable="")
         yield over("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
         yield over("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
         yield remark("method", self.method)

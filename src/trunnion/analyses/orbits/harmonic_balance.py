@@ -18,9 +18,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.analyses.orbits.balancing import SeriesBranch, balanced
+from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP
-from trunnion.analyses.orbits.harmonic_equations import FEWEST, HarmonicEquations
 from trunnion.analyses.orbits.judging import CLEAR, IntegratedClosing
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.analyses.orbits.systems_over import SystemOver, system_over
@@ -32,11 +31,14 @@ from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.curves import extremes
+from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.results.declared import Held, over
 from trunnion.systems.system import System
 
-MOST = 256
-"""Harmonics that a tail is answered with, at most."""
+FEWEST, MOST = 8, 256
+"""Harmonics to begin with, whose samples are the fewest taken, and the most that a tail is answered with."""
+SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
+"""Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
 TAIL, KINKED_TAIL = 1e-6, 1e-4
 """Of a smooth motion, whose coefficients fall exponentially; of one with kinks, whose rates fall like k⁻³."""
 FAR = 100.0
@@ -129,11 +131,64 @@ def _first_rows(family: SystemOver, start: ArrayLike | None, periods: int, h: in
 
 
 @dataclass
-class _Balance(HarmonicEquations):
-    """The balance of h harmonics as equations of a curve, and what its points tell."""
+class _Balance(Series):
+    """The balance of h harmonics as equations of a curve z = (series, value), and what its points tell."""
 
     over: SystemOver
+    periods: int
+    h: int
     begun: Array
+
+    @property
+    def size(self) -> int:
+        return len(self.over.scale) - 1
+
+    @property
+    def scale(self) -> Array:
+        wide = 2 * self.h + 1
+        return np.append(np.repeat(self.over.scale[:-1], wide), self.over.scale[-1])
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """What the balance leaves over one radian, in units of the states' scales, and its derivative."""
+        unknowns, wide, value = len(z) - 1, 2 * self.h + 1, float(z[-1])
+        rows = z[:-1].reshape(-1, wide)
+        # The parameter enters in any way, the period included: central differences, good to some 1e-9.
+        step = 1e-4 * float(self.over.scale[-1])
+        here = self._left(rows, value, with_slope=True)
+        before, after = (self._left(rows, value + side * step, with_slope=False) for side in (-1, 1))
+        if here is None or before is None or after is None:
+            return np.full(unknowns, np.nan), np.full((unknowns, unknowns + 1), np.nan)
+        left, slope = here
+        by_parameter = (after[0] - before[0]) / (2 * step)
+        over = 1 / np.repeat(self.over.scale[:-1], wide)
+        return left * over, np.hstack([slope, by_parameter[:, None]]) * over[:, None]
+
+    def _left(self, rows: Array, value: float, *, with_slope: bool) -> tuple[Array, Array] | None:
+        """(D X − F)/ω (n (2h + 1),) and its derivative by the rows."""
+        try:
+            system = self.over.at(value)
+        except InputError:  # a trial value may be no value of this parameter
+            return None
+        if system.forcing_period is None or not np.isfinite(rows).all():
+            return None
+        n, wide, h = self.size, 2 * self.h + 1, self.h
+        period = self.periods * system.forcing_period
+        omega = 2 * np.pi / period
+        per_harmonic = SMOOTH_SAMPLES if system.regimes is None else KINKED_SAMPLES
+        count = 1 << int(np.ceil(np.log2(per_harmonic * max(h, FEWEST))))
+        states = np.ascontiguousarray(fourier.samples(rows, count).T)
+        evaluated = sampled_rates(
+            system.equations, period * np.arange(count) / count, states, system.regime_at(0.0, states[0])
+        )
+        if evaluated is None:
+            return None
+        rates, jacobians, _ = evaluated
+        left = (fourier.rate(rows, omega) - fourier.rows_of(rates.T, h)) / omega
+        if not with_slope:
+            return left.ravel(), np.zeros((0, 0))
+        slope = -fourier.product_blocks(jacobians, h)
+        slope[np.arange(n), :, np.arange(n), :] += fourier.rate_matrix(h, omega)
+        return left.ravel(), slope.reshape(n * wide, n * wide) / omega
 
     @cached_property
     def true(self) -> IntegratedClosing:

@@ -12,14 +12,14 @@ crossings of kinks, which are found on the series, fourth-order Magnus steps, ex
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
-from trunnion.analyses.orbits.branch import STEP, Names
+from trunnion.analyses.orbits.branch import STEP, Names, once
 from trunnion.analyses.orbits.closing import by_modulus
 from trunnion.analyses.orbits.piecewise_branch import check_range
 from trunnion.arrays import Array, Complex
@@ -113,7 +113,6 @@ class _Balance(Series):
     range: float
     begin: float
     given: Array | None
-    told: dict[bytes, tuple[Complex, int]] = field(default_factory=dict)
 
     def first(self) -> Array:
         return self.begun(self.begin, self.starts)
@@ -149,7 +148,9 @@ class _Balance(Series):
     def count(self) -> int:
         return max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(PER_HARMONIC * self.h))))
 
+    @cached_property
     def force(self) -> Array:
+        """Series (n, 2h + 1) of the forces from outside."""
         out = np.zeros((self.n, 2 * self.h + 1))
         out[:, 0] = self.system.mean
         for k, p, q in self.system.harmonics:
@@ -178,7 +179,7 @@ class _Balance(Series):
         for share in (0.0, 0.5, 1.0):
             for side in (1.0, -1.0):
                 matrix, _ = self.operator(omega)
-                force = self.force()
+                force = self.force.copy()
                 for spring in self.system.springs:
                     d = np.array(spring.direction)
                     beyond = side * 2 * max(map(abs, spring.kinks), default=0.0)
@@ -207,7 +208,7 @@ class _Balance(Series):
             more = added @ z[:-1]
             return left + z[-1] * more, np.hstack([slope[:, :-1] + z[-1] * added, more[:, None]])
 
-        first = np.append(np.linalg.lstsq(added * ADDED, self.force().ravel(), rcond=None)[0], ADDED)
+        first = np.append(np.linalg.lstsq(added * ADDED, self.force.ravel(), rcond=None)[0], ADDED)
         first[:size] += guesses[0].ravel() * (np.arange(size) % (2 * self.h + 1) == 0)
         curve = follow(
             damped, first, scale=np.append(np.full(size, self.width), 1.0), bounds=(0.0, 2 * ADDED), direction=-1.0,
@@ -232,7 +233,7 @@ class _Balance(Series):
         rows = z[:-1].reshape(self.n, -1)
         matrix, by_omega = self.operator(omega)
         flat = matrix.reshape(size, size)
-        left = flat @ z[:-1] - self.force().ravel()
+        left = flat @ z[:-1] - self.force.ravel()
         for spring in self.system.springs:
             d = np.array(spring.direction)
             force, slope = self.spring(spring, d @ rows)
@@ -262,9 +263,10 @@ class _Balance(Series):
         v = fourier.rate(rows, omega)
         return np.concatenate([r[:, : self.h + 1].sum(axis=1) for r in (rows, v)])
 
-    def crossings(self, rows: Array) -> Array:
+    @once
+    def crossings(self, point: CurvePoint) -> Array:
         """Phases at which a spring passes a kink."""
-        springs = self.system.springs
+        rows, springs = self.rows(point), self.system.springs
         found = [self.kink_phases(spring, (np.array(spring.direction) @ rows)[None, :]) for spring in springs]
         return np.sort(np.concatenate(found)) if found else np.zeros(0)
 
@@ -287,14 +289,10 @@ class _Balance(Series):
                 break
         return np.sort(phase)
 
-    def judged(self, point: CurvePoint) -> tuple[Complex, int]:
-        """Multipliers by falling modulus, and the number of crossings."""
-        key = point.z.tobytes()
-        if key not in self.told:
-            rows, omega = self.rows(point), point.parameter / self.periods
-            crossings = self.crossings(rows)
-            self.told[key] = by_modulus(self._monodromy(rows, omega, crossings)), len(crossings)
-        return self.told[key]
+    @once
+    def multipliers(self, point: CurvePoint) -> Complex:
+        """By falling modulus."""
+        return by_modulus(self._monodromy(self.rows(point), point.parameter / self.periods, self.crossings(point)))
 
     def _monodromy(self, rows: Array, omega: float, crossings: Array) -> Array:
         n = self.n
@@ -335,13 +333,10 @@ class _Balance(Series):
         out[:, n:, n:] = -inverse @ s.damping
         return out
 
-    def multipliers(self, point: CurvePoint) -> Complex:
-        return self.judged(point)[0]
-
     @cached_property
     def finer(self) -> _Balance:
         """Of twice the harmonics."""
-        return replace(self, h=2 * self.h, told={})
+        return replace(self, h=2 * self.h)
 
     def undamped(self, point: CurvePoint) -> bool:
         """Whether no part has damping."""
@@ -360,12 +355,12 @@ class _Balance(Series):
         root = self.finer.root(omega, fourier.resized(rows, self.finer.h))
         if not root.converged:  # a fold
             return far
-        found = self.finer.judged(replace(point, z=np.append(root.x, omega)))[0]
+        found = self.finer.multipliers(replace(point, z=np.append(root.x, omega)))
         # The finer one is off by less than the difference, even of a kinked force, whose coefficients fall as k⁻³.
         return float(2 * abs(np.abs(found).max() - radius) + ROUNDING)
 
     def changes(self, point: CurvePoint) -> int:
-        return self.judged(point)[1]
+        return len(self.crossings(point))
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
         rows, omega = self.rows(point), point.parameter

@@ -25,25 +25,16 @@ _COS, _SIN = np.cos(_FAST), np.sin(_FAST)
 
 
 class Averaging(FittedSlowFlow):
-    """The averaged rates of an oscillator with a cubic in place of its force; parameters as ``MultipleScales``."""
+    """The averaged rates of an oscillator with a cubic in place of its force; parameters as ``FittedSlowFlow``."""
 
     method = "averaging"
-
-    def __init__(
-        self, oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
-    ) -> None:
-        super().__init__(oscillator, epsilon, fit_range)
-        m = oscillator.inertia
-        self.cubic = float(np.sign(self.fit.cubic)) or 1.0
-        self.two_mu = oscillator.damping / m * self.T / epsilon
-        self.B_0, self.B_1 = (f / m * self.T**2 / (epsilon * self.U) for f in (oscillator.mean_force, oscillator.force))
 
     def rates(self, amplitude: float, phase: float, frequency: float) -> tuple[float, float]:
         """dA/dt and dβ/dt: means over the fast phase t* + φ of the rates (57) and (58)."""
         a = amplitude / self.U
         u, velocity = a * _COS, -a * _SIN
         # ω*t* = (t* + φ) + β, as β = (ω* − 1)t* − φ.
-        force = self.cubic * u**3 + self.two_mu * velocity - self.B_0 - self.B_1 * np.cos(_FAST + phase)
+        force = self.softening * u**3 + 2 * self.mu * velocity - self.B_0 - self.B_1 * np.cos(_FAST + phase)
         a_ = self.epsilon * float(np.mean(_SIN * force))
         phi_ = self.epsilon * float(np.mean(_COS * force)) / a
         return a_ * self.U / self.T, (frequency * self.T - 1 - phi_) / self.T

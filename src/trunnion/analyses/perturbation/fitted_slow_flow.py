@@ -11,9 +11,17 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 class FittedSlowFlow(SlowFlow):
-    """``epsilon``, ``fit`` of ``fit_range``, and the units T [s] and U with λ₁T² = 1 and |λ₂|T²U² = ε."""
+    """A slow flow in the units T [s] and U with λ₁T² = 1 and |λ₂|T²U² = ε.
 
-    def __init__(self, oscillator: PiecewiseOscillator, epsilon: float, fit_range: float | None) -> None:
+    Parameters
+    ----------
+    epsilon : ε > 0. Through (13)–(18) it scales U, μ, σ and B* so that every answer in u and t stays the same.
+    fit_range : of the cubic fit of the force, by default three half gaps; decisive.
+    """
+
+    def __init__(
+        self, oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
+    ) -> None:
         super().__init__(oscillator)
         if not 0 < epsilon < float("inf"):
             raise InputError("must be positive", key="epsilon", value=epsilon, remedy="the paper takes 0.01")
@@ -22,3 +30,7 @@ class FittedSlowFlow(SlowFlow):
         self.epsilon = epsilon
         self.T = 1 / sqrt(self.fit.linear)
         self.U = sqrt(epsilon * self.fit.linear / abs(self.fit.cubic))
+        self.softening = -1.0 if self.fit.cubic < 0 else 1.0
+        self.mu = oscillator.damping / oscillator.inertia * self.T / (2 * epsilon)
+        forces = (oscillator.mean_force, oscillator.force)
+        self.B_0, self.B_1 = (f / oscillator.inertia * self.T**2 / (epsilon * self.U) for f in forces)

@@ -14,7 +14,7 @@ in the slow time T₁ = εt*. With A = ½a e^{iψ} and β = σT₁ − ψ that i
 
     μ²a² + (σ − ⅜a²)²a² = ¼B₁*²                                              (49)
 
-B₀* drops out at this order: the static deflection is not seen. Nor does ε matter, see ``epsilon``.
+B₀* drops out at this order: the static deflection is not seen. Nor does ε matter, see ``FittedSlowFlow``.
 """
 
 from __future__ import annotations
@@ -27,23 +27,9 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 class MultipleScales(FittedSlowFlow):
-    """The slow flow (37) of an oscillator.
-
-    Parameters
-    ----------
-    epsilon : ε > 0. Through (13)–(18) it scales U, μ, σ and B* so that every answer in u and t stays the same.
-    fit_range : of the cubic fit of the force, by default three half gaps; decisive.
-    """
+    """The slow flow (37) of an oscillator; parameters as ``FittedSlowFlow``."""
 
     method = "multiple scales"
-
-    def __init__(
-        self, oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
-    ) -> None:
-        super().__init__(oscillator, epsilon, fit_range)
-        self.softening = -1.0 if self.fit.cubic < 0 else 1.0
-        self.mu = oscillator.damping / oscillator.inertia * self.T / (2 * epsilon)
-        self.B_1 = oscillator.force / oscillator.inertia * self.T**2 / (epsilon * self.U)
 
     def solvability(self, A: complex, T_1: float, sigma: float) -> complex:
         """A′ from (37)."""

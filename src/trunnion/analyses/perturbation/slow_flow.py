@@ -16,7 +16,8 @@ from scipy.integrate import solve_ivp
 
 from trunnion.arrays import Array, Flags
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, ending, over, remark
+from trunnion.numerics.curves import at_place, meetings
+from trunnion.results.declared import Held, Result, ending, fields_over, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -59,10 +60,7 @@ class ApproximateResponse(Result):
     @property
     def peak(self) -> tuple[float, float]:
         """Frequency and amplitude of the largest stable motion; NaN where there is none."""
-        if not self.stable.any():
-            return float("nan"), float("nan")
-        best = int(np.argmax(np.where(self.stable, self.amplitude, -np.inf)))
-        return float(self.frequency[best]), float(self.amplitude[best])
+        return largest_stable(self.frequency, self.amplitude, self.stable)
 
     @property
     def folds(self) -> tuple[tuple[float, float], ...]:
@@ -72,10 +70,7 @@ class ApproximateResponse(Result):
 
     def declared(self) -> Iterator[Held]:
         """Frequency, amplitude, mean and stability over the points."""
-        yield over("point", "frequency", self.frequency, "rad/s")
-        yield over("point", "amplitude", self.amplitude)
-        yield over("point", "mean", self.mean)
-        yield over("point", "stable", self.stable)
+        yield from fields_over("point", self, frequency="rad/s", amplitude="", mean="", stable="")
         yield remark("method", self.method)
         yield remark("note", self.note)
         yield from ending(self.outcome)
@@ -150,24 +145,23 @@ class SlowFlow(ABC):
         return float(np.arctan2(sine, cosine))
 
     def is_stable(self, amplitude: float, phase: float, frequency: float) -> bool:
-        """Eigenvalues of the rates' derivative, by central differences, left of the imaginary axis."""
+        """Eigenvalues of the rates' derivative left of the imaginary axis."""
+        matrix = self._slope(amplitude, phase, frequency)
+        return bool(np.trace(matrix) < 0 and np.linalg.det(matrix) > 0)
+
+    def _slope(self, amplitude: float, phase: float, frequency: float) -> Array:
+        """The rates' derivative (2, 2) by A and β, by central differences."""
         h, k = 1e-6 * amplitude, 1e-6
         by_a = np.subtract(self.rates(amplitude + h, phase, frequency), self.rates(amplitude - h, phase, frequency))
         by_b = np.subtract(self.rates(amplitude, phase + k, frequency), self.rates(amplitude, phase - k, frequency))
-        matrix = np.stack([by_a / (2 * h), by_b / (2 * k)], axis=1)
-        return bool(np.trace(matrix) < 0 and np.linalg.det(matrix) > 0)
+        return np.stack([by_a / (2 * h), by_b / (2 * k)], axis=1)
 
     def steady(self, frequency: float) -> tuple[SteadyState, ...]:
         """All steady states at one frequency, by rising amplitude."""
         curve = self.response(0.98 * frequency, 1.02 * frequency)
-        side = curve.frequency - frequency
         found = []
-        for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
-            if side[i] == side[i + 1]:
-                continue
-            share = side[i] / (side[i] - side[i + 1])
-            size = float(curve.amplitude[i] + share * (curve.amplitude[i + 1] - curve.amplitude[i]))
-            size = self._polished(size, frequency)
+        for place in meetings(curve.frequency, frequency):
+            size = self._polished(at_place(curve.amplitude, place), frequency)
             phase = self.steady_phase(size, frequency)
             found.append(SteadyState(size, phase, self.mean(size), self.is_stable(size, phase, frequency)))
         return tuple(sorted(found, key=lambda s: s.amplitude))
@@ -176,11 +170,7 @@ class SlowFlow(ABC):
         """Newton's method on the two rates, from the interpolated amplitude."""
         y = np.array([amplitude, self.steady_phase(amplitude, frequency)])
         for _ in range(8):
-            r = np.array(self.rates(y[0], y[1], frequency))
-            h, k = 1e-6 * y[0], 1e-6
-            one = np.subtract(self.rates(y[0] + h, y[1], frequency), self.rates(y[0] - h, y[1], frequency)) / (2 * h)
-            two = np.subtract(self.rates(y[0], y[1] + k, frequency), self.rates(y[0], y[1] - k, frequency)) / (2 * k)
-            y = y - np.linalg.solve(np.stack([one, two], axis=1), r)
+            y = y - np.linalg.solve(self._slope(y[0], y[1], frequency), self.rates(y[0], y[1], frequency))
         near = bool(np.isfinite(y[0])) and abs(y[0] - amplitude) < 0.05 * amplitude
         return float(y[0]) if near else amplitude
 
@@ -219,16 +209,9 @@ class SlowFlow(ABC):
             sizes = np.append(sizes[held], near[near > sizes[last]])
         else:
             sizes = sizes[held]
-        curve: list[tuple[float, float]] = []
-        for a in sizes:
-            pair = self.frequencies(float(a))
-            if pair is not None and np.isfinite(pair[0]):
-                curve.append((pair[0], float(a)))
-        for a in sizes[::-1]:
-            pair = self.frequencies(float(a))
-            if pair is not None:
-                curve.append((pair[1], float(a)))
-        kept = _parted(np.array(curve), low, high)
+        both = np.array([self.frequencies(float(a)) or (np.nan, np.nan) for a in sizes])
+        curve = np.stack([np.append(both[:, 0], both[::-1, 1]), np.append(sizes, sizes[::-1])], axis=1)
+        kept = _parted(curve[np.isfinite(curve[:, 0])], low, high)
         stable = [bool(np.isfinite(f)) and self.is_stable(a, self.steady_phase(a, f), f) for f, a in kept]
         return ApproximateResponse(
             self.method, kept[:, 0], kept[:, 1], np.array([self.mean(a) if a == a else a for a in kept[:, 1]]),
@@ -262,3 +245,12 @@ def _parted(curve: Array, low: float, high: float) -> Array:
     if not pieces:
         return np.zeros((0, 2))
     return np.vstack([pieces[0], *(np.vstack([nothing, piece]) for piece in pieces[1:])])
+
+
+def largest_stable(frequency: Array, size: Array, stable: Flags) -> tuple[float, float]:
+    """Frequency and size of the largest of the stable points, all (points,); NaN where there is none."""
+    known = stable & np.isfinite(size)
+    if not known.any():
+        return float("nan"), float("nan")
+    best = int(np.argmax(np.where(known, size, -np.inf)))
+    return float(frequency[best]), float(size[best])

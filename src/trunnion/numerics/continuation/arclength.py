@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array
+
 Equations = Callable[[Array], tuple[Array, Array]]
 """z (n + 1,) → residual (n,) and its Jacobian (n, n + 1); numbers that are not finite mean "not here"."""
 Test = Callable[["CurvePoint"], float]

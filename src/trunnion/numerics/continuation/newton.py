@@ -1,4 +1,4 @@
-"""Newton's method for a fixed point x = P(x), with steps cut back until the residual falls."""
+"""Newton's method: for one root, with steps cut back until the residual falls; and for many problems at once."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trunnion.arrays import Array, Flags, Places
+from trunnion.numerics.harmonics import solved
+
 Map = Callable[[Array], tuple[Array, Array]]
 """x → P(x) − x, (m,), and its derivative, (m, m); NaN where P cannot be computed."""
+Equations = Callable[[Places, Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -59,3 +61,27 @@ def solve(residual: Map, start: Array, scale: Array, *, tolerance: float, most: 
         if done:
             break
     return best
+
+
+def solve_many(equations: Equations, start: Array, *, tolerance: float, most: int) -> tuple[Array, Flags]:
+    """Roots (case, m) of many problems of one shape, and which were found (case,); whole steps, taken for all together.
+
+    Parameters
+    ----------
+    equations : (cases (k,) still looked for, their unknowns (k, m)) → what is left (k, m) and its derivative (k, m, m).
+    start : (case, m), in units in which a correction counts as one.
+    tolerance : of the norm of the last correction. A case is given up where a correction is twice the one before it.
+    """
+    x, found = start.copy(), np.zeros(len(start), dtype=bool)
+    before, left = np.full(len(x), np.inf), np.arange(len(x))
+    for _ in range(most):
+        residual, slope = equations(left, x[left])
+        change = solved(slope, -residual)
+        size = np.linalg.norm(change, axis=1)
+        closer = size < 2 * before[left]
+        x[left] += change
+        found[left], before[left] = closer & (size < tolerance), size
+        left = left[closer & ~found[left]]
+        if not len(left):
+            break
+    return x, found
