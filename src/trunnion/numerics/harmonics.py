@@ -34,7 +34,7 @@ def at(rows: Array, phases: Array) -> Array:
     """Values (…, phases) at any phases ωt [rad]."""
     h = order(rows)
     # Powers of e^{iφ} by multiplication cost a quarter of sines and cosines; their rounding grows as h only.
-    turns = np.multiply.accumulate(np.broadcast_to(np.exp(1j * phases), (h, len(phases))))
+    turns = np.multiply.accumulate(np.exp(1j * phases)[None].repeat(h, axis=0))
     waves = (rows[..., 1 : h + 1] - 1j * rows[..., h + 1 :]) @ turns
     return np.asarray(rows[..., :1] + waves.real)
 

@@ -144,8 +144,9 @@ class _Balance(Series):
     def scale(self) -> Array:
         return np.append(np.full(self.n * (2 * self.h + 1), self.width), self.range)
 
-    @property
+    @cached_property
     def count(self) -> int:
+        """Samples of a period."""
         return max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(PER_HARMONIC * self.h))))
 
     @cached_property
