@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.exact_map import OscillatorMap
-from trunnion.analyses.orbits.piecewise_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
+from trunnion.analyses.orbits.exact_orbit_result import PiecewiseOrbit
+from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit, refuse_unbounded
 from trunnion.arrays import Array, Integers
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, over

@@ -13,9 +13,8 @@ from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.branch import STEP, Names, PeriodicBranch, Progress, followed
 from trunnion.analyses.orbits.closing import refuse_speed
 from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
-from trunnion.analyses.orbits.exact_orbit import orbit_near, refuse_found_speed
 from trunnion.analyses.orbits.judging import ExactClosing
-from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.analyses.orbits.piecewise_orbit import orbit_near, piecewise_orbit, refuse_found_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly

@@ -1,127 +1,42 @@
-"""Periodic motions of a piecewise linear oscillator by shooting with its exact motion.
+"""Periodic motions of one mass on a piecewise linear spring, or of a driveline, by shooting with the exact motion.
 
-P(x, x′) over one or several forcing periods and its derivative are exact to rounding (``numerics/piecewise``), so
-Newton's method closes the orbit to rounding and the multipliers are those of the motion itself. An orbit that
-touches a breakpoint (grazing) has no derivative there; ``clearance`` says how near it is.
+The motion over one or several periods and its derivatives by start and parameter are known to rounding, saltation at
+every change of stage included (``numerics/piecewise_linear``), so Newton's method closes the orbit to rounding and the
+multipliers are those of the motion itself. An orbit that touches a breakpoint or the end of a stage (grazing) has no
+derivative there; ``clearance`` and, of a line, ``slowest_crossing`` say how near that is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.analyses.motion.exact_motion import StageEvents, first_stages, stage_events, start_state
 from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close, refuse_speed
-from trunnion.analyses.orbits.exact_map import OscillatorMap
-from trunnion.analyses.orbits.exact_orbit import ExactOrbit, exact_orbit
-from trunnion.analyses.orbits.judging import ExactClosing, exact_verdict
-from trunnion.analyses.orbits.spring_contacts import contact_state
-from trunnion.arrays import Array, Complex
+from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
+from trunnion.analyses.orbits.exact_orbit_result import ExactOrbit, PiecewiseOrbit
+from trunnion.analyses.orbits.judging import ExactClosing
+from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
-from trunnion.numerics.curves import fourier
-from trunnion.numerics.piecewise_linear.piecewise import Passage, move, states
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.numerics.continuation.newton import Root
+from trunnion.numerics.piecewise_linear.piecewise import Passage, move
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
 from trunnion.results.outcome import Outcome
-from trunnion.results.speeds import frequency_unit, show_speed
-from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
-NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "clearance")
 CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
-
-
-@dataclass(frozen=True, repr=False)
-class PiecewiseOrbit(Result):
-    """A periodic motion and what it does in a forcing period.
-
-    start (2,): x and x′ at phase zero; periods: forcing periods until it closes; multipliers (2,) by falling modulus;
-    crossings (count, 4): time, x, x′ and regime begun; lowest, highest, mean of x; sides touched; impacts: entries
-    into contact, per forcing period, with Σ m v²/2 (impact_energy) and Σ m |v| (impact_impulse) of them; clearance:
-    least distance of an extremum from a breakpoint; iterations of the shooting.
-    """
-
-    oscillator: PiecewiseOscillator
-    start: Array
-    periods: int
-    multipliers: Complex
-    monodromy: Array
-    crossings: Array
-    lowest: float
-    highest: float
-    mean: float
-    sides: str
-    impacts: float
-    impact_energy: float
-    impact_impulse: float
-    clearance: float
-    iterations: int
-    outcome: Outcome
-
-    @property
-    def peak_to_peak(self) -> float:
-        """Highest minus lowest x."""
-        return self.highest - self.lowest
-
-    @property
-    def contact(self) -> str:
-        """none, one-sided or two-sided."""
-        return contact_state(self.sides)
-
-    @property
-    def verdict(self) -> Verdict:
-        """Stable, unstable, or not told apart."""
-        return exact_verdict(self.multipliers)
-
-    def motion(self, count: int = 512) -> tuple[Array, Array]:
-        """Times (count,) over the orbit's period, its end left out, and states (count, 2)."""
-        o = self.oscillator
-        times = self.periods * o.period * np.arange(count) / count
-        return times, states(o.regimes, o.coefficients, o.frequency, self.start, times)
-
-    def harmonics(self, highest: int) -> Complex:
-        """Fourier coefficients (highest + 1,) of x: x = Re Σ c_k e^{2πikt/T}, integrated between its crossings."""
-        o = self.oscillator
-
-        def x(times: Array) -> Array:
-            found = states(o.regimes, o.coefficients, o.frequency, self.start, np.concatenate([[0.0], times]))
-            return found[1:, :1]
-
-        cuts = np.unique(np.concatenate([[0.0], self.crossings[:, 0], [self.periods * o.period]]))
-        return fourier(x, cuts, highest)[:, 0]
-
-    def declared(self) -> Iterator[Held]:
-        """The motion over its period, its crossings and multipliers, and the numbers read off it."""
-        times, motion = self.motion() if self.outcome.ok else (np.zeros(0), np.zeros((0, 2)))
-        yield axis("time", times, "s")
-        yield over("time", "x", motion[:, 0])
-        yield over("time", "v", motion[:, 1])
-        yield over("crossing", "crossing_time", self.crossings[:, 0], "s")
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        for name in NUMBERS:
-            yield over("", name, getattr(self, name))
-        yield remark("oscillator", self.oscillator.name)
-        yield remark("verdict", str(self.verdict))
-        yield remark("contact", self.contact)
-        yield remark("periods", self.periods)
-        yield from ending(self.outcome)
-
-    def __str__(self) -> str:
-        if not self.outcome.ok:
-            return f"no periodic motion of {self.oscillator.name}: {self.outcome}"
-        at = show_speed(self.oscillator.frequency, frequency_unit(self.oscillator.speed_unit))
-        return (
-            f"{self.verdict} periodic motion of {self.oscillator.name} at ω = {at} "
-            f"over {self.periods} forcing period{'s' if self.periods > 1 else ''}: {MEANING[self.verdict]}\n"
-            f"  x = {self.mean:.6g} with {self.peak_to_peak:.6g} peak to peak; contact {self.contact}, "
-            f"{self.impacts:g} impacts per period; {self.clearance:.2g} from grazing\n"
-            f"  multipliers {self.multipliers[0]:.8g}, {self.multipliers[1]:.8g}; {self.outcome}"
-        )
+SETTLED = 100
+"""Periods after which a motion shows which sliders stick."""
+SINGULAR = 1e-12
+"""Smallest singular value over the largest below which the condition of closing determines nothing."""
 
 
 def refuse_unbounded(oscillator: PiecewiseOscillator) -> None:
@@ -187,7 +102,9 @@ def piecewise_orbit(
     """
     periods = checked_periods(periods)
     if isinstance(oscillator, Driveline | Assembly):
-        return exact_orbit(oscillator, start, speed=speed, periods=periods, settle=settle)
+        line = staged_line(oscillator, speed)
+        refuse_found_speed(line)
+        return orbit_near(line, start_state(line, start), line.value, periods, settle)
     refuse_speed(oscillator.name, speed)
     first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
     if first.shape != (2,) or not np.isfinite(first).all():
@@ -195,24 +112,24 @@ def piecewise_orbit(
     refuse_unbounded(oscillator)
     over_period = OscillatorMap.of(oscillator, periods)
     closing, root = close(first, lambda guess: ExactClosing(over_period, over_period.scale(first)), settle=settle)
-    if root.converged:
-        return orbit_at(oscillator, root.x, periods, root.iterations)
-    words = (
-        f"shooting did not converge (residual {root.size:.1e}); start closer, for example from the end of a sweep, or "
-        "give more periods if the motion is a subharmonic"
-    )
-    return _missing(oscillator, root.x, periods, root.iterations, words)
+    if not root.converged:
+        return _no_orbit_of_mass(over_period, root, _not_converged(root, "the end of a sweep"))
+    return _orbit_of_mass(over_period, root.x, root.iterations)
 
 
-def orbit_at(oscillator: PiecewiseOscillator, start: Array, periods: int, iterations: int = 0) -> PiecewiseOrbit:
-    """The orbit through a state known to lie on it."""
-    over_period = OscillatorMap.of(oscillator, periods)
-    passage, found = over_period(start), over_period.measure(start)
+def _not_converged(root: Root, source: str) -> Outcome:
+    words = f"shooting did not converge (residual {root.size:.1e}); start closer, for example from {source}"
+    return Outcome(False, "not converged", f"{words}, or give more periods if the motion is a subharmonic")
+
+
+def _orbit_of_mass(place: OscillatorMap, start: Array, iterations: int) -> PiecewiseOrbit:
+    oscillator = place.oscillator
+    passage, found = place(start), place.measure(start)
     closes = float(np.abs(passage.state - start).max())
     return PiecewiseOrbit(
         oscillator=oscillator,
         start=start,
-        periods=periods,
+        periods=place.periods,
         multipliers=by_modulus(passage.tangents),
         monodromy=passage.tangents,
         crossings=passage.run.crossings,
@@ -223,30 +140,147 @@ def orbit_at(oscillator: PiecewiseOscillator, start: Array, periods: int, iterat
         impacts=found["impacts"],
         impact_energy=oscillator.inertia * found["energy"],
         impact_impulse=oscillator.inertia * found["impulse"],
-        clearance=_clearance(oscillator, start, periods),
+        clearance=_clearance(oscillator, start, place.length),
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
     )
 
 
-def _clearance(oscillator: PiecewiseOscillator, start: Array, periods: int) -> float:
+def _clearance(oscillator: PiecewiseOscillator, start: Array, length: float) -> float:
     if not oscillator.breakpoints:
         return float("inf")
-    end = periods * oscillator.period
     run: Passage = move(
-        oscillator.regimes, oscillator.coefficients, oscillator.frequency, start, 0.0, end, tangents=False, extrema=True
-    )
+        oscillator.regimes, oscillator.coefficients, oscillator.frequency, start, 0.0, length, tangents=False,
+        extrema=True,
+    )  # fmt: skip
     extrema = run.events[run.events[:, 3] < 0, 1]
     if not len(extrema):
         return float("inf")
     return float(np.abs(extrema[:, None] - np.array(oscillator.breakpoints)).min())
 
 
-def _missing(
-    oscillator: PiecewiseOscillator, start: Array, periods: int, iterations: int, words: str
-) -> PiecewiseOrbit:
+def _no_orbit_of_mass(place: OscillatorMap, root: Root, outcome: Outcome) -> PiecewiseOrbit:
     nan = float("nan")
     return PiecewiseOrbit(
-        oscillator, start, periods, np.full(2, nan, dtype=complex), np.full((2, 2), nan), np.zeros((0, 4)),
-        nan, nan, nan, "none", nan, nan, nan, nan, iterations, Outcome(False, "not converged", words),
+        place.oscillator, root.x, place.periods, np.full(2, nan, dtype=complex), np.full((2, 2), nan),
+        np.zeros((0, 4)), nan, nan, nan, "none", nan, nan, nan, nan, root.iterations, outcome,
+    )  # fmt: skip
+
+
+def refuse_found_speed(line: StagedLine) -> None:
+    """Refuse a line whose excitation turns with a speed that its own loads lead to.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if line.turns and line.clock in ("speed", "both"):
+        raise InputError(
+            "starts free under viscous loads, so the speed that its excitation turns with is a result, not given",
+            element="driveline", key="viscous_load",
+            remedy="put a ConstantSpeed in front, or use tn.periodic_response, which finds the speed",
+        )  # fmt: skip
+
+
+def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
+    """The periodic motion near ``start`` (2m,) at a value of the clock."""
+    place = LineMap(value, periods, line)
+    if not line.sliders:
+        return _closed(place, start, settle)
+    # Which sliders stick is told by the motion once it has settled, and again by the orbit found.
+    settled = place.settle(start[place.kept], SETTLED) if settle else start[place.kept]
+    if settled is None:
+        words = "stages change too often in a period; raise damping"
+        return _no_orbit_of_line(place, start, Outcome(False, "chatter", words))
+    whole = place.whole(settled)
+    passage = place.watched(settled)
+    for _ in range(2 * len(line.sliders) + 1):
+        tried, place = place, replace(place, stuck=place.idle(passage, whole))
+        orbit = _closed(place, whole, settle)
+        if not orbit.outcome.ok:
+            break
+        passage, whole = place.watched(orbit.start[place.kept]), orbit.start
+        if place.idle(passage, whole) == place.stuck or place.stuck == tried.stuck:
+            break
+    return orbit
+
+
+def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
+    closing, root = close(
+        start[place.kept], lambda guess: ExactClosing(place, place.scale(place.whole(guess))), settle=settle
+    )
+    if not root.converged:
+        outcome = _not_converged(root, "the final state of a longer tn.exact_motion")
+        return _no_orbit_of_line(place, start, outcome)
+    if not _determined(root, closing.scale):
+        words = (
+            "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
+            "own frequency; give some damping or another frequency"
+        )
+        return _no_orbit_of_line(place, start, Outcome(False, "not determined", words))
+    return _orbit_of_line(place, root.x, root.iterations)
+
+
+def _determined(root: Root, scale: Array) -> bool:
+    """Whether the closing condition fixes the motion: its derivative is not singular."""
+    sizes = np.linalg.svd(root.derivative * scale[None, :] / scale[:, None], compute_uv=False)
+    return bool(sizes[-1] > SINGULAR * max(sizes[0], 1.0))
+
+
+def _orbit_of_line(place: LineMap, part: Array, iterations: int) -> ExactOrbit:
+    line, start, length = place.line, place.whole(part), place.length
+    passage, k, count = place(part, watch=True), kernel(), len(place.line.springs)
+    run = passage.run
+    closes = float(np.max(np.abs(passage.state - part) / place.scale(start)))
+    seen, rates = run.seen[:count], run.events[run.events[:, 1] < count, 4]
+    return ExactOrbit(
+        line=line,
+        value=place.value,
+        start=start,
+        period=length,
+        periods=place.periods,
+        multipliers=by_modulus(passage.tangents),
+        monodromy=passage.tangents,
+        events=stage_events(line, run),
+        twist_low=seen[:, k.LOW],
+        twist_high=seen[:, k.HIGH],
+        twist_mean=seen[:, k.TWIST_SUM] / length,
+        torque_low=seen[:, k.TORQUE_LOW],
+        torque_high=seen[:, k.TORQUE_HIGH],
+        torque_mean=seen[:, k.TORQUE_SUM] / length,
+        contacts=contacts_of(place, start, run),
+        clearance=float(seen[:, k.CLEARANCE].min()),
+        slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
+        iterations=iterations,
+        outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
+        stuck=tuple(line.rows[row] for row, _ in place.stuck),
+    )
+
+
+def contacts_of(place: LineMap, start: Array, run: StagedPassage) -> tuple[SpringContact, ...]:
+    """What every spring with stages touches in a watched passage from ``start`` (2m,), and how hard it lands.
+
+    An impact is a passage from the softest stage to another, its energy ½ m q̇² with the inertia m that the rest of the
+    line opposes to a push between the ends of the spring.
+    """
+    line, found = place.line, []
+    first, events = first_stages(line, start), stage_events(line, run)
+    for e in line.staged:
+        own = events.spring == e
+        sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
+        landed = (sides[1:] != 0) & (sides[:-1] == 0)
+        speeds = np.abs(events.rate[own][landed])
+        shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / place.length
+        stages = line.sides[e, : line.counts[e]]
+        found.append(SpringContact.of(line.springs[e], shares, stages, speeds, 1 / line.inverse[e, e]))
+    return tuple(found)
+
+
+def _no_orbit_of_line(place: LineMap, start: Array, outcome: Outcome) -> ExactOrbit:
+    nan, n, count = float("nan"), place.size, len(place.line.springs)
+    none, whole = np.full(count, nan), np.zeros(0, dtype=np.int64)
+    return ExactOrbit(
+        place.line, place.value, start, place.length, place.periods, np.full(n, nan, dtype=complex),
+        np.full((n, n), nan), StageEvents(np.zeros(0), whole, whole, whole, np.zeros(0)), none, none, none, none, none,
+        none, (), nan, nan, 0, outcome,
     )  # fmt: skip

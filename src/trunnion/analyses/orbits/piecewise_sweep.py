@@ -16,9 +16,8 @@ from numpy.typing import ArrayLike
 from trunnion.analyses.motion.exact_motion import start_state
 from trunnion.analyses.orbits.closing import refuse_speed
 from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
-from trunnion.analyses.orbits.exact_orbit import contacts_of
 from trunnion.analyses.orbits.piecewise_branch import line_over
-from trunnion.analyses.orbits.piecewise_orbit import CONTACT, refuse_unbounded
+from trunnion.analyses.orbits.piecewise_orbit import CONTACT, contacts_of, refuse_unbounded
 from trunnion.analyses.orbits.spring_contacts import SpringContact, contact_state
 from trunnion.analyses.orbits.sweep_result import LineSweep, Sweep
 from trunnion.arrays import Array, Flags, Integers
