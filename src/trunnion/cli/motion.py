@@ -31,7 +31,7 @@ from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.analyses.motion.run_up import RunUp
-    from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+    from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
     from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 
 Subject = Annotated[

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
-from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, shown

@@ -13,8 +13,7 @@ import numpy as np
 
 from trunnion.analyses.linear.mode_content import ModeMotion, floquet_pair
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
-from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
-from trunnion.analyses.orbits.periodic_orbit import TOLERANCE
+from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble

@@ -22,7 +22,7 @@ from trunnion.analyses.linear.forced_response import LINEAR_RANGE, LinearRespons
 from trunnion.analyses.linear.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.linear.resonance_speeds import Resonance, Source, sources
-from trunnion.analyses.orbits.orbit_result import speed_in_words
+from trunnion.analyses.orbits.periodic_orbit import speed_in_words
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline

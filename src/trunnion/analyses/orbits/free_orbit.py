@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.closing import Phase, close
 from trunnion.analyses.orbits.judging import IntegratedClosing, Neutral
-from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
-from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, closing_of, judged
+from trunnion.analyses.orbits.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, PeriodicOrbit, closing_of, judged
 from trunnion.arrays import Array
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import SPEED

@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP
 from trunnion.analyses.orbits.judging import CLEAR, IntegratedClosing
+from trunnion.analyses.orbits.periodic_branch import SystemOver, system_over
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
-from trunnion.analyses.orbits.systems_over import SystemOver, system_over
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter

@@ -22,8 +22,7 @@ from trunnion.analyses.orbits.free_orbit import (
     torque_driven_orbit,
 )
 from trunnion.analyses.orbits.linear_comparison import LinearComparison, compared
-from trunnion.analyses.orbits.orbit_result import PeriodicOrbit, speed_in_words
-from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, periodic_orbit
+from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit, speed_in_words
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline

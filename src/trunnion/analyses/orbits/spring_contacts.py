@@ -12,7 +12,7 @@ from typing import Self
 
 import numpy as np
 
-from trunnion.analyses.orbits.orbit_result import PeriodicOrbit
+from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
 from trunnion.arrays import Array, Integers
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.line_regimes import StagedSpring, staged_springs

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from trunnion.analyses.perturbation.fitted_slow_flow import FittedSlowFlow
+from trunnion.analyses.perturbation.cubic_fit import FittedSlowFlow
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 SAMPLES = 16

@@ -22,7 +22,7 @@ from __future__ import annotations
 import cmath
 from math import sqrt
 
-from trunnion.analyses.perturbation.fitted_slow_flow import FittedSlowFlow
+from trunnion.analyses.perturbation.cubic_fit import FittedSlowFlow
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
