@@ -58,8 +58,7 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.orbits.frequency_response import methods_of
-    from trunnion.analyses.orbits.frequency_response_result import ResponseComparison
+    from trunnion.analyses.orbits.frequency_response import ResponseComparison, methods_of
 
     subject, length = _subject(name, parameters)
     unit = _unit(subject)

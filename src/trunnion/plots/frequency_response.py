@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from trunnion.analyses.orbits.basins import Basins
-    from trunnion.analyses.orbits.sweep_result import LineSweep, Sweep
+    from trunnion.analyses.orbits.piecewise_sweep import LineSweep, Sweep
 
 STYLES = {
     "exact": ("#1a1a1a", 3.0),
@@ -265,7 +265,7 @@ def draw_response(
     top: float | None = None,
 ) -> Axes:
     """``draw_responses`` of one method's curve, or of all that a comparison holds."""
-    from trunnion.analyses.orbits.frequency_response_result import ResponseComparison
+    from trunnion.analyses.orbits.frequency_response import ResponseComparison
 
     responses = found.responses if isinstance(found, ResponseComparison) else {found.method: found}
     return draw_responses(responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)

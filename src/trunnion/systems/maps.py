@@ -255,6 +255,18 @@ class _Applied(ABC):
         return self.apply(state, np.eye(self.system.size)).tangents.T
 
 
+def checked_periods(periods: int) -> int:
+    """The number of periods, if it is one.
+
+    Raises
+    ------
+    InputError : not a whole number from 1.
+    """
+    if isinstance(periods, bool) or periods != int(periods) or periods < 1:
+        raise InputError("must be a whole number from 1", key="periods", value=periods)
+    return int(periods)
+
+
 @dataclass(frozen=True)
 class StroboscopicMap(_Applied):
     """x(t₀) → x(t₀ + periods · T); each application starts at the same phase, so no digits are lost to time.
@@ -277,8 +289,7 @@ class StroboscopicMap(_Applied):
     most_steps: int = MOST_STEPS
 
     def __post_init__(self) -> None:
-        if isinstance(self.periods, bool) or self.periods != int(self.periods) or self.periods < 1:
-            raise InputError("must be a whole number from 1", key="periods", value=self.periods)
+        checked_periods(self.periods)
         _ = self.duration  # refuses what has no period
 
     @cached_property

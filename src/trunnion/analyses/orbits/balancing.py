@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -72,6 +72,9 @@ class SeriesBranch(Result):
         return f"harmonic balance with {self.harmonics} harmonics, {self._worst}\n{self.branch}"
 
 
+S = TypeVar("S", bound=SeriesBranch)
+
+
 class Balance(Problem, Protocol):
     """The balance of h harmonics as equations of a curve z = (series, parameter)."""
 
@@ -94,18 +97,8 @@ class Series:
         return point.z[:-1].reshape(-1, 2 * self.h + 1)
 
 
-@dataclass(frozen=True)
-class Found:
-    """The branch, and what its series are."""
-
-    problem: Any
-    points: list[CurvePoint]
-    branch: PeriodicBranch
-    rows: Array
-    tail: Array
-
-
 def balanced(
+    kind: type[S],
     make: Callable[[int], Balance],
     harmonics: int | None,
     fewest: int,
@@ -115,15 +108,15 @@ def balanced(
     low: float,
     high: float,
     most_points: int,
-) -> Found:
+) -> S:
     """The branch with ``harmonics``, or doubled from ``fewest`` until the tail is below ``limit`` everywhere."""
     *tried, last = [harmonics] if harmonics is not None else doubled(fewest, most)
     with on_one_thread():
         for h in tried:
-            found = _followed(make(h), begin, low, high, most_points, limit)
+            found = _followed(kind, make(h), begin, low, high, most_points, limit)
             if found is not None and np.all(found.tail < limit):
                 return found
-        found = _followed(make(last), begin, low, high, most_points, np.inf)
+        found = _followed(kind, make(last), begin, low, high, most_points, np.inf)
     assert found is not None
     return found if harmonics is not None else _judged(found, limit)
 
@@ -147,7 +140,9 @@ def _libraries() -> ThreadpoolController:
     return ThreadpoolController()
 
 
-def _followed(problem: Balance, begin: float, low: float, high: float, most_points: int, limit: float) -> Found | None:
+def _followed(
+    kind: type[S], problem: Balance, begin: float, low: float, high: float, most_points: int, limit: float
+) -> S | None:
     """The branch; None as soon as a point of it needs more harmonics to keep its tail below the limit."""
 
     def stop(point: CurvePoint) -> bool:
@@ -161,18 +156,17 @@ def _followed(problem: Balance, begin: float, low: float, high: float, most_poin
         near = problem.over.said(begin)
         nothing = f"no motion with {problem.h} harmonics was found near {near}; give a start"
         outcome = Outcome(False, "not found", nothing)
-    points = [point for point, _ in walk]
     shape = -1, (len(problem.scale) - 1) // (2 * problem.h + 1), 2 * problem.h + 1
-    rows = np.array([problem.rows(point) for point in points]).reshape(shape)
-    return Found(problem, points, collect(problem, walk, outcome), rows, np.array([tail_of(row) for row in rows]))
+    rows = np.array([problem.rows(point) for point, _ in walk]).reshape(shape)
+    return kind(collect(problem, walk, outcome), rows, np.array([tail_of(row) for row in rows]), problem.periods)
 
 
-def _judged(found: Found, limit: float) -> Found:
+def _judged(found: S, limit: float) -> S:
     """With the outcome that the tail asked for was not reached, if so."""
     worst, outcome = found.tail.max(initial=0.0), found.branch.outcome
     if worst < limit:
         return found
-    words = f"{outcome.sentence}; the last of {found.problem.h} harmonics are still {worst:.1e} of the motion"
+    words = f"{outcome.sentence}; the last of {found.harmonics} harmonics are still {worst:.1e} of the motion"
     short = Outcome(False, "tail", f"{words}: raise tail above {limit:.1g}, or give harmonics")
     return replace(found, branch=replace(found.branch, outcome=short))
 

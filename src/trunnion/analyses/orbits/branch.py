@@ -344,9 +344,9 @@ def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tupl
     """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
     folds = dict(curve.folds)
     tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
-        ("period doubling", _doubling),
+        ("period doubling", lambda values: float(np.prod(values + 1).real)),
         ("Neimark–Sacker", _torus),
-        ("branch point", _branching),
+        ("branch point", lambda values: float(np.prod(values - 1).real)),
     )
     changes = [problem.changes(point) for point in curve.points]
     values = [problem.multipliers(point) for point in curve.points]
@@ -377,14 +377,6 @@ def _located(
     problem: Problem, here: CurvePoint, there: CurvePoint, test: Callable[[CurvePoint], float]
 ) -> CurvePoint | None:
     return locate(problem.equations, here, there, test, scale=problem.scale, tolerance=CLOSE)
-
-
-def _doubling(values: Complex) -> float:
-    return float(np.prod(values + 1).real)
-
-
-def _branching(values: Complex) -> float:
-    return float(np.prod(values - 1).real)
 
 
 def _torus(values: Complex) -> float:

@@ -156,18 +156,6 @@ def by_modulus(matrix: Array) -> Complex:
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
-def checked_periods(periods: int) -> int:
-    """The number of periods, if it is one.
-
-    Raises
-    ------
-    InputError : not a whole number from 1.
-    """
-    if isinstance(periods, bool) or periods != int(periods) or periods < 1:
-        raise InputError("must be a whole number from 1", key="periods", value=periods)
-    return int(periods)
-
-
 def refuse_speed(oscillator: str, speed: float | None) -> None:
     """Refuse a speed given beside an oscillator, which has none.
 

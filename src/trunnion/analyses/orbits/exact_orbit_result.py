@@ -25,7 +25,7 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "clearance")
 
 
-class ExactMotion(Result):
+class ExactMotion:
     """What has multipliers known to rounding."""
 
     multipliers: Complex
@@ -37,7 +37,7 @@ class ExactMotion(Result):
 
 
 @dataclass(frozen=True, repr=False)
-class PiecewiseOrbit(ExactMotion):
+class PiecewiseOrbit(ExactMotion, Result):
     """A periodic motion and what it does in a forcing period.
 
     start (2,): x and x′ at phase zero; periods: forcing periods until it closes; multipliers (2,) by falling modulus;
@@ -119,7 +119,7 @@ class PiecewiseOrbit(ExactMotion):
 
 
 @dataclass(frozen=True, repr=False)
-class ExactOrbit(ExactMotion):
+class ExactOrbit(ExactMotion, Result):
     """A periodic motion of a line with stages and what it does in its period.
 
     value: speed or common frequency of the excitation [rad/s], whichever turns the line's excitation; start (2m,):

@@ -126,11 +126,13 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     faster = np.concatenate([np.zeros(n), turn, others])
     column, elements = line.assembly.packed.column, line.assembly.line.elements
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
-    unsteady = []
-    for _, i in topo.disks:
-        count = len(getattr(elements[i], "excitation", None) or ())
-        keys = ("amplitude", "quadratic_amplitude")
-        unsteady += [c for h in range(1, count + 1) for k in keys if (c := column(i, f"excitation {h} {k}")) >= 0]
+    unsteady = [
+        place
+        for _, i in topo.disks
+        for h, _ in enumerate(getattr(elements[i], "excitation", None) or (), start=1)
+        for key in ("amplitude", "quadratic_amplitude")
+        if (place := column(i, f"excitation {h} {key}")) >= 0
+    ]
 
     def at(system: System, x: Array) -> Neutral:
         by_speed = _any(line, system, loads)

@@ -47,13 +47,14 @@ FAR = 100.0
 
 @dataclass(frozen=True, repr=False)
 class HarmonicBalance(SeriesBranch):
-    """A branch of periodic motions as Fourier series; see ``SeriesBranch``.
+    """A branch of periodic motions as Fourier series; see ``SeriesBranch``."""
 
-    defect (points,): distance between start and end of the true motion through the series' start, in units of the
-    states' scales, NaN where that motion cannot be computed (at a grazing).
-    """
-
-    defect: Array
+    @cached_property
+    def defect(self) -> Array:
+        """Distance (points,) between start and end of the true motion through the series' start, in units of the
+        states' scales; NaN where that motion cannot be computed (at a grazing)."""
+        assert isinstance(self.branch.problem, _Balance)
+        return np.array([self.branch.problem.defect(CurvePoint(z, z, 0)) for z in self.branch.unknowns])
 
     def declared(self) -> Iterator[Held]:
         """What the branch holds, with the series and how far it is off."""
@@ -110,12 +111,10 @@ def harmonic_balance(
     family = system_over(line, parameter, low, high, begin, speed, longest_step / STEP)
     limit = tail or (TAIL if family.at(family.begin).regimes is None else KINKED_TAIL)
     begun = _first_rows(family, start, periods, harmonics or FEWEST * periods)
-    found = balanced(
-        lambda h: _Balance(family, periods, h, begun), harmonics, FEWEST * periods, MOST, limit, family.begin, low,
-        high, most_points,
+    return balanced(
+        HarmonicBalance, lambda h: _Balance(family, periods, h, begun), harmonics, FEWEST * periods, MOST, limit,
+        family.begin, low, high, most_points,
     )  # fmt: skip
-    defect = np.array([found.problem.defect(point) for point in found.points])
-    return HarmonicBalance(found.branch, found.rows, found.tail, periods, defect)
 
 
 def _first_rows(family: SystemOver, start: ArrayLike | None, periods: int, h: int) -> Array:

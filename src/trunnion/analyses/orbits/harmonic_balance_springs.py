@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.analyses.orbits.branch import STEP, Names, once
 from trunnion.analyses.orbits.closing import by_modulus
-from trunnion.analyses.orbits.piecewise_branch import check_range
+from trunnion.analyses.orbits.piecewise_branch import begun_within
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
@@ -85,10 +85,7 @@ def balance_springs(
     ------
     InputError : a range that does not rise, fewer harmonics than the force has, a start of another shape.
     """
-    check_range(low, high)
-    first = low if begin is None else float(begin)
-    if not low <= first <= high:
-        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    first = begun_within(low, high, begin)
     needed = periods * max(k for k, _, _ in system.harmonics)
     if harmonics is not None and harmonics < needed:
         raise InputError(f"must be {needed} or more, those of the force", key="harmonics", value=harmonics)
@@ -96,11 +93,10 @@ def balance_springs(
     if rows is not None and (rows.shape[0] != system.size or rows.shape[1] % 2 == 0):
         raise InputError(f"must be series of {system.size} unknowns", key="start", value=rows.shape)
     width = (high - low) * longest_step / STEP
-    found = balanced(
-        lambda h: _Balance(system, h, periods, width, first, rows), harmonics, max(FEWEST * periods, needed), MOST,
-        tail, first, low, high, most_points,
+    return balanced(
+        SpringBalance, lambda h: _Balance(system, h, periods, width, first, rows), harmonics,
+        max(FEWEST * periods, needed), MOST, tail, first, low, high, most_points,
     )  # fmt: skip
-    return SpringBalance(found.branch, found.rows, found.tail, periods)
 
 
 @dataclass
@@ -113,9 +109,6 @@ class _Balance(Series):
     range: float
     begin: float
     given: Array | None
-
-    def first(self) -> Array:
-        return self.begun(self.begin, self.starts)
 
     @cached_property
     def starts(self) -> list[Array]:
@@ -193,9 +186,10 @@ class _Balance(Series):
                 found.append(np.asarray(np.linalg.lstsq(flat, force.ravel(), rcond=None)[0].reshape(self.n, -1)))
         return found
 
-    def begun(self, omega: float, guesses: list[Array]) -> Array:
-        """Where damped Newton's method arrives from one of the guesses; else the motion with much damping added,
-        followed while that is taken away. The first guess itself where all fail."""
+    def first(self) -> Array:
+        """Where damped Newton's method arrives from one of the starts; else the motion with much damping added,
+        followed while that is taken away. The first start itself where all fail."""
+        omega, guesses = self.begin, self.starts
         for guess in guesses:
             root = self.root(omega, guess)
             if root.converged:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
-from trunnion.analyses.orbits.closing import Phase, checked_periods, close
+from trunnion.analyses.orbits.closing import Phase, close
 from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, rests
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
@@ -31,7 +31,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axis
 from trunnion.results.verdict import MEANING, Verdict, verdicts
-from trunnion.systems.maps import IntegratedMap, TimedMap
+from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
 from trunnion.systems.system import System
 
 TOLERANCE = 1e-11
@@ -299,11 +299,11 @@ def _shares(place: IntegratedMap, run: Trajectory, x: Array) -> int:
     moved = np.ptp(run.state, axis=0) + 1e-300
     if np.all(moved <= 1e-9 * np.asarray(place.system.scale)):
         return 1
-    for share in range(MOST_SHARES if free else place.periods, 1, -1):
-        if free or place.periods % share == 0:
-            off = np.abs(run.at(np.array([place.phase + place.length / share]))[0] - x)
-            if np.all(off <= 1e-5 * moved):
-                return share
+    whole = [share for share in range(place.periods, 1, -1) if place.periods % share == 0]
+    for share in range(MOST_SHARES, 1, -1) if free else whole:
+        off = np.abs(run.at(np.array([place.phase + place.length / share]))[0] - x)
+        if np.all(off <= 1e-5 * moved):
+            return share
     return 1
 
 

@@ -120,7 +120,10 @@ class PeriodicResponse(Judged):
     @cached_property
     def motion(self) -> LineMotion:
         """Twists, torques and rotations at ``time``."""
-        return self.line.observe(self.orbit.system, self.time, self.orbit.trajectory.at(self.time))
+        return self._at(self.time)
+
+    def _at(self, times: Array) -> LineMotion:
+        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times))
 
     @property
     def twist(self) -> Array:
@@ -134,7 +137,7 @@ class PeriodicResponse(Judged):
 
     @cached_property
     def _torque_extremes(self) -> Extremes:
-        return extremes(self._torque_at, self.orbit.trajectory.time_of_state)
+        return extremes(lambda times: self._at(times).torque, self.orbit.trajectory.time_of_state)
 
     @property
     def torque_peak_to_peak(self) -> Array:
@@ -146,12 +149,6 @@ class PeriodicResponse(Judged):
     def peak_torque(self) -> Array:
         """Largest |torque| of every shaft [N m] over the period; NaN where no motion was found."""
         return self._torque_extremes.largest if self.outcome.ok else np.full(len(self.shafts), np.nan)
-
-    def _torque_at(self, times: Array) -> Array:
-        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times)).torque
-
-    def _input_at(self, times: Array) -> Array:
-        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times)).rotation[:, :1]
 
     @property
     def torque_amplitude(self) -> Array:
@@ -181,10 +178,10 @@ class PeriodicResponse(Judged):
         if not self.outcome.ok:
             return orders, np.full((count, len(self.shafts)), np.nan, dtype=complex)
         times = self.orbit.trajectory.time_of_state
-        found = fourier(self._torque_at, times, count - 1)
+        found = fourier(lambda times: self._at(times).torque, times, count - 1)
         begun = self.speed * times[0]
         if self.line.assembly.topology.free:  # a shift of time is no change there: count from where the input turns
-            begun += float(fourier(self._input_at, times, 0)[0, 0].real)
+            begun += float(fourier(lambda times: self._at(times).rotation[:, :1], times, 0)[0, 0].real)
         return orders, np.asarray(found * np.exp(-1j * orders * begun)[:, None])
 
     def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
@@ -292,13 +289,12 @@ def periodic_response(
     if not compare or not orbit.outcome.ok:
         return response
     try:
-        comparison, reason = (
-            compared(response.speed, description, response.growth_rate, response.torque_peak_to_peak, response.shafts),
-            "",
+        comparison = compared(
+            response.speed, description, response.growth_rate, response.torque_peak_to_peak, response.shafts
         )
     except (InputError, ComputationError) as error:
-        comparison, reason = None, f"does not apply ({error})"
-    return PeriodicResponse(prepared, prepared.speed, orbit, comparison, reason)
+        return replace(response, no_comparison=f"does not apply ({error})")
+    return replace(response, comparison=comparison, no_comparison="")
 
 
 def _forced(

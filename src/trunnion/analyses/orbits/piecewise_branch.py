@@ -35,6 +35,20 @@ def check_range(low: float, high: float) -> None:
         raise InputError("must be a rising range of positive frequencies", key="low, high", value=[low, high])
 
 
+def begun_within(low: float, high: float, begin: float | None) -> float:
+    """Where a branch over a range of frequencies begins: ``low``, or ``begin`` within it.
+
+    Raises
+    ------
+    InputError : no rising range, a frequency outside it.
+    """
+    check_range(low, high)
+    first = low if begin is None else float(begin)
+    if not low <= first <= high:
+        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    return first
+
+
 def piecewise_branch(
     oscillator: PiecewiseOscillator | Driveline | Assembly,
     low: float,
@@ -72,10 +86,7 @@ def piecewise_branch(
     InputError : a range that does not rise, a frequency outside it, an undamped linear resonance; a driveline
         without exact motion, or excited both by its rotation and in time.
     """
-    check_range(low, high)
-    first = low if begin is None else float(begin)
-    if not low <= first <= high:
-        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+    first = begun_within(low, high, begin)
     if isinstance(oscillator, Driveline | Assembly):
         return _of_line(oscillator, low, high, first, start, speed, periods, longest_step, most_points, progress)
     refuse_speed(oscillator.name, speed)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.exact_motion import StageEvents, first_stages, stage_events, start_state
-from trunnion.analyses.orbits.closing import by_modulus, checked_periods, close, refuse_speed
+from trunnion.analyses.orbits.closing import by_modulus, close, refuse_speed
 from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
 from trunnion.analyses.orbits.exact_orbit_result import ExactOrbit, PiecewiseOrbit
 from trunnion.analyses.orbits.judging import ExactClosing
@@ -29,6 +29,7 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.piecewise_linear.piecewise import Passage, move
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
 from trunnion.results.outcome import Outcome
+from trunnion.systems.maps import checked_periods
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 CONTACT = ("none", "upper", "lower", "both")

@@ -82,7 +82,7 @@ def follow(
     smallest_step: float = 1e-7,
     most_points: int = 1000,
     tolerance: float = 1e-10,
-    on_point: Callable[[CurvePoint], bool] | None = None,
+    on_point: Callable[[CurvePoint], bool] = lambda point: False,
 ) -> Curve:
     """The curve from ``start`` on.
 
@@ -107,10 +107,10 @@ def follow(
     if point is None:
         return Curve((), (), Ending.STALLED)
     if point.tangent[-1] * direction < 0:
-        point = _turned(point)
+        point = CurvePoint(point.z, -point.tangent, point.corrections)
     points, folds = [point], []
     step, ending = first_step, Ending.POINTS
-    if on_point is not None and on_point(point):
+    if on_point(point):
         return Curve((point,), (), Ending.STOPPED)
     while len(points) < most_points:
         found = _step(equations, point, step, scale, tolerance)
@@ -124,8 +124,7 @@ def follow(
             edge = _on_edge(equations, point, found, bounds, scale, tolerance)
             if edge is not None:
                 points.append(edge)
-                if on_point is not None:
-                    on_point(edge)
+                on_point(edge)
             ending = Ending.BOUND
             break
         if found.tangent[-1] * point.tangent[-1] < 0:
@@ -133,7 +132,7 @@ def follow(
             if fold is not None:
                 folds.append((len(points) - 1, fold))
         points.append(found)
-        if on_point is not None and on_point(found):
+        if on_point(found):
             ending = Ending.STOPPED
             break
         if len(points) > 4 and _back(points[0], point, found, scale):
@@ -232,10 +231,6 @@ def _step(equations: Equations, point: CurvePoint, step: float, scale: Array, to
     predicted = point.z + step * point.tangent * scale
     found = correct(equations, predicted, point.tangent, scale=scale, tolerance=tolerance)
     return found if found is not None and found.tangent @ point.tangent > STRAIGHT else None
-
-
-def _turned(point: CurvePoint) -> CurvePoint:
-    return CurvePoint(point.z, -point.tangent, point.corrections)
 
 
 def _on_edge(

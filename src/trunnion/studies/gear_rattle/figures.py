@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.analyses.orbits.basins import Basins
-from trunnion.analyses.orbits.frequency_response_result import FrequencyResponse, ResponseComparison
-from trunnion.analyses.orbits.sweep_result import Sweep
+from trunnion.analyses.orbits.frequency_response import FrequencyResponse, ResponseComparison
+from trunnion.analyses.orbits.piecewise_sweep import Sweep
 from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
 from trunnion.plots.frequency_response import DASHED, draw_basins, draw_responses
 from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain

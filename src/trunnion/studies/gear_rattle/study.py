@@ -14,13 +14,13 @@ import numpy as np
 from trunnion.analyses.orbits.basins import Basins, basins
 from trunnion.analyses.orbits.frequency_response import (
     METHODS,
+    FrequencyResponse,
+    ResponseComparison,
     compare_responses,
     frequency_response,
 )
-from trunnion.analyses.orbits.frequency_response_result import FrequencyResponse, ResponseComparison
 from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.analyses.orbits.piecewise_sweep import sweep
-from trunnion.analyses.orbits.sweep_result import Sweep
+from trunnion.analyses.orbits.piecewise_sweep import Sweep, sweep
 from trunnion.analyses.perturbation.multiple_scales import multiple_scales
 from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
 from trunnion.studies.gear_rattle.figures import basins_figure, index_figure, methods_figure, ranges_figure
