@@ -19,7 +19,7 @@ from trunnion.analyses.assessment.couplings import frequency_factor
 from trunnion.analyses.assessment.joint_angles import allowed_angle
 from trunnion.analyses.assessment.ship_shafts import barred_range, permissible_stress
 from trunnion.cli import app
-from trunnion.reporting.binding import binding_picture, binding_words
+from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.overview import overview
 from trunnion.reporting.tables import with_signs
 
@@ -421,10 +421,11 @@ def test_the_report_draws_what_binds(of, limit, label):
         operation=tn.Operation(speed=100.0, speed_range=[90.0, 105.0]),
     )
     seen = overview(line)
-    drawn = binding_picture(seen)["binding"].figure.axes[0]
+    shown = binding_picture(seen)
+    drawn = shown.figure.axes[0]
     assert drawn.get_ylabel() == label and drawn.get_title().endswith(f"of {of}")
     assert next(iter(limit)).replace("_", " ") in " ".join(one.get_label() for one in drawn.lines)
-    assert binding_words(seen).startswith(label.partition(" [")[0].capitalize())
+    assert shown.caption.startswith(label.partition(" [")[0].capitalize())
 
 
 PAGE = Path(__file__).parents[2] / "docs" / "assess.md"

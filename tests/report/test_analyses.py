@@ -1,4 +1,4 @@
-"""The analyses behind the report: forced response over speed, the limit angle, bending speeds, crossings."""
+"""The analyses behind the report: forced response over speed, the limit angle, bending speeds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import pytest
 import trunnion as tn
 from trunnion.analyses.limits.result import LimitKind
 from trunnion.analyses.linear.bending import tube_critical_speed
-from trunnion.plots.speed_frequency import crossings
 
 LINE = tn.catalogue("two-shaft-cardan", angle=0.3)
 
@@ -93,12 +92,3 @@ def test_bending_speeds_of_a_line() -> None:
     assert found.assumed_modulus and found.young_modulus == pytest.approx(2.6 * 79.3e9)
     assert found.input_speed == pytest.approx(2 * found.critical_speed)
     assert tn.bending_speeds(line()) == ()
-
-
-def test_crossings_lie_on_both_lines() -> None:
-    found = crossings(LINE, 0.1, 2.0)
-    modes = tn.natural_frequencies(LINE).frequency
-    assert {(c.order, c.mode) for c in found} == {(2, 1), (4, 1), (2, 2), (4, 2)}
-    for c in found:
-        assert c.order * c.ratio * c.speed == pytest.approx(modes[c.mode - 1], rel=1e-12)
-        assert c.excited

@@ -61,13 +61,15 @@ def campbell_diagram(
     line, unit = read_case(file, unit, load_case)
     import numpy as np
 
-    from trunnion.plots.style import check_format, save
+    from trunnion.plots.formats import check_format
     from trunnion.reporting.ranges import speed_range
 
     if picture is not None:
         check_format(picture)
     result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
     if picture is not None:
+        from trunnion.plots.style import save
+
         save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
     if as_json:
         output.write_json("campbell-diagram", result.to_dict())

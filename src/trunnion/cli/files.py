@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from trunnion.errors import InputError
-from trunnion.plots.style import FORMATS
+from trunnion.plots.formats import FORMATS
 
 DATA_FORMATS = ("nc", "csv")
 REPORTS = (".html", ".htm")

@@ -31,12 +31,15 @@ def check_places(to: list[Path] | None, endings: tuple[str, ...] = ()) -> None:
 
 def write_result(path: Path, found: Any, draw: Callable[[], Any], table: Any = None) -> Path:
     """Numbers or picture by the ending of ``path``; ``table`` as of ``write_numbers``."""
-    from trunnion.plots.style import FORMATS, save
-    from trunnion.results.written import write_numbers
+    from trunnion.plots.formats import FORMATS
 
     if path.suffix.removeprefix(".").lower() in FORMATS:
+        from trunnion.plots.style import save
+
         save(draw().figure.figure, path)
     else:
+        from trunnion.results.written import write_numbers
+
         write_numbers(found, path, table)
     return path
 

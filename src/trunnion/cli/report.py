@@ -43,7 +43,7 @@ def print_answer(given: Answer) -> None:
     output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 
 
-def print_overview(seen: Overview) -> None:
+def print_overview(seen: Overview, given: Answer) -> None:
     """What follows the answer: modes, resonance speeds, the joints, stability at one speed, the chart."""
     unit, (low, high) = seen.unit, seen.speed_range
     output.heading("Driveline")
@@ -65,7 +65,7 @@ def print_overview(seen: Overview) -> None:
     if seen.chart is not None:
         output.heading("Stability chart, all joints at one angle")
         output.say(chart_text(seen.chart, unit), wrap=True)
-    known = set(seen.answer.findings)
+    known = set(given.findings)
     if more := [finding for finding in seen.findings if finding not in known]:
         output.findings(more, "Further findings")
 

@@ -67,7 +67,7 @@ def analyze(
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
-    print_overview(seen)
+    print_overview(seen, given)
     output.written(written)
 
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.linear.campbell_diagram import CampbellDiagram
 from trunnion.driveline.operation import Operation
+from trunnion.plots.over_speed import over_speed
 from trunnion.plots.resonance_marks import spread
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import FAINT, INK, SMALL, VERMILION, key_below, new_axes
 from trunnion.results.speeds import speed_factor
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-VERMILION = "#d55e00"
 BAND = "#dde6ee"
 HEADROOM = 1.35
 """Height of the picture over the highest mode that is crossed, or else the lowest mode."""
@@ -38,35 +34,29 @@ def draw(
     x, y = speed_factor(unit), speed_factor(frequency_unit)
     speed = result.speed
     top = _top(result)
-    axes.set_xlim(speed[0] * x, speed[-1] * x)
     axes.set_ylim(0, top * y)
     for m in range(len(result.mode)):
         w = result.frequency[:, m]
-        label: dict[str, Any] = {"label": "mode"} if m == 0 else {}
-        around: dict[str, Any] = {"label": f"±{100 * result.margin:.3g} % of a mode"} if m == 0 else {}
         low, high = (1 - result.margin) * w * y, (1 + result.margin) * w * y
-        axes.fill_between(speed * x, low, high, color=BAND, lw=0, zorder=1, **around)
-        axes.plot(speed * x, w * y, color=INK, lw=1.3, zorder=3, **label)
+        around = None if m else f"±{100 * result.margin:.3g} % of a mode"
+        axes.fill_between(speed * x, low, high, color=BAND, lw=0, zorder=1, label=around)
+        axes.plot(speed * x, w * y, color=INK, lw=1.3, zorder=3, label=None if m else "mode")
     for i, line in enumerate(result.lines):
         ends = line.order * speed[[0, -1]] + line.frequency
-        label = {"label": "excitation"} if i == 0 else {}
-        axes.plot(speed[[0, -1]] * x, ends * y, color=VERMILION, lw=1.2, zorder=2, **label)
+        label = None if i else "excitation"
+        axes.plot(speed[[0, -1]] * x, ends * y, color=VERMILION, lw=1.2, zorder=2, label=label)
     for i, c in enumerate(result.crossings):
         if c.frequency <= top:
             size = 5 + 2.2 * min(np.log2(max(c.amplification, 1.0)), 6.0)
-            label = {"label": "crossing, larger with 1/(2ζ)"} if i == 0 else {}
+            label = None if i else "crossing, larger with 1/(2ζ)"
             axes.plot(
                 c.speed * x, c.frequency * y, "o", ms=size, mfc="white", mec=VERMILION, mew=1.5, zorder=5,
-                clip_on=False, **label,
+                clip_on=False, label=label,
             )  # fmt: skip
     _name_lines(axes, result, top, x, y)
     _name_modes(axes, result, top, y, frequency_unit)
-    if operating and operating.speed and speed[0] <= operating.speed <= speed[-1]:
-        axes.axvline(operating.speed * x, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
-    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"frequency [{frequency_unit}]", fontsize=TEXT, color=INK)
-    plain(axes)
-    axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
+    over_speed(axes, speed * x, unit, f"frequency [{frequency_unit}]", operating, grid=False)
+    key_below(axes, 3)
     return axes
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from trunnion.analyses.tolerance.certify import StabilityCertificate
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.arrays import Array
+from trunnion.plots.style import INK, TEXT, VERMILION, key_below, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-PROVED, OPEN, UNSTABLE = "#d6e6f2", "#b5b5b5", "#d55e00"
+PROVED, OPEN, UNSTABLE = "#d6e6f2", "#b5b5b5", VERMILION
 """Light, dark and a mark: told apart in grey and by every kind of colour vision."""
 MOST_LINES = 400
 """Boxes whose outlines are drawn; more of them would be all lines."""
@@ -23,10 +23,6 @@ MOST_LINES = 400
 
 def draw(found: StabilityCertificate, axes: Axes | None = None) -> Axes:
     """Boxes over the two directions that were split most; the others lie behind one another, open ones in front."""
-    from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     axes = axes if axes is not None else new_axes()
     names, units = ("speed", *found.parameters), ("rad/s", *found.units)
     across, up = most_split(found)
@@ -52,11 +48,9 @@ def draw(found: StabilityCertificate, axes: Axes | None = None) -> Axes:
     low, high = found.ends
     axes.set_xlim(low[across] * shown[0].factor, high[across] * shown[0].factor)
     axes.set_ylim(low[up] * shown[1].factor, high[up] * shown[1].factor)
-    axes.set_xlabel(shown[0].label, fontsize=TEXT, color=INK)
-    axes.set_ylabel(shown[1].label, fontsize=TEXT, color=INK)
-    plain(axes)
+    label_axes(axes, shown[0].label, shown[1].label, grid=False)
     axes.set_title(_title(found), fontsize=TEXT, color=INK, loc="left")
-    axes.figure.figure.legend(handles=keys, loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
+    key_below(axes, 3, keys)
     return axes
 
 
@@ -70,11 +64,10 @@ def most_split(found: StabilityCertificate) -> tuple[int, int]:
 
 
 def _corners(low: Array, high: Array, sides: tuple[int, int]) -> Array:
+    """Corners (box, corner, 2) of boxes seen along the other directions."""
     a, b = sides
-    left, right, bottom, top = low[:, a], high[:, a], low[:, b], high[:, b]
-    return np.stack(
-        [np.stack([left, right, right, left], axis=1), np.stack([bottom, bottom, top, top], axis=1)], axis=2
-    )
+    across, up = np.stack([low[:, a], high[:, a]]), np.stack([low[:, b], high[:, b]])
+    return np.stack([across[[0, 1, 1, 0]].T, up[[0, 0, 1, 1]].T], axis=2)
 
 
 def _title(found: StabilityCertificate) -> str:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.comparison.result import Comparison, Difference
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from trunnion.plots.style import ACCENT, INK, VERMILION, key_below, new_axes, rows_of_names
 
 SHOWN = 12
 """Rows at most."""
@@ -38,30 +34,24 @@ def _margins(found: Comparison, rows: list[Difference], axes: Axes | None) -> Ax
     for place, one in enumerate(rows):
         ends = np.clip([100 * one.before, 100 * one.after], WORST, BEST)
         better = not ends[1] < ends[0]
-        axes.plot(ends, [place, place], color=ACCENT if better else "#d55e00", lw=2.2, zorder=2)
+        axes.plot(ends, [place, place], color=ACCENT if better else VERMILION, lw=2.2, zorder=2)
         before, after = found.names if not place else (None, None)
         axes.plot(ends[:1], [place], "o", mfc="white", mec=INK, ms=7, zorder=3, label=before)
         axes.plot(ends[1:], [place], "o", color=INK, ms=7, zorder=3, label=after)
     axes.axvline(0.0, color=INK, lw=1.0)
     far = max(abs(100 * end) for one in rows for end in (one.before, one.after)) > BEST
-    axes.set_xlabel("margin [%]" + ", beyond ±100 at the edge" * far, fontsize=TEXT, color=INK)
-    return _finished(axes, [one.name.removeprefix("margin of ") for one in rows])
+    words = "margin [%]" + ", beyond ±100 at the edge" * far
+    return _finished(axes, [one.name.removeprefix("margin of ") for one in rows], words)
 
 
 def _changes(found: Comparison, rows: list[Difference], axes: Axes | None) -> Axes:
     axes = axes if axes is not None else new_axes(7.6, 1.5 + 0.34 * len(rows))
     axes.barh(range(len(rows)), [100 * one.relative for one in rows], color=ACCENT, height=0.62, label=found.names[1])
     axes.axvline(0.0, color=INK, lw=1.0)
-    axes.set_xlabel(f"change from {found.names[0]} [%]", fontsize=TEXT, color=INK)
-    return _finished(axes, [one.name for one in rows])
+    return _finished(axes, [one.name for one in rows], f"change from {found.names[0]} [%]")
 
 
-def _finished(axes: Axes, names: list[str]) -> Axes:
-    axes.set_yticks(range(len(names)), names, fontsize=SMALL)
-    axes.invert_yaxis()
-    axes.grid(axis="x", color="#dddddd", lw=0.6)
-    axes.set_axisbelow(True)
-    plain(axes)
-    axes.tick_params(axis="y", labelsize=SMALL)
-    axes.figure.figure.legend(loc="outside lower right", ncols=2, fontsize=SMALL, frameon=False, labelcolor=INK)
+def _finished(axes: Axes, names: list[str], x: str) -> Axes:
+    rows_of_names(axes, names, x)
+    key_below(axes, 2, loc="outside lower right", labelcolor=INK)
     return axes

@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Polygon
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.driveline.stages import PiecewiseShaft
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, new_figure, through
 
 WIDTH = 7.4
 SLANT = 38 * DEGREE
@@ -46,19 +46,30 @@ class _Place:
 
     element: Element
     name: str
-    start: np.ndarray
-    end: np.ndarray
+    start: Array
+    end: Array
     direction: float
     behind: float
     row: int
 
+    @property
+    def middle(self) -> Array:
+        """Half-way between its ends."""
+        return (self.start + self.end) / 2
+
+    @property
+    def lowest(self) -> float:
+        """Height of the lower end."""
+        return float(min(self.start[1], self.end[1]))
+
+    def part(self, begin: float, end: float) -> _Place:
+        """What lies between two distances behind its middle."""
+        along = _along(self.direction)
+        return replace(self, start=self.middle + begin * along, end=self.middle + end * along)
+
 
 def draw(line: Driveline) -> Figure:
     """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-
     places = _places(line)
     x = np.array([p for q in places for p in (q.start[0], q.end[0])])
     scale = WIDTH / max(x.max() - x.min() + 1.6, 9.0)
@@ -72,8 +83,7 @@ def draw(line: Driveline) -> Figure:
     high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
     scale = WIDTH / max(high[0] - low[0], 9.0)
-    figure = LiteralFigure(figsize=(WIDTH, scale * (high[1] - low[1])))
-    FigureCanvasAgg(figure)
+    figure = new_figure(WIDTH, scale * (high[1] - low[1]), layout=None)
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     axes.set_xlim(low[0], low[0] + WIDTH / scale)
@@ -86,7 +96,7 @@ def draw(line: Driveline) -> Figure:
         _numbers(axes, place, size, _between_joints(line, number - 1))
     for place, parent in zip(places, line.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
-            axes.plot(*np.stack([places[parent].end, place.start], axis=1), color=FAINT, lw=1.2, ls=(0, (3, 2)))
+            _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
 
@@ -103,7 +113,7 @@ def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
             start, direction, row = before.end, before.behind, before.row
         else:
             rows += 1
-            deepest = min(min(p.start[1], p.end[1]) for p in places)
+            deepest = min(p.lowest for p in places)
             left, floors = places[parent].end[0] + 0.5, _floors(places)
             lengths = [letter * (len(p.name) + 3) for p in places]
             names = [
@@ -116,33 +126,28 @@ def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
         behind = direction
         if angle:
             down[row] = -down.get(row, 1.0)
-            behind = _turned(direction, angle) if direction else down[row] * min(angle, STEEPEST)
-        length = LENGTH.get(element.kind, JOINT_LENGTH)
-        if angle or element.kind not in LENGTH:
-            half = length / 2
-            end = start + half * _along(direction) + half * _along(behind)
-        else:
-            end = start + length * _along(direction)
+            side = -np.sign(direction) if direction else down[row]  # a sloping line back towards the horizontal
+            behind = direction + side * min(angle, STEEPEST)
+        half = LENGTH.get(element.kind, JOINT_LENGTH) / 2
+        end = start + half * _along(direction) + half * _along(behind)
         places.append(_Place(element, name, start, end, direction, behind, row))
     return places
 
 
-def _turned(direction: float, angle: float) -> float:
-    """Direction behind a joint that bends a sloping line back towards the horizontal."""
-    return direction - np.sign(direction) * min(angle, STEEPEST)
-
-
-def _along(direction: float) -> np.ndarray:
+def _along(direction: float) -> Array:
     return np.array([np.cos(direction), np.sin(direction)])
 
 
-def _across(direction: float) -> np.ndarray:
+def _across(direction: float) -> Array:
     return np.array([-np.sin(direction), np.cos(direction)])
 
 
-def _box(axes: Axes, place: _Place, half: float, **look: Any) -> None:
-    from matplotlib.patches import Polygon
+def _bar(axes: Axes, *points: Array, **look: Any) -> None:
+    """A line through points, by default the axle of an element."""
+    through(axes, *points, **{"color": INK, "lw": 2.0, "zorder": 2, **look})
 
+
+def _box(axes: Axes, place: _Place, half: float, **look: Any) -> None:
     side = half * _across(place.direction)
     corners = [place.start - side, place.end - side, place.end + side, place.start + side]
     axes.add_patch(Polygon(corners, closed=True, **{"ec": INK, "lw": 1.1, "zorder": 3, **look}))
@@ -161,27 +166,19 @@ def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
 
 def _coupling(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Two flanges with an elastic element between them."""
-    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
-    middle, along = (place.start + place.end) / 2, _along(place.direction)
-    for begin, end, half, look in (
-        (-0.14, 0.14, 0.3, {"fc": "#d8c7a0", "hatch": "xxx"}),
-        (-0.24, -0.14, 0.36, {"fc": SOLID}),
-        (0.14, 0.24, 0.36, {"fc": SOLID}),
-    ):
-        part = replace(place, start=middle + begin * along, end=middle + end * along)
-        _box(axes, part, half, **look)
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.14, 0.14), 0.3, fc="#d8c7a0", hatch="xxx")
+    _box(axes, place.part(-0.24, -0.14), 0.36, fc=SOLID)
+    _box(axes, place.part(0.14, 0.24), 0.36, fc=SOLID)
 
 
 def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
     """A shaft with a spring in a window, as a clutch disc has them."""
-    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
-    middle, along, across = (place.start + place.end) / 2, _along(place.direction), _across(place.direction)
-    window = _Place(
-        place.element, place.name, middle - 0.4 * along, middle + 0.4 * along, place.direction, place.behind, place.row
-    )
-    _box(axes, window, 0.26, fc="white")
-    turns = np.linspace(-0.36, 0.36, 10)[:, None] * along
-    axes.plot(*(middle + turns + np.tile([0.14, -0.14], 5)[:, None] * across).T, color=INK, lw=1.1, zorder=4)
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.4, 0.4), 0.26, fc="white")
+    turns = np.linspace(-0.36, 0.36, 10)[:, None] * _along(place.direction)
+    turns = place.middle + turns + np.tile([0.14, -0.14], 5)[:, None] * _across(place.direction)
+    _bar(axes, *turns, lw=1.1, zorder=4)
 
 
 def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
@@ -190,30 +187,22 @@ def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     assert isinstance(disk, Disk)
     low, high = min(disks), max(disks)
     share = np.log(disk.moment_of_inertia / low) / np.log(high / low) if high > low * 1.001 else 0.5
-    axes.plot(*np.stack([place.start, place.end], axis=1), color=INK, lw=2.0, zorder=2)
-    middle = (place.start + place.end) / 2
-    inner = 0.16 * _along(place.direction)
-    slim = _Place(disk, place.name, middle - inner, middle + inner, place.direction, place.behind, place.row)
-    _box(axes, slim, 0.4 + 0.5 * float(share), fc="#9db7c9")
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
 
 
 def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Two wheels in mesh, sizes by the ratio."""
-    from matplotlib.patches import Ellipse
-
     element = place.element
     assert isinstance(element, Ratio | GearPair)
     share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
     first = 0.8 / (1 + share)
-    middle = (place.start + place.end) / 2
-    up = _across(place.direction)
-    axes.plot(*np.stack([place.start, middle], axis=1), color=INK, lw=2.0, zorder=2)
-    axes.plot(*np.stack([middle, place.end], axis=1), color=INK, lw=2.0, zorder=2)
+    _bar(axes, place.start, place.middle)
+    _bar(axes, place.middle, place.end)
     for radius, offset, face in ((first, 0.0, "#f1d9a7"), (first * share, first * (1 + share), "#f7ead0")):
-        centre = middle + offset * up
-        wheel = Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), fc=face, ec=INK, lw=1.1)
-        wheel.set_zorder(3)
-        axes.add_patch(wheel)
+        centre = place.middle + offset * _across(place.direction)
+        look: dict[str, Any] = {"fc": face, "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
 
 
 def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
@@ -223,13 +212,12 @@ def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
         side = 0.26 * _across(direction)
         neck = end + sign * 0.14 * _along(direction)
         for arm in (side, -side):
-            path = np.stack([end, neck, neck + arm, centre + arm * 0.9], axis=1)
-            axes.plot(*path, color=INK, lw=1.6, solid_joinstyle="round", zorder=3)
+            _bar(axes, end, neck, neck + arm, centre + arm * 0.9, lw=1.6, solid_joinstyle="round", zorder=3)
     hooke = place.element.kind == "HookeJoint"
     axes.plot(*centre, "P" if hooke else "o", ms=7, mfc="white", mec=INK, mew=1.4, zorder=4)
     if place.behind != place.direction:
-        straight = np.stack([centre, centre + 1.5 * _along(place.direction)], axis=1)
-        axes.plot(*straight, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=1)
+        straight = centre + 1.5 * _along(place.direction)
+        _bar(axes, centre, straight, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=1)
 
 
 _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
@@ -246,12 +234,12 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
 def _floors(places: list[_Place]) -> dict[int, float]:
     """Height of the names of each row: below everything in it."""
     rows = {place.row for place in places}
-    return {r: min(min(p.start[1], p.end[1]) for p in places if p.row == r) - 1.05 for r in rows}
+    return {r: min(p.lowest for p in places if p.row == r) - 1.05 for r in rows}
 
 
 def _name(axes: Axes, place: _Place, number: int, size: float, floor: float) -> None:
     """Number and name, slanted below the row."""
-    middle = (place.start + place.end) / 2
+    middle = place.middle
     axes.text(
         middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
         fontsize=size, color=INK, ha="left", va="center",
@@ -267,15 +255,14 @@ def _between_joints(line: Driveline, place: int) -> bool:
     def bends(i: int | None) -> bool:
         return i is not None and hasattr(line.elements[i], "angle")
 
-    before, behind = line.parents[place], place
-    while before is not None and not bends(before) and not isinstance(line.elements[before], SHAFTS):
-        before = line.parents[before]
-    follow = True
-    while follow:
-        children = [i for i, p in enumerate(line.parents) if p == behind]
-        behind = children[0] if children else -1
-        follow = behind >= 0 and not bends(behind) and not isinstance(line.elements[behind], SHAFTS)
-    return bends(before) and behind >= 0 and bends(behind)
+    def reaches_joint(step: Callable[[int], int | None]) -> bool:
+        i = step(place)
+        while i is not None and not bends(i) and not isinstance(line.elements[i], SHAFTS):
+            i = step(i)
+        return bends(i)
+
+    first_behind = {parent: i for i, parent in reversed([*enumerate(line.parents)]) if parent is not None}
+    return reaches_joint(line.parents.__getitem__) and reaches_joint(first_behind.get)
 
 
 def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
@@ -293,11 +280,12 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
         text = f"load\n{element.load_torque:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
-    middle = (place.start + place.end) / 2
     if isinstance(element, Ratio | GearPair):  # beside the upper wheel
         at = place.end + np.array([0.05, 0.75])
         axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:
         height = 1.0 if isinstance(element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
         colour = ACCENT if hasattr(element, "angle") else INK
-        axes.text(middle[0], middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom")
+        axes.text(
+            place.middle[0], place.middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom"
+        )

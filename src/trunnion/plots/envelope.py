@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.assessment.envelope import Envelope
 from trunnion.errors import InputError
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import INK, key_below, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SHOWN = 6
 """Checks at most, the worst ones."""
@@ -43,10 +39,7 @@ def draw(found: Envelope, axes: Axes | None = None, *, schedule: str = "") -> Ax
     for n, c in enumerate(with_margin[:SHOWN]):
         axes.plot(x, np.clip(100 * margins[:, c], WORST, BEST), marker=MARKS[n], ms=5, label=found.checks[c].name)
     axes.axhline(0.0, color=INK, lw=1.0)
-    axes.set_xlabel(f"{label}, {chosen}", fontsize=TEXT, color=INK)
     far = np.nanmax(np.abs(100 * margins[:, with_margin[:SHOWN]]), initial=0.0) > BEST
-    axes.set_ylabel("margin [%]" + "\n(beyond ±100 at the edge)" * bool(far), fontsize=TEXT, color=INK)
-    axes.grid(color="#dddddd", lw=0.6)
-    plain(axes)
-    axes.figure.figure.legend(loc="outside lower right", ncols=2, fontsize=SMALL, frameon=False, labelcolor=INK)
+    label_axes(axes, f"{label}, {chosen}", "margin [%]" + "\n(beyond ±100 at the edge)" * bool(far))
+    key_below(axes, 2, loc="outside lower right", labelcolor=INK)
     return axes

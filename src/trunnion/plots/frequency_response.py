@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.analyses.orbits.basins import Basins
+from trunnion.analyses.orbits.frequency_response import ResponseComparison
+from trunnion.analyses.orbits.jumps import abrupt_changes
+from trunnion.analyses.orbits.piecewise_sweep import LineSweep, Sweep
+from trunnion.arrays import Array
+from trunnion.plots.style import FAINT, INK, SMALL, key_below, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from trunnion.analyses.orbits.basins import Basins
-    from trunnion.analyses.orbits.piecewise_sweep import LineSweep, Sweep
 
 STYLES = {
     "exact": ("#1a1a1a", 3.0),
@@ -71,12 +71,8 @@ def draw_responses(
         if jumps:
             _arrows(axes, marked, factor)
     of, what, own = _followed(responses)
-    axes.set_xlabel(f"{of} [{unit}]" if unit else of, fontsize=TEXT, color=INK)
-    of_what = f" [{length or own}]" if length or own else ""
-    axes.set_ylabel(f"half peak-to-peak of {what}{of_what}", fontsize=TEXT, color=INK)
+    label_axes(axes, _with_unit(of, unit), _with_unit(f"half peak-to-peak of {what}", length or own))
     axes.set_ylim(bottom=0, top=top)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
     axes.legend(fontsize=SMALL, frameon=False, loc="best", ncols=1)
     return axes
 
@@ -155,10 +151,9 @@ def draw_sweeps(
     unit = sweeps[0].unit if unit is None else unit
     factor = speed_factor(unit) if unit else 1.0
     for one in sweeps:
-        marks = _SweepMarks(one.frequency * factor, one.peak_to_peak / 2, one.contact, one.settled, one.up)
-        _draw_sweep_marks(axes, marks)
-    words = f"half peak-to-peak of x{f' [{length}]' if length else ''}"
-    _label_sweeps(axes, f"frequency ω [{unit}]" if unit else "frequency ω", words, "contact, sweep")
+        _draw_sweep_marks(axes, one, one.frequency * factor, one.peak_to_peak / 2, one.contact)
+    words = _with_unit("half peak-to-peak of x", length)
+    _label_sweeps(axes, _with_unit("frequency ω", unit), words, "contact, sweep")
     return axes
 
 
@@ -176,32 +171,17 @@ def draw_line_sweeps(
     unit = unit or sweeps[0].unit
     name = spring or line.springs[line.staged[0] if len(line.staged) else 0]
     for one in sweeps:
-        marks = _SweepMarks(
-            one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name), one.settled, one.up
-        )
-        _draw_sweep_marks(axes, marks)
+        _draw_sweep_marks(axes, one, one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name))
     over = "speed" if line.clock == "speed" else "frequency"
     _label_sweeps(axes, f"{over} [{unit}]", f"torque of {name}, peak to peak [N·m]", f"contact of {name}, sweep")
     return axes
 
 
-class _SweepMarks(NamedTuple):
-    """x, size (points,) in the picture's units; contact and settled (points,)."""
-
-    x: NDArray[np.float64]
-    size: NDArray[np.float64]
-    contact: Sequence[str]
-    settled: NDArray[np.bool_]
-    up: bool
-
-
-def _draw_sweep_marks(axes: Axes, one: _SweepMarks) -> None:
-    from trunnion.analyses.orbits.jumps import abrupt_changes
-
-    x, size = one.x, one.size
+def _draw_sweep_marks(axes: Axes, one: Sweep | LineSweep, x: Array, size: Array, contact: Sequence[str]) -> None:
+    """``x`` and ``size`` (points,) in the picture's units, with the contact of each point."""
     axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)
     for kind, colour in CONTACTS.items():
-        here = np.array([c == kind for c in one.contact])
+        here = np.array([c == kind for c in contact])
         if here.any():
             shape, wide, inside = ("^", 3.4, colour) if one.up else ("v", 6.0, "none")
             label = f"{kind}, {'up' if one.up else 'down'}"
@@ -217,11 +197,8 @@ def _draw_sweep_marks(axes: Axes, one: _SweepMarks) -> None:
 
 
 def _label_sweeps(axes: Axes, across: str, up: str, title: str) -> None:
-    axes.set_xlabel(across, fontsize=TEXT, color=INK)
-    axes.set_ylabel(up, fontsize=TEXT, color=INK)
+    label_axes(axes, across, up)
     axes.set_ylim(bottom=0)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
     # What belongs to both directions comes last.
     entries = sorted(zip(*axes.get_legend_handles_labels(), strict=True), key=lambda e: e[1] in (LOOSE, JUMP))
     handles, words = zip(*entries, strict=True)
@@ -230,8 +207,6 @@ def _label_sweeps(axes: Axes, across: str, up: str, title: str) -> None:
 
 def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -> Axes:
     """The plane of starts, one colour per attractor, its start at phase zero as a cross."""
-    from matplotlib.colors import ListedColormap
-
     axes = axes or new_axes(6.3, 4.9)
     colours = ["#eeeeee", "#0072b2", "#f0b84c", "#004d3a", "#dba6c2", "#a03c00"]  # dark and light in turn
     count = len(basins.attractors)
@@ -247,11 +222,14 @@ def draw_basins(basins: Basins, axes: Axes | None = None, *, length: str = "") -
         axes.plot([], [], "s", color=colours[1 + i % 5], label=words)
     if np.any(basins.number < 0):
         axes.plot([], [], "s", color=colours[0], mec=FAINT, label="no motion of one period")
-    axes.set_xlabel(f"x at phase zero{f' [{length}]' if length else ''}", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"x′ at phase zero{f' [{length}/s]' if length else ''}", fontsize=TEXT, color=INK)
-    plain(axes)
-    axes.figure.figure.legend(loc="outside lower left", ncols=3, fontsize=SMALL, frameon=False)
+    rate = f"{length}/s" if length else ""
+    label_axes(axes, _with_unit("x at phase zero", length), _with_unit("x′ at phase zero", rate), grid=False)
+    key_below(axes, 3)
     return axes
+
+
+def _with_unit(words: str, unit: str) -> str:
+    return f"{words} [{unit}]" if unit else words
 
 
 def draw_response(
@@ -265,8 +243,6 @@ def draw_response(
     top: float | None = None,
 ) -> Axes:
     """``draw_responses`` of one method's curve, or of all that a comparison holds."""
-    from trunnion.analyses.orbits.frequency_response import ResponseComparison
-
     responses = found.responses if isinstance(found, ResponseComparison) else {found.method: found}
     return draw_responses(responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 

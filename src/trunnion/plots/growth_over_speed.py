@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.driveline.operation import Operation
-from trunnion.plots.order_response import mark_operating
-from trunnion.plots.style import INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.over_speed import over_speed
+from trunnion.plots.style import INK, key_below, new_axes
 from trunnion.results.speeds import speed_factor
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 UNSTABLE = "#8c2f39"
 
@@ -26,15 +22,9 @@ def draw(found: StabilityAlong, axes: Axes | None = None, *, unit: str, operatin
     axes.axhline(0.0, color=UNSTABLE, lw=1.6, label="limit of stability")
     if np.any(rate > 0):
         axes.fill_between(x, 0.0, rate, where=rate > 0, color=UNSTABLE, alpha=0.6, lw=0, label="unstable")
-    if len(x) > 1:
-        axes.set_xlim(x[0], x[-1])
     low, high = float(np.nanmin(rate, initial=0.0)), float(np.nanmax(rate, initial=0.0))
     room = 0.08 * max(high - low, 1e-12)
     axes.set_ylim(low - room, high + room)
-    mark_operating(axes, x, operating, unit)
-    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel("growth rate [1/s]", fontsize=TEXT, color=INK)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
-    axes.figure.figure.legend(loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False)
+    over_speed(axes, x, unit, "growth rate [1/s]", operating)
+    key_below(axes, 4)
     return axes

@@ -4,28 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
+from trunnion.analyses.kinetostatics.result import Kinetostatics
+from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, STYLES, TEXT, TITLE, curve_style, plain
+from trunnion.plots.style import (
+    COLOURS,
+    FAINT,
+    INK,
+    SMALL,
+    STYLES,
+    TEXT,
+    TITLE,
+    UNBROKEN,
+    curve_style,
+    head,
+    label_axes,
+    new_figure,
+)
 from trunnion.results.speeds import show_speed, speed_factor
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from trunnion.analyses.kinetostatics.result import Kinetostatics
-
-Array = NDArray[np.float64]
 
 MARKS_PER_TURN = 8
 SAME = 1e-9
 """Curves closer than this share of their size count as one."""
-UNBROKEN = "\u00a0"
-"""Space at which a title does not break, as between a number and its unit."""
 LEGEND_ROW = 0.24
 """Height of a row of a legend [inches]."""
 
@@ -41,25 +48,20 @@ class _Curve:
 
 def draw(result: Kinetostatics, *, unit: str | None = None) -> Figure:
     """Speeds, accelerations, torques and secondary couples over the input angle."""
-    figure = _figure(8.6, 7.2)
+    figure = new_figure(8.6, 7.2)
     axes = figure.subplots(2, 2, sharex=True)
     names, ratio, acceleration, torque = _shafts(result)
     percent = 100 * (ratio - 1)
     factor, torque_unit = _scale(torque, "N·m")
-    groups = _alike(names, np.stack([percent, acceleration, torque], axis=1))
-    _panel(axes[0, 0], result, _curves(groups, percent), "speed about its mean [%]")
-    _panel(axes[0, 1], result, _curves(groups, acceleration), "angular acceleration [rad/s²]")
+    alike = _alike(names, np.stack([percent, acceleration, torque], axis=1))
+    _panel(axes[0, 0], result, _curves(alike, percent), "speed about its mean [%]")
+    _panel(axes[0, 1], result, _curves(alike, acceleration), "angular acceleration [rad/s²]")
     geared = bool(np.any(np.abs(result.shaft_ratio) != 1))
     referring = "torque referred to the drive" if geared else "torque passed on"
-    _panel(axes[1, 0], result, _curves(groups, torque / factor), f"{referring} [{torque_unit}]")
-    size = _sizes(result.secondary_couple)
-    factor, couple_unit = _scale(size, "N·m")
-    forks = _alike(result.forks, size[:, None])
-    couples = _curves(forks, size / factor)
-    _panel(axes[1, 1], result, couples, f"secondary couple on fork [{couple_unit}]")
+    _panel(axes[1, 0], result, _curves(alike, torque / factor), f"{referring} [{torque_unit}]")
+    words, couples = _couples(result)
+    _panel(axes[1, 1], result, couples, words)
     axes[1, 1].set_ylim(bottom=0)
-    for ax in axes[1]:
-        ax.set_xlabel("input angle [°]", fontsize=TEXT, color=INK)
     _legend(figure, axes[0, 0], "outside lower left", "shafts")
     if couples:
         _legend(figure, axes[1, 1], "outside lower right", "forks", columns=2)
@@ -69,22 +71,15 @@ def draw(result: Kinetostatics, *, unit: str | None = None) -> Figure:
 
 def draw_polar(result: Kinetostatics, *, unit: str | None = None) -> Figure:
     """Speeds, secondary couples and, where there are any, support forces around the turn."""
-    panels: list[tuple[str, list[_Curve]]] = []
     names, ratio, _, _ = _shafts(result)
-    panels.append(("speed over its mean", _curves(_alike(names, ratio[:, None]), ratio)))
-    couple = _sizes(result.secondary_couple)
-    if np.any(couple):
-        factor, couple_unit = _scale(couple, "N·m")
-        forks = _curves(_alike(result.forks, couple[:, None]), couple / factor)
-        panels.append((f"secondary couple on fork [{couple_unit}]", forks))
+    panels = [("speed over its mean", _curves(_alike(names, ratio[:, None]), ratio))]
+    if np.any(result.secondary_couple):
+        panels.append(_couples(result))
     if result.supports is not None:
-        force = _sizes(result.supports.force)
-        factor, force_unit = _scale(force, "N")
-        loads = _curves(_alike(result.supports.names, force[:, None]), force / factor)
-        panels.append((f"force on bearing [{force_unit}]", loads))
+        panels.append(_of_vectors(result.supports.names, result.supports.force, "force on bearing", "N"))
     rows = max(len(curves) for _, curves in panels)
     height = 4.0 + LEGEND_ROW * rows
-    figure = _figure(3.9 * len(panels), height)
+    figure = new_figure(3.9 * len(panels), height)
     grid = figure.add_gridspec(2, len(panels), height_ratios=[4.0, LEGEND_ROW * rows])
     for k, (label, curves) in enumerate(panels):
         axes = figure.add_subplot(grid[0, k], projection="polar")
@@ -98,21 +93,19 @@ def draw_polar(result: Kinetostatics, *, unit: str | None = None) -> Figure:
 
 def draw_paper(result: Kinetostatics) -> Figure:
     """S2's Figures 3 and 4: angular differences, speeds, accelerations and torques of two joints."""
-    figure = _figure(8.6, 7.0)
+    figure = new_figure(8.6, 7.0)
     axes = figure.subplots(2, 2, sharex=True)
     total = np.degrees(result.output_angle - result.mean_ratio * result.input_angle)
     _panel(axes[0, 0], result, [_Curve("output", total, 3)], "output − input angle [°]")
     axes[0, 0].yaxis.label.set_color(COLOURS[3])
     _twist_scale(axes[0, 0], result, 1e6 * result.twist[1])
-    groups = _alike(result.shafts, np.stack([result.speed, result.acceleration, result.torque], axis=1))
+    alike = _alike(result.shafts, np.stack([result.speed, result.acceleration, result.torque], axis=1))
     unit = speed_unit(result.line)
-    _panel(axes[0, 1], result, _curves(groups, result.speed * speed_factor(unit)), f"angular speed [{unit}]")
-    _panel(axes[1, 0], result, _curves(groups, result.acceleration), "angular acceleration [rad/s²]")
-    _panel(axes[1, 1], result, _curves(groups, result.transmitted), "torque passed on [N·m]")
+    _panel(axes[0, 1], result, _curves(alike, result.speed * speed_factor(unit)), f"angular speed [{unit}]")
+    _panel(axes[1, 0], result, _curves(alike, result.acceleration), "angular acceleration [rad/s²]")
+    _panel(axes[1, 1], result, _curves(alike, result.transmitted), "torque passed on [N·m]")
     for letter, ax in zip("abcd", axes.ravel(), strict=True):
         ax.set_title(letter, fontsize=TITLE, color=INK, loc="left", fontweight="bold")
-    for ax in axes[1]:
-        ax.set_xlabel("input angle [°]", fontsize=TEXT, color=INK)
     _legend(figure, axes[0, 1], "outside lower center", "b, c, d", columns=4)
     kind = "rigid" if result.rigid else "elastic"
     name = result.line.name or "transmission"
@@ -123,16 +116,6 @@ def draw_paper(result: Kinetostatics) -> Figure:
 _LEGEND: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handlelength": 2.8, "labelcolor": INK}
 
 
-def _figure(width: float, height: float) -> Figure:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-
-    figure = LiteralFigure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
 def _title(result: Kinetostatics, unit: str | None) -> str:
     unit = unit or speed_unit(result.line)
     name = f"{result.line.name}: " if result.line.name else ""
@@ -140,15 +123,6 @@ def _title(result: Kinetostatics, unit: str | None) -> str:
     inertia = ", with inertia torques" if result.inertia else ""
     speed = f"input {show_speed(result.input_speed, unit)}".replace(" ", UNBROKEN)
     return f"{name}{kind}{inertia}, {speed}"
-
-
-def head(figure: Figure, title: str) -> None:
-    """A title at the left, in as many lines as the figure's width asks for."""
-    import textwrap
-
-    letters = int(72 * figure.get_figwidth() / (0.56 * TITLE))
-    wrapped = textwrap.fill(title, letters).replace(UNBROKEN, " ")
-    figure.suptitle(wrapped, fontsize=TITLE, color=INK, x=0.01, ha="left")
 
 
 def _shafts(result: Kinetostatics) -> tuple[tuple[str, ...], Array, Array, Array]:
@@ -164,30 +138,42 @@ def _shafts(result: Kinetostatics) -> tuple[tuple[str, ...], Array, Array, Array
     return result.shafts, speed, result.acceleration, result.transmitted * ratio
 
 
-def _sizes(vectors: Array) -> Array:
-    return np.asarray(np.hypot(vectors[:, 0], vectors[:, 1]))
+def _couples(result: Kinetostatics) -> tuple[str, list[_Curve]]:
+    return _of_vectors(result.forks, result.secondary_couple, "secondary couple on fork", "N·m")
+
+
+def _of_vectors(names: Sequence[str], vectors: Array, words: str, unit: str) -> tuple[str, list[_Curve]]:
+    """Sizes of vectors (name, 2, point): the words at their axis, and their curves."""
+    size = np.hypot(vectors[:, 0], vectors[:, 1])
+    factor, shown = _scale(size, unit)
+    return f"{words} [{shown}]", _curves(_alike(names, size[:, None]), size / factor)
 
 
 def _alike(names: Sequence[str], values: Array) -> list[tuple[str, int]]:
     """Names and rows of the curves (name, quantity, point) that differ; alike in every quantity is one."""
     size = np.max(np.abs(values), axis=(0, 2), initial=0.0)[:, None]
+    return [(_joined(together), row) for together, row in groups(names, values, SAME * size)]
+
+
+def groups(names: Sequence[str], values: Array, within: float | Array) -> list[tuple[list[str], int]]:
+    """Names that share a curve, and the row of its values (name, …): none of them further apart than ``within``."""
     found: list[tuple[list[str], int]] = []
     for row, name in enumerate(names):
         for together, first in found:
-            if np.all(np.abs(values[row] - values[first]) <= SAME * size):
+            if np.all(np.abs(values[row] - values[first]) <= within):
                 together.append(name)
                 break
         else:
             found.append(([name], row))
-    return [(_joined(together), row) for together, row in found]
+    return found
 
 
 def _joined(names: list[str]) -> str:
     return ", ".join(names) if len(names) < 4 else f"{names[0]}, {names[1]} and {len(names) - 2} more"
 
 
-def _curves(groups: Sequence[tuple[str, int]], values: Array) -> list[_Curve]:
-    return [_Curve(name, values[row], k) for k, (name, row) in enumerate(groups)]
+def _curves(alike: Sequence[tuple[str, int]], values: Array) -> list[_Curve]:
+    return [_Curve(name, values[row], k) for k, (name, row) in enumerate(alike)]
 
 
 def _closed(result: Kinetostatics, y: Array) -> tuple[Array, Array]:
@@ -203,13 +189,12 @@ def _line(axes: Axes, x: Array, y: Array, curve: _Curve) -> None:
 
 
 def _panel(axes: Axes, result: Kinetostatics, curves: Sequence[_Curve], label: str) -> None:
-    plain(axes)
     for curve in curves:
         _line(axes, *_closed(result, curve.values), curve)
-    axes.set_ylabel(label, fontsize=TEXT, color=INK)
+    place = axes.get_subplotspec()
+    label_axes(axes, "input angle [°]" if place is None or place.is_last_row() else "", label)
     axes.set_xlim(0, 360 * result.turns)
     axes.set_xticks(np.arange(0, 360 * result.turns + 1, 90 * result.turns))
-    axes.grid(True, color="#dddddd", linewidth=0.6)
     axes.ticklabel_format(axis="y", useOffset=False)
     values = np.array([c.values for c in curves]) if curves else np.zeros(1)
     size, swing = float(np.max(np.abs(values))), float(np.ptp(values))
@@ -239,8 +224,6 @@ def _twist_scale(axes: Axes, result: Kinetostatics, twist: Array) -> None:
 
 
 def _polar(axes: Any, result: Kinetostatics, label: str, curves: Sequence[_Curve]) -> None:
-    from matplotlib.ticker import MaxNLocator
-
     axes.tick_params(labelsize=SMALL, colors=INK)
     for curve in curves:
         x, y = _closed(result, curve.values)

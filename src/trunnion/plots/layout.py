@@ -5,27 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+from mpl_toolkits.mplot3d import proj3d
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
 from trunnion.analyses.kinetostatics.frames import member_frames, turned_about_axis
 from trunnion.analyses.kinetostatics.motion import drive_jet, walk
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.layout import Layout
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.laws.hooke import QUARTER_TURN
-from trunnion.plots.kinetostatics import head
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT
+from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, head, new_figure, through
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
-SHAFT_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
+SHAFT_COLOURS = COLOURS[:6]
 PLANE_COLOUR = "#888888"
 TOP = 0.93
 """Share of the picture's height below its title."""
@@ -91,7 +91,8 @@ def sketch(
     scene = _of_layout(subject, input_angle) if isinstance(subject, Layout) else _of_line(
         subject, input_angle, dict(lengths or {})
     )  # fmt: skip
-    figure = _figure()
+    figure = new_figure(8.6, 5.2, layout=None)
+    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=TOP)
     axes: Any = figure.add_subplot(projection="3d")
     axes.set_proj_type("ortho")
     size = 0.16 * float(np.mean([np.linalg.norm(b - a) for a, b in scene.ends]))
@@ -100,7 +101,7 @@ def sketch(
         colour = SHAFT_COLOURS[k % len(SHAFT_COLOURS)]
         front = start + (size * _unit(end - start) if k else 0.0)
         back = end - (size * _unit(end - start) if k < len(scene.ends) - 1 else 0.0)
-        axes.plot(*np.stack([front, back], axis=1), color=colour, linewidth=4, solid_capstyle="butt")
+        through(axes, front, back, color=colour, linewidth=4, solid_capstyle="butt")
         if name:
             labels.append(_Label((start + end) / 2, name, colour, -1.0))
     for k, joint in enumerate(scene.joints):
@@ -119,17 +120,6 @@ def sketch(
         note = "lengths between joints not all known: not to scale"
         figure.text(0.01, 0.01, note, fontsize=SMALL, color=FAINT)
     _write_labels(figure, axes, scene, size, labels)
-    return figure
-
-
-def _figure() -> Figure:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-
-    figure = LiteralFigure(figsize=(8.6, 5.2))
-    figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=TOP)
-    FigureCanvasAgg(figure)
     return figure
 
 
@@ -203,27 +193,23 @@ def _of_layout(layout: Layout, input_angle: float) -> _Scene:
 
 def _fork(axes: Any, centre: Array, arm: Array, away: Array, size: float, colour: str) -> None:
     """A fork: from the shaft's end out to both pins; ``away`` points from the joint into its shaft."""
-    root = centre + size * away
-    for side in (-1.0, 1.0):
-        pin = centre + side * 0.62 * size * arm
-        path = np.stack([root, root + side * 0.62 * size * arm, pin], axis=1)
-        axes.plot(*path, color=colour, linewidth=2.4, solid_capstyle="round", solid_joinstyle="round")
-    pins = np.stack([centre - 0.62 * size * arm, centre + 0.62 * size * arm], axis=1)
-    axes.plot(*pins, color=INK, linewidth=1.4, marker="o", markersize=3.5)
+    root, half = centre + size * away, 0.62 * size * arm
+    for pin in (-half, half):
+        look = {"color": colour, "linewidth": 2.4, "solid_capstyle": "round", "solid_joinstyle": "round"}
+        through(axes, root, root + pin, centre + pin, **look)
+    through(axes, centre - half, centre + half, color=INK, linewidth=1.4, marker="o", markersize=3.5)
 
 
 def _plane(axes: Any, joint: _Joint, size: float) -> None:
     """The joint plane: the sector between the front shaft carried straight on and the shaft behind."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
     reach = 3.0 * size
     bend = np.cross(joint.normal, joint.before)
     turn = np.linspace(0, joint.angle, 16)[:, None]
     arc = joint.centre + reach * (np.cos(turn) * joint.before + np.sin(turn) * bend)
     sector = np.vstack([joint.centre, arc])
     axes.add_collection3d(Poly3DCollection([sector], facecolor=PLANE_COLOUR, alpha=0.35, edgecolor="none"))
-    straight = np.stack([joint.centre, joint.centre + 1.15 * reach * joint.before], axis=1)
-    axes.plot(*straight, color=FAINT, linewidth=0.9, linestyle=(0, (5, 3)))
+    straight = joint.centre + 1.15 * reach * joint.before
+    through(axes, joint.centre, straight, color=FAINT, linewidth=0.9, linestyle=(0, (5, 3)))
 
 
 def _arrow(axes: Any, first: tuple[Array, Array], size: float, sense: float) -> None:
@@ -235,19 +221,15 @@ def _arrow(axes: Any, first: tuple[Array, Array], size: float, sense: float) -> 
     centre = first[0] + 0.25 * (first[1] - first[0])
     turn = np.radians(np.linspace(-150, 90, 50))[:, None]
     circle = centre + 0.8 * size * (np.cos(turn) * side + np.sin(turn) * up)
-    axes.plot(*circle.T, color=INK, linewidth=1.2)
-    tip, tangent = circle[-1], _unit(circle[-1] - circle[-3])
-    outward = _unit(tip - centre)
-    for lean in (-1.0, 1.0):
-        barb = tip - 0.3 * size * tangent + lean * 0.16 * size * outward
-        axes.plot(*np.stack([tip, barb], axis=1), color=INK, linewidth=1.2)
+    through(axes, *circle, color=INK, linewidth=1.2)
+    tip = circle[-1]
+    back, outward = 0.3 * size * _unit(tip - circle[-3]), 0.16 * size * _unit(tip - centre)
+    for barb in (tip - back - outward, tip - back + outward):
+        through(axes, tip, barb, color=INK, linewidth=1.2)
 
 
 def _write_labels(figure: Figure, axes: Any, scene: _Scene, size: float, labels: list[_Label]) -> None:
     """Labels in the plane of the picture, where they meet neither the line nor each other."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patheffects import withStroke
-
     figure.draw_without_rendering()  # settles the projection and the size of the texts
     drawn = _pixels(axes, _outline(scene, size))
     reach = _fork_pixels(axes, size)
@@ -295,7 +277,7 @@ def _conflicts(place: _Place, drawn: Array, placed: list[_Place], inside: tuple[
     return count
 
 
-def _within(points: Array, box: Array, margin: float) -> NDArray[np.bool_]:
+def _within(points: Array, box: Array, margin: float) -> Flags:
     return np.asarray(np.all((points > box[:2] - margin) & (points < box[2:] + margin), axis=1))
 
 
@@ -309,8 +291,6 @@ def _outline(scene: _Scene, size: float) -> Array:
 
 
 def _pixels(axes: Any, points: Array) -> Array:
-    from mpl_toolkits.mplot3d import proj3d
-
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     return np.asarray(axes.transData.transform(np.stack([x, y], axis=1)))
 

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.motion.linearity_result import LinearityCheck
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, VERMILION, label_axes, new_axes
 from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 MOST = 16
 """Orders drawn, the largest of them."""
 BAR = 0.38
-NONLINEAR, APART = "#d55e00", "#1a1a1a"
 
 
 def draw(
@@ -41,16 +36,14 @@ def draw(
     shown = np.sort(np.argsort(-np.fmax(linear, true), kind="stable")[:MOST])
     x = np.arange(len(shown))
     axes.bar(x - BAR / 2, linear[shown], BAR, color=ACCENT, label="linear")
-    axes.bar(x + BAR / 2, true[shown], BAR, color=NONLINEAR, hatch="//", edgecolor="white", lw=0, label="nonlinear")
-    axes.plot(x, check.difference[shown, s], "_", ms=16, mew=2.2, color=APART, label="difference, phases counted")
+    axes.bar(x + BAR / 2, true[shown], BAR, color=VERMILION, hatch="//", edgecolor="white", lw=0, label="nonlinear")
+    axes.plot(x, check.difference[shown, s], "_", ms=16, mew=2.2, color=INK, label="difference, phases counted")
     axes.set_xticks(x, [f"{check.order[k]:.4g}" for k in shown])
-    axes.set_xlabel("order [cycles per turn of the input]", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"torque of {check.springs[s]} [N·m]", fontsize=TEXT, color=INK)
+    label_axes(axes, "order [cycles per turn of the input]", f"torque of {check.springs[s]} [N·m]", grid=False)
     words = "linear theory holds" if check.holds else "linear theory misleads"
     at = show_speed(check.speed, unit or check.unit)
     apart = f"apart by {100 * check.relative_difference[s]:.2g} % of the largest order"
     axes.set_title(f"{at}: {words}, {apart}", fontsize=TEXT, loc="left")
-    plain(axes)
     axes.legend(fontsize=SMALL, frameon=False)
     return axes
 

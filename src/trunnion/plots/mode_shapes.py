@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT
-from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_figure
+from trunnion.results.speeds import show_speed, speed_factor
 
 PER_ROW = 6
 """Modes side by side; more begin a new row of panels."""
@@ -29,16 +27,11 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
     unit : of the frequencies.
     drive : name of the prescribed rotation in front of the line, drawn at rest; None leaves it out.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-
     names = [*([drive] if drive else []), *modes.names]
     count, columns = len(modes.frequency), min(PER_ROW, len(modes.frequency))
     rows = -(-count // columns)
     height = rows * (ROW_HEIGHT * len(names) + 0.65) + 0.35
-    figure = LiteralFigure(figsize=(WIDTH, height), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(WIDTH, height)
     grid: Any = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     place = np.arange(len(names))
     for i, axes in enumerate(grid.ravel()):
@@ -65,10 +58,6 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
 
 
 def _shown(frequency: float, unit: str) -> str:
-    return show_speed(float(f"{frequency:.4g}"), unit) if unit == "rad/s" else _four(frequency, unit)
-
-
-def _four(frequency: float, unit: str) -> str:
-    from trunnion.results.speeds import speed_factor
-
+    if unit == "rad/s":
+        return show_speed(float(f"{frequency:.4g}"), unit)
     return f"{frequency * speed_factor(unit):.4g} {unit}"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
@@ -12,13 +13,19 @@ from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, shown
-from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, curve_style, logarithmic, new_axes, plain, printed
-from trunnion.results.quantity_axes import QuantityAxis, state_axis
+from trunnion.plots.style import (
+    COLOURS,
+    curve_style,
+    headed,
+    key_below,
+    label_axes,
+    logarithmic,
+    new_axes,
+    printed,
+)
+from trunnion.results.quantity_axes import state_axes
 from trunnion.results.speeds import show_speed
 from trunnion.systems.system import System
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 POINTS = 6000
 """Points of a curve, about three per pixel of a printed figure."""
@@ -31,18 +38,15 @@ DENSE = 400
 def draw_history(result: Simulation, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
     """States over time; all of them, or those named."""
     axes = axes or new_axes(7.2, 4.0)
-    names = states or result.system.states
+    names, states_shown = states or result.system.states, state_axes(result.system)
     low, high = result.time_range
     times = np.linspace(low, high, POINTS) if len(result.trajectory.coefficients) else result.time
     values = result.at(times) if len(result.trajectory.coefficients) else result.state
     for k, name in enumerate(names):
         i = result.system.states.index(name)
-        shown = _state(result.system, i)
-        axes.plot(times, values[:, i] * shown.factor, label=shown.label, **_look(k))
-    if len(names) == 1:
-        _labels(axes, "time [s]", _state(result.system, result.system.states.index(names[0])).label)
-    else:
-        _labels(axes, "time [s]", "state")
+        axes.plot(times, values[:, i] * states_shown[i].factor, label=states_shown[i].label, **_look(k))
+    label_axes(axes, "time [s]", "state" if len(names) > 1 else states_shown[i].label)
+    if len(names) > 1:
         _legend(axes)
     axes.set_xlim(low, high)
     return axes
@@ -58,26 +62,38 @@ def draw_portrait(
     low, high = result.time_range
     times = np.linspace(max(low, from_time), high, 4 * POINTS)
     values = result.at(times) if len(result.trajectory.coefficients) else result.state
-    across, up = _state(result.system, i), _state(result.system, j)
+    shown = state_axes(result.system)
+    across, up = shown[i], shown[j]
     axes.plot(values[:, i] * across.factor, values[:, j] * up.factor, color=COLOURS[0], lw=0.7)
-    _labels(axes, across.label, up.label)
+    label_axes(axes, across.label, up.label)
     return axes
 
 
 def draw_orbit(result: PeriodicOrbit, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
     """A periodic motion in the plane of two states, with its state at the start of the period."""
     axes = axes or new_axes(5.2, 4.6)
-    names = result.system.states
-    rates = [i for i, name in enumerate(names) if name.startswith("rate of ")]
-    half = rates[0] if names[0].startswith("rotation of ") and rates else min(1, len(names) - 1)
-    i, j = names.index(x) if x else 0, names.index(y) if y else half
-    across, up = _state(result.system, i), _state(result.system, j)
+    i, j = pair_of_states(result.system, x, y)
+    shown = state_axes(result.system)
+    across, up = shown[i], shown[j]
     axes.plot(result.state[:, i] * across.factor, result.state[:, j] * up.factor, color=COLOURS[0], lw=1.6)
     begin = result.start[[i, j]] * (across.factor, up.factor)
     axes.plot(*begin, "o", color=COLOURS[1], ms=6, label="start of the period")
-    _labels(axes, across.label, up.label)
+    label_axes(axes, across.label, up.label)
     _legend(axes)
     return axes
+
+
+def pair_of_states(system: System, x: str = "", y: str = "", section: str = "") -> tuple[int, int]:
+    """Places of two states: those named, or a rotation and its rate, or the first two that vary on the section."""
+    names = system.states
+    half = len(names) // 2 if names[0].startswith("rotation of ") else min(1, len(names) - 1)
+    if "rate" in names:
+        half = names.index("rate")
+    pair = (0, half)
+    varied = [k for k, name in enumerate(names) if not section.startswith(f"{name} = ")]
+    if not {*pair} <= {*varied} and len(varied) > 1:
+        pair = (varied[0], varied[1])
+    return (names.index(x) if x else pair[0]), (names.index(y) if y else pair[1])
 
 
 def draw_line_history(
@@ -101,12 +117,12 @@ def draw_line_history(
             )  # fmt: skip
         else:
             axes.plot(result.time, torque[:, i], label=result.shafts[i], **{**look, "lw": 0.9})
-    _labels(axes, "time [s]", "torque [N·m]")
+    label_axes(axes, "time [s]", "torque [N·m]")
     axes.set_xlim(result.time[0], result.time[-1])
     unit = unit or speed_unit(result.line.assembly.line)
     low, high = result.profile.at(np.array([0.0, result.end]))
     span = show_speed(low, unit) if low == high else f"{show_speed(low, unit)} to {show_speed(high, unit)}"
-    axes.set_title(f"input at {span}", fontsize=SMALL, color=FAINT, loc="left")
+    headed(axes, f"input at {span}")
     _legend(axes)
     return axes
 
@@ -135,13 +151,13 @@ def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str
                 mfc="white", ms=3.5, markevery=(i * every // len(result.shafts), every),
                 label="linear theory" if i == 0 else None,
             )  # fmt: skip
-    _labels(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
+    label_axes(axes, "input angle [°]", "torque about its mean [N·m]" if about else "torque [N·m]")
     part = result.turns > MOST_TURNS
     axes.set_xlim(0, 360 * MOST_TURNS if part else degrees[-1])
     at = show_speed(result.speed, unit or result.unit)
     title = f"{result.verdict} periodic motion at {at}"
     title += f", {MOST_TURNS} turns of the {result.turns:g} of its period" if part else ""
-    axes.set_title(title, fontsize=SMALL, color=FAINT, loc="left")
+    headed(axes, title)
     _legend(axes)
     return axes
 
@@ -174,34 +190,20 @@ def draw_orders(result: PeriodicResponse, axes: Axes | None = None, *, highest: 
         logarithmic(axes, "y")
         axes.set_ylim(top / DECADES, 2 * top)
     axes.set_xlim(0, highest + gap / 2)
-    _labels(axes, "order [cycles per turn of the input]", "torque amplitude [N·m]")
+    label_axes(axes, "order [cycles per turn of the input]", "torque amplitude [N·m]")
     _legend(axes)
     return axes
-
-
-def _state(system: System, i: int) -> QuantityAxis:
-    return state_axis(system.states[i], system.units[i], system.speed_unit)
 
 
 def _look(k: int) -> dict[str, Any]:
     return {**curve_style(k), "lw": 1.3}
 
 
-def _labels(axes: Axes, x: str, y: str) -> None:
-    axes.set_xlabel(x, fontsize=TEXT, color=INK)
-    axes.set_ylabel(y, fontsize=TEXT, color=INK)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
-
-
 def _legend(axes: Axes) -> None:
-    handles, labels = axes.get_legend_handles_labels()
+    labels = axes.get_legend_handles_labels()[1]
     # Four short names stand side by side, or two long ones.
     columns = min(4, max(1, 112 // (12 + max(map(len, labels), default=0))))
     figure, rows = axes.figure.figure, -(-len(labels) // columns)
     if rows > ROWS and len(figure.axes) == 1:  # the curves keep their height
         figure.set_figheight(figure.get_figheight() + ROW * (rows - ROWS))
-    figure.legend(
-        handles, labels, loc="outside lower left", ncols=columns, fontsize=SMALL, frameon=False,
-        columnspacing=1.5, handlelength=2.6,
-    )  # fmt: skip
+    key_below(axes, columns, columnspacing=1.5, handlelength=2.6)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from matplotlib.axes import Axes
 
 from trunnion.analyses.optimisation.result import Optimum
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_axes, plain, printed
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, label_axes, new_axes, plain, printed
 from trunnion.results.units import in_words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 def draw(found: Optimum, axes: Axes | None = None) -> Axes:
@@ -26,9 +23,8 @@ def _front(found: Optimum, axes: Axes | None) -> Axes:
         f"{name}{f' [{printed(unit)}]' if unit != '1' else ''}{', larger is better' if largest else ''}"
         for name, unit, largest in zip(found.aims, found.aim_units, found.largest, strict=True)
     ]
-    axes.set_xlabel(labels[0], fontsize=TEXT, color=INK)
-    axes.set_ylabel(labels[1], fontsize=TEXT, color=INK)
-    return _finished(axes)
+    label_axes(axes, labels[0], labels[1], grid=False)
+    return _with_key(axes, 1)
 
 
 def _bounds(found: Optimum, axes: Axes | None) -> Axes:
@@ -50,14 +46,11 @@ def _bounds(found: Optimum, axes: Axes | None) -> Axes:
     axes.set_xticks([])
     before, after = (in_words(v[0], found.aim_units[0], 5) for v in (found.aim_before, found.aim))
     axes.set_title(f"{found.aims[0]}: {after} instead of {before}", fontsize=TEXT, color=INK, loc="left")
-    return _finished(axes, small=True)
-
-
-def _finished(axes: Axes, *, small: bool = False) -> Axes:
     plain(axes)
-    if small:
-        axes.tick_params(axis="y", labelsize=SMALL)
-    legend = axes.legend(fontsize=SMALL, frameon=False, loc="best", ncols=2 if small else 1)
-    for text in legend.get_texts():
-        text.set_color(FAINT)
+    axes.tick_params(axis="y", labelsize=SMALL)
+    return _with_key(axes, 2)
+
+
+def _with_key(axes: Axes, columns: int) -> Axes:
+    axes.legend(fontsize=SMALL, frameon=False, loc="best", ncols=columns, labelcolor=FAINT)
     return axes

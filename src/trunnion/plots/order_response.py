@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from trunnion.analyses.assessment.course import Course
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orders.result import OrderResponse, order_name
+from trunnion.arrays import Array
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, PATTERNS, SMALL, TEXT, curve_style, new_axes, plain
+from trunnion.plots.over_speed import hatched, over_speed
+from trunnion.plots.style import INK, PATTERNS, TEXT, curve_style, key_below, new_axes, printed
 from trunnion.results.speeds import speed_factor
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 MOST_ORDERS = 6
 """Curves of single orders drawn, the largest of them."""
 DECADES = 3.0
@@ -59,37 +58,28 @@ def draw(
     whole = result.vibratory_torque[:, column]
     size = np.abs(result.torque[:, :, column])
     words = "all together, at most" if result.sum_is_bound else "all together (half peak to peak)"
-    names = [order_name(float(o), float(f)) for o, f in zip(result.order, result.frequency, strict=True)]
-    low, largest = order_curves(axes, x, whole, size, names, words)
+    low, largest = order_curves(axes, x, whole, size, result, words)
     stated = result.limits[result.springs[column]] if limits is None and limit is None else limits
     known = ({} if limit is None else {"limit": limit}) | dict(stated or {})
     for i, (name, value) in enumerate(known.items()):
-        said = shown(value, TORQUE, digits=4).replace("*", "·")
+        said = printed(shown(value, TORQUE, digits=4))
         axes.axhline(value, color=LIMIT, lw=1.8, ls=PATTERNS[i % len(PATTERNS)], label=f"{name} {said}")
     if "max torque" in known:
         peak = result.peak_torque[:, column]
-        axes.plot(x, peak, color=INK, lw=1.2, ls=(0, (1, 1)), label="largest torque, mean and all")
+        axes.plot(x, peak, color=INK, lw=1.2, ls=PATTERNS[2], label="largest torque, mean and all")
         largest = max(largest, float(np.nanmax(np.nan_to_num(peak), initial=0.0)))
     if largest > 0:
         logarithmic(axes, low / 2, 2 * max([largest, *known.values()]))
-    if len(x) > 1:
-        axes.set_xlim(x[0], x[-1])
     _beyond_the_linear_range(axes, x, result)
-    mark_operating(axes, x, operating, unit)
+    over_speed(axes, x, unit, "vibratory torque [N·m]", operating)
     axes.set_title(result.springs[column].replace("$", r"\$"), fontsize=TEXT, color=INK)
-    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel("vibratory torque [N·m]", fontsize=TEXT, color=INK)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
     words_are_long = not np.all(result.linear) or "transient vibratory torque" in known or "max torque" in known
-    axes.figure.figure.legend(
-        loc="outside lower left", ncols=2 if words_are_long else 3, fontsize=SMALL, frameon=False, handlelength=2.6
-    )
+    key_below(axes, 2 if words_are_long else 3, handlelength=2.6)
     return axes
 
 
 def order_curves(
-    axes: Axes, x: Array, whole: Array, size: Array, names: Sequence[str], words: str
+    axes: Axes, x: Array, whole: Array, size: Array, of: OrderResponse | Course, words: str
 ) -> tuple[float, float]:
     """``whole`` (speed,) over its largest orders ``size`` (speed, order); between which values they lie."""
     marker = "o" if len(x) == 1 else None
@@ -100,22 +90,13 @@ def order_curves(
     drawn = [int(k) for k in sorted(strongest) if peaks[k] > largest / 10**DECADES]
     for i, k in enumerate(drawn, start=1):
         look = curve_style(i) if marker is None else {**curve_style(i), "marker": marker}
-        axes.plot(x, size[:, k], label=names[k], lw=1.5, **look)
+        axes.plot(x, size[:, k], label=order_name(float(of.order[k]), float(of.frequency[k])), lw=1.5, **look)
     least = min([float(np.nanmin(whole, initial=largest)), *(float(peaks[k]) for k in drawn)])
     return max(least, 2 * largest / 10 ** (DECADES + 0.5)), largest
 
 
-def mark_operating(axes: Axes, x: Array, operating: Operation | None, unit: str) -> None:
-    """A line at the operating speed, where the picture shows it."""
-    at = operating.speed * speed_factor(unit) if operating and operating.speed else None
-    if at is not None and x[0] <= at <= x[-1]:
-        axes.axvline(at, color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed")
-
-
 def logarithmic(axes: Axes, low: float, high: float) -> None:
     """Numbers as a reader writes them, 0.1 and 20 rather than powers."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
     axes.set_yscale("log")
     axes.set_ylim(low, high)
     digits = (1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)
@@ -128,11 +109,7 @@ def _beyond_the_linear_range(axes: Axes, x: Array, result: OrderResponse) -> Non
     """Hatched where joints swing too far for linear theory, and where no steady motion exists."""
     lost = ~np.all(np.isfinite(result.mean_torque) & np.isfinite(result.vibratory_torque), axis=1)
     if np.any(~result.linear & ~lost) and len(x) > 1:
-        axes.fill_between(
-            x, 0, 1, where=~result.linear & ~lost, transform=axes.get_xaxis_transform(), step="mid",
-            facecolor="#e2e2e2", edgecolor="#8a8a8a", hatch="////", lw=0, zorder=0,
-            label=f"a joint swings by more than {LINEAR_RANGE:g} rad: indication only",
-        )  # fmt: skip
+        hatched(axes, x, ~result.linear & ~lost, f"a joint swings by more than {LINEAR_RANGE:g} rad: indication only")
     if np.any(result.unstable) and len(x) > 1:
         axes.fill_between(
             x, 0, 1, where=result.unstable, transform=axes.get_xaxis_transform(), step="mid",
@@ -140,7 +117,7 @@ def _beyond_the_linear_range(axes: Axes, x: Array, result: OrderResponse) -> Non
         )  # fmt: skip
     for i, at in enumerate(x[lost]):
         label = "no steady motion: undamped resonance" if i == 0 else None
-        axes.axvline(at, color=LIMIT, ls=(0, (1, 1)), lw=1.4, label=label)
+        axes.axvline(at, color=LIMIT, ls=PATTERNS[2], lw=1.4, label=label)
 
 
 def _column(result: OrderResponse, spring: str | None) -> int:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.stability_chart import edges
-from trunnion.plots.style import INK, SMALL, TEXT, plain, settle
+from trunnion.plots.style import INK, SMALL, label_axes, settle
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 DARK, GREY = "#1c1c22", "#c4c4c4"
 
@@ -39,8 +38,6 @@ def draw(
     resonances : named along the top.
     caption : in the lower left corner.
     """
-    from matplotlib.colors import ListedColormap
-
     for verdict, colour in ((Verdict.UNSTABLE, DARK), (Verdict.UNDECIDED, GREY)):
         there = chart.verdict == verdict
         if there.any():
@@ -52,9 +49,7 @@ def draw(
     hatch: dict[str, Any] = {"facecolor": "white", "edgecolor": "#9a9a9a", "hatch": "////", "lw": 0}
     if chart.x[0] > low:
         axes.axvspan(low, float(chart.x[0]), **hatch)
-    axes.set_xlabel(x_label, fontsize=TEXT, color=INK)
-    axes.set_ylabel(y_label, fontsize=TEXT, color=INK)
-    plain(axes)
+    label_axes(axes, x_label, y_label, grid=False)
     axes.set_axisbelow(False)
     if caption:
         axes.set_title(caption, fontsize=SMALL, color=INK, loc="left", y=1.0, pad=42 if resonances else 6)

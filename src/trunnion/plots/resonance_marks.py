@@ -7,16 +7,14 @@ apart, and where they do not all fit the lowest orders stay.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.text import Annotation, Text
+from matplotlib.transforms import ScaledTranslation
 
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.plots.style import FAINT, INK, SMALL
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.text import Annotation
 
 PITCH = 1.45
 """Room for one name, in heights of its text."""
@@ -34,8 +32,6 @@ def mark_resonances(axes: Axes, resonances: Iterable[Resonance], factor: float, 
     low, high = sorted(axes.get_xlim() if along == "x" else axes.get_ylim())
     inside = [r for r in resonances if r.opens and low <= r.speed * factor <= high]
     inside.sort(key=lambda r: (r.order, r.kind != "subharmonic", r.speed))
-    from matplotlib.text import Text
-
     extent = axes.get_window_extent()
     pixels = extent.width if along == "x" else extent.height
     pitch = PITCH * SMALL / (72 * pixels / axes.figure.dpi)
@@ -83,8 +79,6 @@ def _place(axes: Axes, along: str) -> Callable[[float], float]:
 
 
 def _mark(axes: Axes, resonance: Resonance, at: float, name_at: float, along: str) -> Annotation:
-    from matplotlib.transforms import ScaledTranslation
-
     top = along == "x"
     right, up = (0.0, LEADER / 72) if top else (LEADER / 72, 0.0)
     return axes.annotate(

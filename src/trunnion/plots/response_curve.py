@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.plots.style import COLOURS, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import COLOURS, FAINT, INK, key_below, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 MARKS = {
     "fold": "o",
@@ -59,19 +55,13 @@ def draw(
             landing = _landing(result, fold.parameter, float(fold.peak_to_peak[i]), i)
             if landing is not None:
                 at = fold.parameter * factor
-                arrow = {"arrowstyle": "-|>", "color": "#6b6b6b", "lw": 1.0, "shrinkA": 5, "shrinkB": 2}
+                arrow = {"arrowstyle": "-|>", "color": FAINT, "lw": 1.0, "shrinkA": 5, "shrinkB": 2}
                 axes.annotate("", (at, landing), (at, float(fold.peak_to_peak[i])), arrowprops=arrow)
-    axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
-    what = f"torque of {result.curves[i]}, peak to peak [N·m]"
-    axes.set_ylabel(
-        what if result.curve_unit == "N*m" else f"{result.curves[i]}, peak to peak", fontsize=TEXT, color=INK
-    )
+    name = result.curves[i]
+    torque = result.curve_unit == "N*m"
+    label_axes(axes, across.label, f"torque of {name}, peak to peak [N·m]" if torque else f"{name}, peak to peak")
     axes.set_ylim(bottom=0)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
-    plain(axes)
-    axes.figure.figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=SMALL, frameon=False
-    )
+    key_below(axes, 4)
     return axes
 
 

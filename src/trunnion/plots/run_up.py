@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.motion.run_up import RunUp
-from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import COLOURS, FAINT, headed, key_below, label_axes, new_axes
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
@@ -37,15 +35,9 @@ def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str 
         result.peak_speed[i] * factor, result.peak_torque[i], "D", color=COLOURS[1], ms=6,
         label=f"{result.peak_torque[i]:.4g} N·m at {show_speed(result.peak_speed[i], unit)}",
     )  # fmt: skip
-    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel(f"largest torque of {result.shafts[i]} [N·m]", fontsize=TEXT, color=INK)
+    label_axes(axes, f"input speed [{unit}]", f"largest torque of {result.shafts[i]} [N·m]")
     axes.set_ylim(bottom=0)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
     low, high = result.simulation.profile.speed[0], result.simulation.profile.speed[-1]
-    words = f"{show_speed(low, unit)} to {show_speed(high, unit)} at {show_speed(result.acceleration, unit)}/s"
-    axes.set_title(words, fontsize=SMALL, color=FAINT, loc="left")
-    plain(axes)
-    axes.figure.figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside lower left", ncols=2, fontsize=SMALL, frameon=False
-    )
+    headed(axes, f"{show_speed(low, unit)} to {show_speed(high, unit)} at {show_speed(result.acceleration, unit)}/s")
+    key_below(axes, 2)
     return axes

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from matplotlib.axes import Axes
 
 from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain, printed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from trunnion.plots.style import ACCENT, INK, TEXT, VERMILION, key_below, new_axes, printed, rows_of_names
 
 SHOWN = 10
 """Parameters shown at most."""
-DOWN = "#d55e00"
-"""Vermilion of the palette of Okabe and Ito, for steps downwards."""
 FIRST = ("check", "torque", "growth rate", "tip", "frequency")
 """Kinds of quantities in the order in which one is chosen to be drawn."""
 
@@ -35,18 +30,12 @@ def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = 
     for place, one in enumerate(effects):
         size = one.change * factor / 10**tenths
         axes.barh(place, size, color=ACCENT, height=0.62, label="step upwards" if not place else None)
-        axes.barh(place, -size, color=DOWN, alpha=0.55, height=0.62, label="step downwards" if not place else None)
+        axes.barh(place, -size, color=VERMILION, alpha=0.55, height=0.62, label="step downwards" if not place else None)
     axes.axvline(0.0, color=INK, lw=1.0)
     names = [f"{e.parameter} ({smaller(e.step_words, tenths).replace('+', '±')})" for e in effects]
-    axes.set_yticks(range(len(names)), names, fontsize=SMALL)
-    axes.invert_yaxis()
-    axes.set_xlabel(f"change{label}", fontsize=TEXT, color=INK)
+    rows_of_names(axes, names, f"change{label}")
     axes.set_title(f"{chosen.name}: {printed(found.shown(chosen))}", fontsize=TEXT, color=INK, loc="left")
-    axes.grid(axis="x", color="#dddddd", lw=0.6)
-    axes.set_axisbelow(True)
-    plain(axes)
-    axes.tick_params(axis="y", labelsize=SMALL)
-    axes.figure.figure.legend(loc="outside lower right", ncols=2, fontsize=SMALL, frameon=False, labelcolor=INK)
+    key_below(axes, 2, loc="outside lower right", labelcolor=INK)
     return axes
 
 

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from textwrap import fill
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import ScaledTranslation
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
 from trunnion.analyses.tongues.result import Tongues
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
 from trunnion.plots.resonance_marks import mark_resonances
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, TITLE, new_axes, plain, settle
+from trunnion.plots.style import ACCENT, INK, SMALL, TITLE, colour_bar, label_axes, new_axes, settle
 from trunnion.plots.tongues import draw as draw_tongues
 from trunnion.plots.tongues import hidden_key
-from trunnion.results.chart import StabilityChart
+from trunnion.results.chart import StabilityChart, is_log
 from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 
 SHADES = ("#bf4a33", "#8c2f39", "#4a1526", "#16060d")
 """Unstable, from slow to fast growth: falling lightness, all darker than what is not unstable."""
@@ -37,6 +39,8 @@ OTHERS = {
     Verdict.FAILED: ("#ffffff", "xxxx", "not computed"),
 }
 """Face, hatch and words of what is neither stable nor unstable."""
+BESIDE: dict[str, Any] = {"pad": 0.02, "fraction": 0.045, "aspect": 28}
+"""Place of the colour bar."""
 
 
 def draw(
@@ -94,22 +98,12 @@ def _frame(axes: Axes, chart: StabilityChart, x: Array, y: Array, across: Quanti
         (x, axes.xaxis, axes.set_xscale, axes.set_xlim),
         (y, axes.yaxis, axes.set_yscale, axes.set_ylim),
     ):
-        if _is_log(values):
+        if is_log(values):
             set_scale("log")
             axis.set_major_formatter("{x:g}")
         set_limits(*((values[0], values[-1]) if len(values) > 1 else edges(values)))
-    axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
-    axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
-    plain(axes)
+    label_axes(axes, across.label, up.label, grid=False)
     axes.set_axisbelow(False)  # ticks over the mesh
-
-
-def _is_log(values: Array) -> bool:
-    """Whether the points are equally spaced in their logarithm rather than in themselves."""
-    if len(values) < 3 or values[0] <= 0:
-        return False
-    even = np.allclose(np.diff(values, 2), 0)
-    return bool(not even and np.allclose(np.diff(np.log(values), 2), 0, atol=1e-9))
 
 
 def edges(values: Array) -> Array:
@@ -122,8 +116,6 @@ def edges(values: Array) -> Array:
 
 
 def _unstable(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-
     bad = chart.verdict == Verdict.UNSTABLE
     if not bad.any():
         _decay(axes, chart, x, y)
@@ -138,33 +130,23 @@ def _unstable(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
         vmax=float(np.nanmax(growth)),
         rasterized=True,
     )
-    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.045, aspect=28)
-    bar.set_label("growth per turn of the input [%]", fontsize=TEXT, color=INK)
-    bar.ax.tick_params(labelsize=SMALL, colors=INK)
+    colour_bar(axes, mesh, "growth per turn of the input [%]", **BESIDE)
 
 
 def _decay(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> None:
     """Where nothing is unstable, how fast the slowest disturbance dies out: the margin that is left."""
     if min(chart.verdict.shape) < 2 or chart.count(Verdict.STABLE) < chart.verdict.size:
         return
-    from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.ticker import MaxNLocator
-
     decay = 100 * (1 - chart.spectral_radius ** (2 * np.pi / chart.period))
     low, high = float(decay.min()), float(decay.max())
     levels = MaxNLocator(7).tick_values(low, high) if high > 1.01 * low else np.array([0.99 * low, 1.01 * high])
     drawn = axes.contourf(x, y, decay, levels=levels, cmap=LinearSegmentedColormap.from_list("decay", DECAY))
     axes.contour(x, y, decay, levels=levels, colors=INK, linewidths=0.6)
-    bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02, fraction=0.045, aspect=28)
-    bar.set_label("decay of the slowest disturbance per turn [%]", fontsize=TEXT, color=INK)
-    bar.ax.tick_params(labelsize=SMALL, colors=INK)
+    colour_bar(axes, drawn, "decay of the slowest disturbance per turn [%]", **BESIDE)
 
 
 def _others(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> list[Any]:
     """Hatched patches for the rest; a point of its own still shows by its grey."""
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
-
     handles = []
     for verdict, (face, hatch, words) in OTHERS.items():
         there = chart.verdict == verdict
@@ -181,8 +163,6 @@ def _others(axes: Axes, chart: StabilityChart, x: Array, y: Array) -> list[Any]:
 
 
 def _key(chart: StabilityChart) -> list[Any]:
-    from matplotlib.patches import Patch
-
     handles = []
     if chart.count(Verdict.STABLE):
         everywhere = chart.count(Verdict.STABLE) == chart.verdict.size and min(chart.verdict.shape) > 1
@@ -197,29 +177,20 @@ def _operating(
     axes: Axes, chart: StabilityChart, operating: Operation | None, across: QuantityAxis, up: QuantityAxis
 ) -> list[Any]:
     """The range as a bar along each axis' edge, the speed as a dashed line, the point as a diamond."""
-    from matplotlib.lines import Line2D
-
     handles: list[Any] = []
     here: list[float | None] = []
     for label, axis, along in ((chart.x_label, across, "x"), (chart.y_label, up, "y")):
-        limits = _range_of(label, operating)
-        if limits is not None:
-            ends = [
-                max(limits[0] * axis.factor, _low(axes, along)),
-                min(limits[1] * axis.factor, _high(axes, along)),
-            ]
-            if ends[0] < ends[1]:
-                edge = ([*ends], [0, 0]) if along == "x" else ([0, 0], [*ends])
-                mixed = axes.get_xaxis_transform() if along == "x" else axes.get_yaxis_transform()
-                (bar,) = axes.plot(*edge, transform=mixed, color=ACCENT, lw=3, solid_capstyle="butt", clip_on=False)
-                bar.set_zorder(6)
-                if not handles:
-                    handles.append(Line2D([], [], color=ACCENT, lw=3, label="operating range"))
+        low, high = sorted(getattr(axes, f"get_{along}lim")())
+        ends = np.clip(np.multiply(_range_of(label, operating) or (0, 0), axis.factor), low, high)
+        if ends[0] < ends[1]:
+            edge = (ends, (0, 0)) if along == "x" else ((0, 0), ends)
+            look: dict[str, Any] = {"color": ACCENT, "lw": 3, "solid_capstyle": "butt", "clip_on": False, "zorder": 6}
+            axes.plot(*edge, transform=getattr(axes, f"get_{along}axis_transform")(), **look)
+            handles = [Line2D([], [], color=ACCENT, lw=3, label="operating range")]
         value = _value_of(label, chart.line, operating)
-        value = None if value is None else value * axis.factor
-        here.append(value if value is not None and _low(axes, along) <= value <= _high(axes, along) else None)
+        here.append(value * axis.factor if value is not None and low <= value * axis.factor <= high else None)
     if here[0] is not None and here[1] is not None:
-        look: dict[str, Any] = {"ms": 8, "mfc": "white", "mec": ACCENT, "mew": 2, "ls": "none", "zorder": 7}
+        look = {"ms": 8, "mfc": "white", "mec": ACCENT, "mew": 2, "ls": "none", "zorder": 7}
         (point,) = axes.plot(here[0], here[1], "D", label="operating point", **look)
         return [*handles, point]
     for value, label, line in (
@@ -251,18 +222,8 @@ def _value_of(label: str, line: Driveline | None, operating: Operation | None) -
     return angles.pop() if len(angles) == 1 else None
 
 
-def _low(axes: Axes, along: str) -> float:
-    return min(axes.get_xlim() if along == "x" else axes.get_ylim())
-
-
-def _high(axes: Axes, along: str) -> float:
-    return max(axes.get_xlim() if along == "x" else axes.get_ylim())
-
-
 def _legend(axes: Axes, handles: list[Any], width: float) -> None:
     """Below the axis label, outside the data; as many columns as fit into ``width`` [pt]."""
-    from matplotlib.transforms import ScaledTranslation
-
     below = axes.transAxes + ScaledTranslation(0, -44 / 72, axes.figure.dpi_scale_trans)
     axes.legend(
         handles=handles,
@@ -290,8 +251,6 @@ def _columns(widths: list[float], room: float) -> int:
 
 def _title(chart: StabilityChart, unit: str, characters: int) -> str:
     """The line's name, and what is held fixed, in lines of so many characters."""
-    from textwrap import fill
-
     line = chart.line
     if line is None:
         return "Stability chart"

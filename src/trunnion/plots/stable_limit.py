@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from trunnion.analyses.limits.result import LimitKind, StableLimit
+from trunnion.arrays import Array
 from trunnion.driveline.operation import Operation
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.over_speed import mark_operating
+from trunnion.plots.stability_chart import edges
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, key_below, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import speed_factor
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-Array = NDArray[np.float64]
 UNSTABLE, EDGE = "#b9a7ad", "#4a1526"
 BESIDE = ("#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Colours of Okabe and Ito's palette that neither verdicts nor marks use."""
@@ -44,26 +45,24 @@ def draw(
     unit = unit or limit.speed_unit
     up = quantity_axis(limit.parameter, limit.unit, unit)
     x, y = limit.speed * speed_factor(unit), limit.limit * up.factor
-    top = limit.high * up.factor
-    ends = limit.kind == LimitKind.BEYOND
-    edges = _edges(x)
+    beyond = limit.kind == LimitKind.BEYOND
+    ends_of_columns = edges(x)
     if limit.whole is None:
-        _unstable(axes, limit, edges, up.factor)
+        _unstable(axes, limit, ends_of_columns, up.factor)
     else:
         _regions(axes, limit, up.factor, speed_factor(unit))
     few = len(x) == 1 or limit.whole is not None  # between its points the line would claim what is not so
     look: dict[str, Any] = {"marker": ".", "ls": ""} if few else {"lw": 1.4}
-    axes.plot(x, np.where(ends, np.nan, y), color=EDGE, zorder=3, **look)
+    axes.plot(x, np.where(beyond, np.nan, y), color=EDGE, zorder=3, **look)
     shown = _others(axes, limit, x, up.factor)
     _values(axes, values or {}, up.factor, limit)
     if operating and operating.speed:
-        axes.axvline(operating.speed * speed_factor(unit), color=ACCENT, ls=(0, (5, 3)), lw=1.5, zorder=5)
-    axes.set_xlim(edges[0] if len(x) == 1 else x[0], edges[-1] if len(x) == 1 else x[-1])
-    axes.set_ylim(limit.low * up.factor, top)
-    axes.set_xlabel(f"input speed [{unit}]", fontsize=TEXT, color=INK)
-    axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
-    plain(axes)
-    if ends.all() and not (limit.whole and len(limit.whole.tongues)):
+        mark_operating(axes, operating.speed * speed_factor(unit), zorder=5)
+    shown_speeds = ends_of_columns if len(x) == 1 else x
+    axes.set_xlim(shown_speeds[0], shown_speeds[-1])
+    axes.set_ylim(limit.low * up.factor, limit.high * up.factor)
+    label_axes(axes, f"input speed [{unit}]", up.label, grid=False)
+    if beyond.all() and not (limit.whole and len(limit.whole.tongues)):
         axes.text(
             0.5, 0.5, "no instability found", transform=axes.transAxes, ha="center", va="center", fontsize=TEXT,
             color=INK, bbox={"facecolor": "white", "edgecolor": "none", "pad": 3}, zorder=6,
@@ -72,20 +71,10 @@ def draw(
     return axes
 
 
-def _edges(x: Array) -> Array:
-    """Where the column of each speed ends: half-way to its neighbours."""
-    if len(x) == 1:
-        return x[0] * np.array([0.99, 1.01])
-    middle = (x[:-1] + x[1:]) / 2
-    return np.concatenate([[2 * x[0] - middle[0]], middle, [2 * x[-1] - middle[-1]]])
-
-
-def _unstable(axes: Axes, limit: StableLimit, edges: Array, factor: float) -> None:
-    """Every unstable range of every speed, as wide as its column."""
-    from matplotlib.collections import PolyCollection
-
+def _unstable(axes: Axes, limit: StableLimit, ends: Array, factor: float) -> None:
+    """Every unstable range of every speed, as wide as its column between two of ``ends``."""
     corners = [
-        [(edges[i], a), (edges[i + 1], a), (edges[i + 1], b), (edges[i], b)]
+        [(ends[i], a), (ends[i + 1], a), (ends[i + 1], b), (ends[i], b)]
         for i, ranges in enumerate(limit.unstable)
         for a, b in (ranges * factor).tolist()
     ]
@@ -94,8 +83,6 @@ def _unstable(axes: Axes, limit: StableLimit, edges: Array, factor: float) -> No
 
 def _regions(axes: Axes, limit: StableLimit, factor: float, speed: float) -> None:
     """Every unstable region between the lowest and the highest speed, and the ends of what is stable at all of them."""
-    from matplotlib.collections import PolyCollection
-
     assert limit.whole is not None
     shapes = [
         np.column_stack([np.concatenate([t.low, t.high[::-1]]) * speed, np.concatenate([t.y, t.y[::-1]]) * factor])
@@ -139,9 +126,6 @@ def _values(axes: Axes, values: dict[str, float], factor: float, limit: StableLi
 
 
 def _key(axes: Axes, limit: StableLimit, operating: bool, others: list[Line2D]) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     handles: list[Line2D | Patch] = [Patch(facecolor="white", edgecolor=INK, label="stable")]
     whole = limit.whole
     if np.all(limit.kind == LimitKind.BEYOND) and not (whole and len(whole.tongues)):
@@ -157,6 +141,4 @@ def _key(axes: Axes, limit: StableLimit, operating: bool, others: list[Line2D]) 
     handles += others
     if operating:
         handles.append(Line2D([], [], color=ACCENT, ls=(0, (5, 3)), lw=1.5, label="operating speed"))
-    axes.figure.figure.legend(
-        handles=handles, loc="outside lower left", ncols=2 if others else 3, fontsize=SMALL, frameon=False
-    )
+    key_below(axes, 2 if others else 3, handles)

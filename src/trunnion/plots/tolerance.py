@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
 from trunnion.analyses.tolerance.study import ToleranceStudy
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, new_axes
 from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 CROWDED = 0.5
 """Share of lines in one bar above which the few others, those that grow among them, would not be seen beside it."""
@@ -39,14 +35,11 @@ def draw(study: ToleranceStudy, axes: Axes | None = None) -> Axes:
         axes.set_yscale("log")
         axes.set_ylim(0.5, room * np.max(counts))
     axes.axvline(0.0, color="#4a1526", lw=1.4)
-    axes.set_xlabel(
-        f"growth rate at {show_speed(float(study.speeds[fastest]), study.unit)} [1/s]", fontsize=TEXT, color=INK
-    )
-    axes.set_ylabel("lines, logarithmic" if few else "lines", fontsize=TEXT, color=INK)
+    at = show_speed(float(study.speeds[fastest]), study.unit)
+    label_axes(axes, f"growth rate at {at} [1/s]", "lines, logarithmic" if few else "lines", grid=False)
     low, high = study.interval
     title = f"stable with probability {study.probability:.4g} ({low:.4g} to {high:.4g})"
     axes.set_title(title, fontsize=TEXT, color=INK, loc="left")
-    plain(axes)
     side.barh(range(len(names)), [100 * s for s in shares], color=ACCENT)
     side.set_yticks(range(len(names)), names, fontsize=SMALL)
     side.invert_yaxis()

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.windows import StableWindows
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, new_axes, plain
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
 FACE, EDGE = "#d9c3c9", "#4a1526"
 LEAP = 100.0
 """How many times steeper than on the whole an edge must run to count as leaping."""
@@ -60,9 +58,7 @@ def draw(
     if alone:
         axes.set_xlim(*(v * across.factor for v in tongues.x_range))
         axes.set_ylim(*(v * up.factor for v in tongues.y_range))
-        axes.set_xlabel(across.label, fontsize=TEXT, color=INK)
-        axes.set_ylabel(up.label, fontsize=TEXT, color=INK)
-        plain(axes)
+        label_axes(axes, across.label, up.label, grid=False)
         _names(axes, tongues, across.factor, up.factor, labelled)
     if not len(tongues):
         axes.text(0.5, 0.5, "no instability found", transform=axes.transAxes, ha="center", fontsize=TEXT, color=INK)
@@ -82,12 +78,10 @@ def draw_windows(
 
 def hidden_key() -> Any:
     """What the marks mean, for a legend."""
-    from matplotlib.lines import Line2D
-
     return Line2D([], [], marker="v", ls="", color=ACCENT, mec="white", ms=6, label="region narrower than a pixel")
 
 
-def _leaps(side: Array, tongue: Tongue) -> NDArray[np.bool_]:
+def _leaps(side: Array, tongue: Tongue) -> Flags:
     """Where an edge leaps because another tongue joins or parts, so that no line is drawn across."""
     steps, apart = np.abs(np.diff(side)), np.abs(np.diff(tongue.y))
     steep = steps > LEAP * np.median(np.abs(side.max() - side.min()) / max(np.ptp(tongue.y), 1e-300)) * apart

@@ -49,8 +49,8 @@ class Answer:
 
     operation: the description's, at the ``speed`` [rad/s] asked for (None without one); speed_range [rad/s]: of the
     description, or guessed from the line where it states none; subject: what was judged, its responses included;
-    stability: along the range at the joints' own angles, None where nothing makes the coefficients vary or where each
-    speed takes its own motion; resonance_speeds: those in the range, every_resonance: all.
+    along: stability along the range at the joints' own angles, None where nothing makes the coefficients vary or where
+    each speed takes its own motion; resonance_speeds: those in the range.
     """
 
     line: Driveline
@@ -63,7 +63,7 @@ class Answer:
     resonance_speeds: ResonanceSpeeds
     subject: Subject
     assessment: Assessment
-    stability: StabilityAlong | None
+    along: StabilityAlong | None
     findings: tuple[Finding, ...]
 
 
@@ -109,7 +109,7 @@ def answer(line: Driveline, *, speed: float | None = None, unit: str | None = No
         resonance_speeds=here,
         subject=subject,
         assessment=assessment,
-        stability=along,
+        along=along,
         findings=by_gravity(_once(findings)),
     )
 
@@ -134,9 +134,9 @@ def check_findings(assessment: Assessment) -> list[Finding]:
     for check in assessment.checks:
         if check.status is Status.EXCEEDED:
             gravity = Gravity.CAUTION if check.guideline else Gravity.DANGER
-            found.append(Finding(gravity, f"{_capital(check.name)} is exceeded: {check.because}."))
+            found.append(Finding(gravity, f"{capital(check.name)} is exceeded: {check.because}."))
         elif check.status is Status.SATISFIED and check.spare < NEARLY:
-            found.append(Finding(Gravity.CAUTION, f"{_capital(check.name)} is nearly reached: {check.because}."))
+            found.append(Finding(Gravity.CAUTION, f"{capital(check.name)} is nearly reached: {check.because}."))
         elif check.status is Status.NOT_JUDGED:
             gravity = Gravity.CAUTION if np.isfinite(check.margin) else Gravity.NOTE
             unjudged.setdefault((gravity, check.because.removeprefix(NO_RESPONSE)), []).append(check.name)
@@ -147,7 +147,7 @@ def check_findings(assessment: Assessment) -> list[Finding]:
             needs.setdefault(need, []).append((gravity, said, names))
             continue
         found.append(
-            Finding(gravity, f"{_capital(few(names))} {'is' if len(names) == 1 else 'are'} not judged: {because}.")
+            Finding(gravity, f"{capital(few(names))} {'is' if len(names) == 1 else 'are'} not judged: {because}.")
         )
     return [*found, *(_modes(need, group) for need, group in needs.items())]
 
@@ -159,7 +159,7 @@ def _modes(need: str, group: list[tuple[Gravity, str, list[str]]]) -> Finding:
     listed = f"separation of {'mode' if len(names) == 1 else 'modes'} {_and(numbers)}"
     said = "; ".join(said for _, said, _ in group)
     that = "that needs" if len(names) == 1 else "these need"
-    return Finding(group[0][0], f"{_capital(listed)} is not judged: {said}; {that} {need}.")
+    return Finding(group[0][0], f"{capital(listed)} is not judged: {said}; {that} {need}.")
 
 
 def _and(words: list[str]) -> str:
@@ -197,5 +197,6 @@ def _beyond(check: Check, side: str) -> Finding:
     return Finding(Gravity.CAUTION, f"{_just(side)} {check.name} would be exceeded: {check.because}.")
 
 
-def _capital(text: str) -> str:
+def capital(text: str) -> str:
+    """A sentence that begins with a capital letter."""
     return text[:1].upper() + text[1:]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,14 +21,14 @@ from trunnion.analyses.linear.campbell_diagram import CampbellDiagram, campbell_
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.driveline.driveline import hooke_joints
-from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.reporting.answer import NEARLY
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import rounded_speed
 
+Found = TypeVar("Found")
 IRREGULAR = 0.0027
 """Irregularity of the output that propeller-shaft practice allows: one joint of 3°."""
 
@@ -37,7 +38,6 @@ class Contents:
     """Results of a report; None where the line has no joints, or a question does not apply."""
 
     overview: Overview
-    assembly: Assembly
     turn: Kinetostatics | None
     sweep: SpeedSweep | None
     limit: StableLimit | None
@@ -51,29 +51,25 @@ class Contents:
 
 def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> Contents:
     """What an overview does not hold yet: what would help, modes and torques over speed, irregularity, bending."""
-    assembly = seen.answer.assembly
+    assembly = seen.assembly
     low, high = _speeds(seen)
     left_out: list[str] = []
 
-    def unless_refused(question: str, answer: Callable[[], object]) -> object:
+    def unless_refused(question: str, answer: Callable[[], Found]) -> Found | None:
         try:
             return answer()
         except (InputError, ComputationError) as error:
             left_out.append(f"{question}: {error}")
             return None
 
-    jointed = bool(hooke_joints(seen.line))
     turn = sweep = None
-    if jointed:
+    if hooke_joints(seen.line):
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
         speeds = sweep_speeds(assembly, low, high)
         sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
-    assert campbell is None or isinstance(campbell, CampbellDiagram)
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
-    assert turn is None or isinstance(turn, Kinetostatics)
-    assert sweep is None or isinstance(sweep, SpeedSweep)
     more = [
         *bending_findings(bending, high, seen.unit),
         *(_torque_findings(sweep, seen) if sweep else []),
@@ -81,10 +77,17 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         *load_findings(loaded, seen.unit),
         *(Finding(Gravity.CAUTION, f"{sentence.rstrip('.')}.") for sentence in without),
     ]
-    findings = [*seen.findings, *more]
-    helped = _helped(seen)
     whole = Contents(
-        seen, assembly, turn, sweep, None, bending, loaded, campbell, helped, by_gravity(findings), tuple(left_out)
+        overview=seen,
+        turn=turn,
+        sweep=sweep,
+        limit=None,
+        bending=bending,
+        loaded=loaded,
+        campbell=campbell,
+        helped=_helped(seen),
+        findings=by_gravity([*seen.findings, *more]),
+        left_out=tuple(left_out),
     )
     return with_chart(whole, seen)
 
@@ -92,7 +95,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
 def with_chart(contents: Contents, seen: Overview) -> Contents:
     """The same with the chart of ``seen`` and the limit angle that follows from it."""
     before = {finding.sentence for finding in contents.findings}
-    limit = _limit(seen, resonance_speeds(contents.assembly))
+    limit = _limit(seen, resonance_speeds(seen.assembly))
     more = [*seen.findings, *(_limit_findings(limit, seen) if limit else [])]
     new = [finding for finding in more if finding.sentence not in before]
     return replace(contents, overview=seen, limit=limit, findings=by_gravity([*contents.findings, *new]))
@@ -104,7 +107,7 @@ def _helped(seen: Overview) -> Remedies | None:
     if not any(c.status is Status.EXCEEDED or (c.status is Status.SATISFIED and c.spare < NEARLY) for c in checks):
         return None
     try:
-        return remedies_of(seen.answer.subject, checks)
+        return remedies_of(seen.subject, checks)
     except (InputError, ComputationError):  # help beyond the answer, which stands without it
         return None
 
@@ -112,7 +115,7 @@ def _helped(seen: Overview) -> Remedies | None:
 def _speeds(seen: Overview) -> tuple[float, float]:
     """The range, clipped as the chart's axis is."""
     low, high = seen.speed_range
-    slowest = lowest_speed(seen.answer.assembly)
+    slowest = lowest_speed(seen.assembly)
     return max(low, slowest if slowest < high else high / 200), high
 
 
@@ -126,67 +129,51 @@ def _limit(seen: Overview, named: ResonanceSpeeds) -> StableLimit | None:
     return limit_of_chart(chart, at, own=True)
 
 
-def _limit_findings(limit: StableLimit, seen: Overview) -> list[Finding]:
+def _limit_findings(limit: StableLimit, seen: Overview) -> Iterator[Finding]:
     """The chart's own finding says where instability begins; this one gives the angle to design by."""
-    end = f"{np.rad2deg(limit.high):.3g}°"
     at = limit.critical_speed
     if at is None:
-        return []
-    where = _rounded(at, seen.unit)
+        return
+    where = rounded_speed(at, seen.unit)
     if np.any(limit.kind == LimitKind.AT_ONCE):
         start = f"{np.rad2deg(limit.low):.3g}°"
-        return [Finding(Gravity.DANGER, f"Even at {start} in all joints the line is unstable, at {where}.")]
-    value = np.rad2deg(limit.smallest)
-    angles = [abs(getattr(e, "angle", 0.0)) for e in seen.line.elements]
-    beyond = max(angles, default=0.0) > limit.smallest
-    return [
-        Finding(
-            Gravity.CAUTION if beyond else Gravity.NOTE,
-            f"At the resonance speeds too, which may lie between the chart's points, the line is stable up to "
-            f"{value:.3g}° in all joints (searched to {end}); the limit is set at {where}.",
-        )
-    ]
+        yield Finding(Gravity.DANGER, f"Even at {start} in all joints the line is unstable, at {where}.")
+        return
+    beyond = any(abs(getattr(e, "angle", 0.0)) > limit.smallest for e in seen.line.elements)
+    yield Finding(
+        Gravity.CAUTION if beyond else Gravity.NOTE,
+        f"At the resonance speeds too, which may lie between the chart's points, the line is stable up to "
+        f"{np.rad2deg(limit.smallest):.3g}° in all joints (searched to {np.rad2deg(limit.high):.3g}°); the limit is "
+        f"set at {where}.",
+    )
 
 
-def _rounded(speed: float, unit: str) -> str:
-    """A speed to four figures in the unit it is read in."""
-    return f"{float(f'{speed * speed_factor(unit):.4g}'):.10g} {unit}"
-
-
-def _torque_findings(sweep: SpeedSweep, seen: Overview) -> list[Finding]:
-    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
+def _torque_findings(sweep: SpeedSweep, seen: Overview) -> Iterator[Finding]:
     if not np.any(sweep.linear):
-        return []
+        return
+    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
     i, j = np.unravel_index(int(np.nanargmax(trusted)), trusted.shape)
-    at, most = _rounded(float(sweep.speed[i]), seen.unit), float(f"{trusted[i, j]:.3g}")
-    found = [
-        Finding(
-            Gravity.NOTE,
-            f"Where linear theory holds, torques swing by up to ±{most:.10g} N*m, in {sweep.shafts[j]} at {at}.",
-        )
-    ]
+    at, most = rounded_speed(float(sweep.speed[i]), seen.unit), float(f"{trusted[i, j]:.3g}")
+    yield Finding(
+        Gravity.NOTE,
+        f"Where linear theory holds, torques swing by up to ±{most:.10g} N*m, in {sweep.shafts[j]} at {at}.",
+    )
     beyond = ~sweep.linear
     if beyond.any():
         weight = np.gradient(sweep.speed)
         share = float(weight[beyond].sum() / weight.sum())
-        found.append(
-            Finding(
-                Gravity.CAUTION,
-                f"Over {100 * share:.2g} % of the speed range twists are so large that torques and verdicts there are "
-                "an indication only.",
-            )
+        yield Finding(
+            Gravity.CAUTION,
+            f"Over {100 * share:.2g} % of the speed range twists are so large that torques and verdicts there are "
+            "an indication only.",
         )
-    return found
 
 
-def _irregularity_findings(turn: Kinetostatics) -> list[Finding]:
-    angle = np.rad2deg(turn.equivalent_angle)
-    if turn.irregularity <= IRREGULAR:
-        return []
-    return [
-        Finding(
+def _irregularity_findings(turn: Kinetostatics) -> Iterator[Finding]:
+    if turn.irregularity > IRREGULAR:
+        angle = np.rad2deg(turn.equivalent_angle)
+        yield Finding(
             Gravity.CAUTION,
             f"The output runs unevenly by {100 * turn.irregularity:.3g} % of its speed, as behind one joint of "
             f"{angle:.3g}°; practice for propeller shafts allows {100 * IRREGULAR:.2g} % (3°).",
         )
-    ]

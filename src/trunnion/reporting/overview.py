@@ -11,24 +11,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.assessment.subject import lossy
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.charts.stability_chart import chart_of_report
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.analyses.linear.along import stability_along
-from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
-from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.driveline.driveline import Driveline, hooke_joints
-from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.reporting.answer import Answer, answer
 from trunnion.reporting.overview_findings import chart_findings
 from trunnion.reporting.ranges import angle_range
 from trunnion.results.chart import StabilityChart
-from trunnion.results.finding import Finding, by_gravity
+from trunnion.results.finding import by_gravity
 from trunnion.results.verdict import Verdict
 
 ALL_ANGLES = "HookeJoint *.angle"
@@ -39,57 +35,20 @@ TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True)
-class Overview:
-    """A driveline at a glance.
+class Overview(Answer):
+    """A driveline at a glance: the answer, and further findings.
 
-    answer: the verdict and what belongs to it; angle_range [rad]: of the description, or guessed from the line; turn:
+    angle_range [rad]: of the description, or guessed from the line; turn:
     the joints over a turn at the operating speed (1 rad/s without one), None where the output is prescribed; stability:
     at the operating speed, None without one and where all frequencies are damped alike; chart: over the range and one
     angle of all joints, None for a line without Hooke's joints, for one that starts free or damps all frequencies
     alike, and until it is computed.
     """
 
-    answer: Answer
     angle_range: tuple[float, float]
     turn: Kinetostatics | None
     stability: Stability | None
     chart: StabilityChart | None
-    findings: tuple[Finding, ...]
-
-    @property
-    def line(self) -> Driveline:
-        """The driveline."""
-        return self.answer.line
-
-    @property
-    def unit(self) -> str:
-        """Speed unit to print in."""
-        return self.answer.unit
-
-    @property
-    def operation(self) -> Operation:
-        """The description's, at the speed asked for."""
-        return self.answer.operation
-
-    @property
-    def speed_range(self) -> tuple[float, float]:
-        """Lowest and highest speed [rad/s]."""
-        return self.answer.speed_range
-
-    @property
-    def natural_frequencies(self) -> NaturalFrequencies:
-        """With all joints straight."""
-        return self.answer.natural_frequencies
-
-    @property
-    def resonance_speeds(self) -> ResonanceSpeeds:
-        """Those in the range."""
-        return self.answer.resonance_speeds
-
-    @property
-    def assessment(self) -> Assessment:
-        """The verdict and the checks behind it."""
-        return self.answer.assessment
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -99,13 +58,12 @@ class Overview:
     @property
     def chartable(self) -> bool:
         """Whether a chart belongs to this line."""
-        assembly = self.answer.assembly
-        slow = self.speed_range[1] <= lowest_speed(assembly)
-        return bool(hooke_joints(self.line)) and not (slow or assembly.topology.free or lossy(assembly))
+        slow = self.speed_range[1] <= lowest_speed(self.assembly)
+        return bool(hooke_joints(self.line)) and not (slow or self.assembly.topology.free or lossy(self.assembly))
 
 
 def overview(
-    line: Driveline | Answer,
+    line: Driveline,
     *,
     speed: float | None = None,
     unit: str | None = None,
@@ -116,7 +74,7 @@ def overview(
 
     Parameters
     ----------
-    line : the driveline, or the answer about it that is there already (``speed`` and ``unit`` are then its own).
+    line : the driveline.
     speed : operating speed [rad/s]; default the one of the description.
     unit : speed unit of the findings' sentences; default as ``speed_unit``.
     points : speeds × angles of the chart; default as many as its picture needs.
@@ -126,8 +84,7 @@ def overview(
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
     """
-    given = line if isinstance(line, Answer) else answer(line, speed=speed, unit=unit)
-    return charted(at_speed(given), points, progress)
+    return charted(at_speed(answer(line, speed=speed, unit=unit)), points, progress)
 
 
 def at_speed(given: Answer) -> Overview:
@@ -135,8 +92,16 @@ def at_speed(given: Answer) -> Overview:
     judged = given.speed is not None and not lossy(given.assembly)  # which the findings say
     here = stability(given.assembly, given.speed) if judged and given.speed is not None else None
     said = here.findings_in(given.unit) if here else ()
-    findings = by_gravity([*_new(said, given.findings), *given.findings])
-    return Overview(given, angle_range(given.line), _turn(given.line, given.speed), here, None, findings)
+    known = {finding.sentence for finding in given.findings}
+    new = [finding for finding in said if finding.sentence not in known]
+    whole = {**vars(given), "findings": by_gravity([*new, *given.findings])}
+    return Overview(
+        **whole,
+        angle_range=angle_range(given.line),
+        turn=_turn(given.line, given.speed),
+        stability=here,
+        chart=None,
+    )
 
 
 def charted(
@@ -148,25 +113,19 @@ def charted(
     low, high = seen.speed_range
     across, up = points or (FINE if _has_borders(seen) else COARSE)
     axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
-    chart = chart_of_report(seen.answer.assembly, *axes, TOLERANCE, progress)
+    chart = chart_of_report(seen.assembly, *axes, TOLERANCE, progress)
     return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
 
 
 def _has_borders(seen: Overview) -> bool:
     """Whether anything but decay shows at the steepest angle, where instabilities are widest, or at the line's own."""
-    given = seen.answer
-    along = given.stability
+    along = seen.along
     if along is None or np.any(along.verdict != Verdict.STABLE):
         return True
-    line = given.line
+    line = seen.line
     for name, _ in hooke_joints(line):
         line = line.replace(name, angle=seen.angle_range[1])
     return bool(np.any(stability_along(assemble(line), along.speed).verdict != Verdict.STABLE))
-
-
-def _new(findings: tuple[Finding, ...], known: tuple[Finding, ...]) -> list[Finding]:
-    sentences = {finding.sentence for finding in known}
-    return [finding for finding in findings if finding.sentence not in sentences]
 
 
 def _turn(line: Driveline, speed: float | None) -> Kinetostatics | None:

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
 from trunnion.analyses.linear.speed_sweep import speed_sweep
+from trunnion.arrays import Codes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
@@ -19,7 +19,7 @@ from trunnion.equations.exciters import quiet
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import rounded_span, rounded_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -70,8 +70,7 @@ def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
 
 def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iterator[Finding]:
     """Stability over the range at the design angles: each unstable band with the resonance it belongs to."""
-    low, high = float(found.speed[0]), float(found.speed[-1])
-    whole = f"from {_plain(low, unit)} to {_speed(high, unit)}"
+    whole = f"from {rounded_span(found.speed[0], found.speed[-1], unit)}"
     checked = f"{len(found.speed)} speeds, the named resonance speeds among them"
     bands = runs(found.verdict == Verdict.UNSTABLE)
     for first, last in bands:
@@ -81,10 +80,10 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
 
         there = stability(assembly, float(found.speed[worst]))
         cause = f" ({there.resonance.in_words})" if there.resonance else ""
-        edges = f"from {_plain(float(found.speed[first]), unit)} to {_speed(float(found.speed[last]), unit)}"
-        at = f"worst at {_speed(there.speed, unit)}, where"
+        edges = f"from {rounded_span(found.speed[first], found.speed[last], unit)}"
+        at = f"worst at {rounded_speed(there.speed, unit)}, where"
         if first == last:
-            edges, at = f"at {_speed(there.speed, unit)}", "there"
+            edges, at = f"at {rounded_speed(there.speed, unit)}", "there"
         yield Finding(
             Gravity.DANGER,
             f"At its own joint angles the line is unstable {edges}{cause}; {at} a disturbance doubles "
@@ -95,7 +94,7 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
         yield Finding(
             Gravity.NOTE,
             f"At its own joint angles the line is stable {whole} ({checked}; disturbances decay slowest at "
-            f"{_speed(float(found.speed[worst]), unit)}, by {-found.growth_rate[worst]:.3g} 1/s).",
+            f"{rounded_speed(float(found.speed[worst]), unit)}, by {-found.growth_rate[worst]:.3g} 1/s).",
         )
     elif not bands and np.all(found.verdict == Verdict.MARGINAL):
         yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} ({checked}).")
@@ -111,7 +110,7 @@ def resonance_findings(
         return
     many, one = ("s", "") if len(able) > 1 else ("", "s")
     count = f"{len(able)} resonance speed{many} that can open (up to order {here.orders})"
-    within = f"between {_plain(limits[0], unit)} and {_speed(limits[1], unit)}"
+    within = f"between {rounded_span(*limits, unit, 'and')}"
     if speed is None:
         yield Finding(Gravity.NOTE, f"{count} lie{one} {within}.")
         return
@@ -121,7 +120,7 @@ def resonance_findings(
     yield Finding(
         Gravity.CAUTION if abs(distance) < NEAR else Gravity.NOTE,
         f"{count} lie{one} {within}; nearest to the operating speed is the {nearest.in_words} at "
-        f"{_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
+        f"{rounded_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
     )
 
 
@@ -155,8 +154,9 @@ def response_findings(
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
     yield Finding(
         Gravity.CAUTION,
-        f"Joints force {r.formula} at {_speed(r.speed, unit)}{side}: by linear theory the torque of "
-        f"{sweep.shafts[shaft]} rises {how} at {_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual one.",
+        f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}: by linear theory the torque of "
+        f"{sweep.shafts[shaft]} rises {how} at {rounded_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual "
+        "one.",
     )
 
 
@@ -187,7 +187,7 @@ def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
         yield Finding(
             Gravity.CAUTION,
             "With all joints at one angle, the first unstable point of the chart is at "
-            f"{np.rad2deg(chart.y[row]):.3g}° and {_speed(float(chart.x[column]), unit)}; "
+            f"{np.rad2deg(chart.y[row]):.3g}° and {rounded_speed(float(chart.x[column]), unit)}; "
             f"{100 * chart.unstable_share:.2g} % of the chart is unstable.",
         )
     else:
@@ -203,7 +203,7 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
     return [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
 
 
-def _unsettled(verdict: NDArray[np.int8], where: str) -> Iterator[Finding]:
+def _unsettled(verdict: Codes, where: str) -> Iterator[Finding]:
     failed, undecided = (int(np.count_nonzero(verdict == v)) for v in (Verdict.FAILED, Verdict.UNDECIDED))
     total = verdict.size
     if failed:
@@ -217,12 +217,3 @@ def _unsettled(verdict: NDArray[np.int8], where: str) -> Iterator[Finding]:
             f"{undecided} of {total} points {where} stand on a stability boundary: the spectral radius is 1 "
             "to within its error.",
         )
-
-
-def _speed(speed: float, unit: str) -> str:
-    return f"{_plain(speed, unit)} {unit}"
-
-
-def _plain(speed: float, unit: str) -> str:
-    """Four figures, as points of a grid deserve."""
-    return f"{float(f'{speed * speed_factor(unit):.4g}'):.10g}"

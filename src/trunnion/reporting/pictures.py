@@ -5,9 +5,10 @@ from __future__ import annotations
 import base64
 import io
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 RASTER_DPI = 200
@@ -24,8 +25,9 @@ class Picture:
     figure: Figure | None = field(default=None, repr=False, compare=False)
 
 
-def picture(figure: Figure, alt: str, caption: str = "") -> Picture:
-    """``figure`` as SVG; meshes in it as pixels."""
+def picture(drawn: Figure | Axes, alt: str, caption: str = "") -> Picture:
+    """What is drawn as SVG; meshes in it as pixels."""
+    figure = cast("Figure", drawn.figure).figure
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", dpi=RASTER_DPI, metadata={"Date": None})
     return Picture(address("image/svg+xml", stream.getvalue()), alt, caption, figure)

@@ -54,5 +54,5 @@ def fingerprint(line: Driveline, source: Path | None) -> tuple[str, str]:
 
 
 def _period(contents: Contents) -> str:
-    turns = contents.assembly.topology.period_turns()
+    turns = contents.overview.assembly.topology.period_turns()
     return f"{turns} turn" if turns <= 1 else f"{turns} turns"

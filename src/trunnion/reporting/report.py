@@ -16,7 +16,7 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.features import feature
 from trunnion.reporting import tables
-from trunnion.reporting.binding import binding_picture, binding_words
+from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
 from trunnion.reporting.overview import Overview, overview
 from trunnion.reporting.pictures import Picture, picture
@@ -96,16 +96,8 @@ def report(
 
 
 def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None) -> str:
-    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+    from trunnion.reporting.page import environment
 
-    environment = Environment(
-        loader=PackageLoader("trunnion.reporting", "templates"),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["signs"] = tables.with_signs
     seen = contents.overview
     unit, frequency_unit = seen.unit, reading_of_frequencies(seen.unit)
     made = datetime.now().astimezone()
@@ -117,7 +109,6 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         "status": str(seen.assessment.verdict).replace(" ", "-"),
         "checks": tables.checks(seen.assessment),
         "not_applicable": tables.not_applicable(seen.assessment),
-        "binding": binding_words(seen),
         "helped": contents.helped.sentences if contents.helped else (),
         "verified": contents.helped.verified if contents.helped else "",
         "chart_to_come": seen.chartable and seen.chart is None,
@@ -142,7 +133,7 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         "provenance": provenance(contents, source, made),
         "pictures": shown,
     }
-    return environment.get_template("report.html.j2").render(**facts)
+    return environment().get_template("report.html.j2").render(**facts)
 
 
 def _verdict(seen: Overview) -> str:
@@ -159,26 +150,24 @@ def pictures(contents: Contents) -> dict[str, Picture]:
     line, operating, frequency_unit = seen.line, seen.operation, reading_of_frequencies(seen.unit)
     first = line.elements[0]
     drive = line.names[0] if isinstance(first, ConstantSpeed) else None
-    shown = binding_picture(seen) | {
+    shown = {
         "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
         "modes": picture(mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"),
     }
+    if (binding := binding_picture(seen)) is not None:
+        shown["binding"] = binding
     if contents.campbell is not None:
         drawn = campbell_diagram.draw(contents.campbell, unit=unit, frequency_unit=frequency_unit, operating=operating)
-        shown["campbell"] = picture(drawn.figure.figure, "Campbell diagram: modes and excitations over speed")
+        shown["campbell"] = picture(drawn, "Campbell diagram: modes and excitations over speed")
     if contents.turn is not None:
-        shown["irregularity"] = picture(
-            irregularity.draw(contents.turn).figure.figure, "Speed of the shafts over a turn"
-        )
+        shown["irregularity"] = picture(irregularity.draw(contents.turn), "Speed of the shafts over a turn")
     if contents.sweep is not None:
         drawn = torque_over_speed.draw(contents.sweep, unit=unit, operating=operating)
-        shown["torque"] = picture(drawn.figure.figure, "Torque amplitude of every shaft over speed")
+        shown["torque"] = picture(drawn, "Torque amplitude of every shaft over speed")
     if contents.loaded:
         motion = heaviest(contents.loaded)
-        drawn = draw_period(motion.response, unit=unit)
-        shown["loaded"] = picture(drawn.figure.figure, f"Torque over one period, {motion.case}")
-        drawn = draw_orders(motion.response)
-        shown["orders"] = picture(drawn.figure.figure, f"Orders of the torque, {motion.case}")
+        shown["loaded"] = picture(draw_period(motion.response, unit=unit), f"Torque over one period, {motion.case}")
+        shown["orders"] = picture(draw_orders(motion.response), f"Orders of the torque, {motion.case}")
     return shown | chart_pictures(contents)
 
 
@@ -190,9 +179,9 @@ def chart_pictures(contents: Contents) -> dict[str, Picture]:
     seen, unit, shown = contents.overview, contents.overview.unit, {}
     if seen.chart is not None:
         drawn = stability_chart.draw(seen.chart, unit=unit, operating=seen.operation)
-        shown["chart"] = picture(drawn.figure.figure, "Stability chart over speed and joint angle")
+        shown["chart"] = picture(drawn, "Stability chart over speed and joint angle")
     if contents.limit is not None and not np.all(contents.limit.kind == LimitKind.BEYOND):
         stands = {name: abs(angle) for name, angle in hooke_joints(seen.line)}
         drawn = limit_plot.draw(contents.limit, unit=unit, operating=seen.operation, values=stands)
-        shown["limit"] = picture(drawn.figure.figure, "Largest stable joint angle over speed")
+        shown["limit"] = picture(drawn, "Largest stable joint angle over speed")
     return shown

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,9 @@ from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.reporting.contents import Contents
-from trunnion.results.speeds import speed_factor
+from trunnion.reporting.under_load import LoadedMotion
+from trunnion.results.speeds import four_figures, speed_factor
+from trunnion.results.units import signs
 
 MOST_RESONANCES = 30
 MOST_CROSSINGS = 30
@@ -31,6 +33,13 @@ class Table:
 
     heads: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+
+    @classmethod
+    def of(cls, rows: Iterable[Mapping[str, object]]) -> Table:
+        """Values by head, numbers to four figures; what is not known is NaN."""
+        listed = list(rows)
+        shown = [tuple(four(v) if isinstance(v, float) else str(v) for v in row.values()) for row in listed]
+        return cls(tuple(listed[0]) if listed else (), tuple(shown))
 
     @property
     def numeric(self) -> tuple[bool, ...]:
@@ -48,7 +57,7 @@ def _is_number(text: str) -> bool:
 
 def four(value: float) -> str:
     """Four figures with a true minus sign."""
-    return f"{float(f'{value:.4g}'):.10g}".replace("-", "−") if np.isfinite(value) else "–"
+    return four_figures(value).replace("-", "−") if np.isfinite(value) else "–"
 
 
 def elements(line: Driveline) -> Table:
@@ -56,8 +65,8 @@ def elements(line: Driveline) -> Table:
     rows = []
     for i, (name, element) in enumerate(zip(line.names, line.elements, strict=True), start=1):
         after = f"after {element.after}; " if element.after else ""
-        rows.append((str(i), name, element.kind, after + "; ".join(_numbers(element))))
-    return Table(("no.", "name", "element", "numbers"), tuple(rows))
+        rows.append({"no.": i, "name": name, "element": element.kind, "numbers": after + "; ".join(_numbers(element))})
+    return Table.of(rows)
 
 
 def _numbers(element: Element) -> list[str]:
@@ -98,16 +107,12 @@ def with_signs(sentence: str) -> str:
 
 
 def _signs(text: str) -> str:
-    return text.replace("*", "·").replace("^2", "²").replace("^3", "³").replace(" deg", "°")
+    return signs(text).replace(" deg", "°")
 
 
 def modes(contents: Contents, unit: str) -> Table:
     """Natural frequencies and damping ratios."""
-    rows = []
-    for row in contents.overview.natural_frequencies.table(unit):
-        frequency, damping = (four(float(str(row[key]))) for key in (f"frequency [{unit}]", "damping ratio"))
-        rows.append((str(row["mode"]), frequency, damping, str(row["moves most"])))
-    return Table(("mode", f"frequency [{unit}]", "damping ratio", "moves most"), tuple(rows))
+    return Table.of(contents.overview.natural_frequencies.table(unit))
 
 
 def joints(line: Driveline) -> Table:
@@ -116,11 +121,16 @@ def joints(line: Driveline) -> Table:
     for name, element in zip(line.names, line.elements, strict=True):
         if not hasattr(element, "angle"):
             continue
-        beta = abs(float(element.angle))
-        alone = 100 * np.tan(beta) * np.sin(beta) if element.kind == "HookeJoint" else float("nan")
-        lead = np.rad2deg(np.arcsin(np.tan(beta / 2) ** 2)) if element.kind == "HookeJoint" else float("nan")
-        rows.append((name, element.kind, four(beta / DEGREE), four(alone), four(lead)))
-    return Table(("joint", "kind", "angle [°]", "irregularity alone [%]", "lead and lag alone [°]"), tuple(rows))
+        beta = abs(float(element.angle)) if element.kind == "HookeJoint" else np.nan
+        row = {
+            "joint": name,
+            "kind": element.kind,
+            "angle [°]": abs(float(element.angle)) / DEGREE,
+            "irregularity alone [%]": 100 * np.tan(beta) * np.sin(beta),
+            "lead and lag alone [°]": np.rad2deg(np.arcsin(np.tan(beta / 2) ** 2)),
+        }
+        rows.append(row)
+    return Table.of(rows)
 
 
 def irregularity(contents: Contents) -> Table | None:
@@ -131,32 +141,33 @@ def irregularity(contents: Contents) -> Table | None:
     from trunnion.analyses.kinetostatics.measures import equivalent_angle
     from trunnion.analyses.kinetostatics.measures import irregularity as uneven
 
-    rows = []
-    for name, speed, ratio in zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True):
-        u = uneven(speed, turn.input_speed * float(ratio))
-        rows.append((name, four(100 * u), four(float(np.rad2deg(equivalent_angle(u))))))
-    rows.append(("output of the line", four(100 * turn.irregularity), four(float(np.rad2deg(turn.equivalent_angle)))))
-    return Table(("shaft, as assembled", "irregularity [%]", "as one joint of [°]"), tuple(rows))
+    of_shafts = zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True)
+    found = {name: uneven(speed, turn.input_speed * float(ratio)) for name, speed, ratio in of_shafts}
+    found["output of the line"] = turn.irregularity
+    return Table.of(
+        {
+            "shaft, as assembled": name,
+            "irregularity [%]": 100 * u,
+            "as one joint of [°]": np.rad2deg(equivalent_angle(u)),
+        }
+        for name, u in found.items()
+    )
 
 
 def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table:
     """Where excitations meet the modes of the loaded line in the speed range."""
     found = contents.campbell.crossings if contents.campbell else ()
-    rows = [
-        (
-            four(c.speed * speed_factor(speed_unit)),
-            c.line.name,
-            ", ".join(c.line.causes),
-            f"{c.mode}",
-            four(c.frequency * speed_factor(frequency_unit)),
-            four(c.amplification),
-        )
-        for c in found
-    ]
-    heads = (
-        f"input speed [{speed_unit}]", "excitation", "by", "mode", f"frequency [{frequency_unit}]", "amplification",
-    )  # fmt: skip
-    return Table(heads, tuple(rows[:MOST_CROSSINGS]))
+    return Table.of(
+        {
+            f"input speed [{speed_unit}]": c.speed * speed_factor(speed_unit),
+            "excitation": c.line.name,
+            "by": ", ".join(c.line.causes),
+            "mode": c.mode,
+            f"frequency [{frequency_unit}]": c.frequency * speed_factor(frequency_unit),
+            "amplification": c.amplification,
+        }
+        for c in found[:MOST_CROSSINGS]
+    )
 
 
 def checks(judged: Assessment) -> Table:
@@ -183,10 +194,11 @@ def not_applicable(judged: Assessment) -> tuple[str, ...]:
 
 def resonances(contents: Contents, unit: str) -> Table:
     """Parametric resonance speeds in the range that can open."""
-    rows = [
-        (four(r.speed * speed_factor(unit)), r.kind, r.label) for r in contents.overview.resonance_speeds if r.opens
-    ]
-    return Table((f"input speed [{unit}]", "kind", "formula"), tuple(rows[:MOST_RESONANCES]))
+    able = [r for r in contents.overview.resonance_speeds if r.opens]
+    return Table.of(
+        {f"input speed [{unit}]": r.speed * speed_factor(unit), "kind": r.kind, "formula": r.label}
+        for r in able[:MOST_RESONANCES]
+    )
 
 
 def torques(contents: Contents, unit: str) -> Table | None:
@@ -194,89 +206,81 @@ def torques(contents: Contents, unit: str) -> Table | None:
     sweep = contents.sweep
     if sweep is None:
         return None
-    here = contents.overview.stability
-    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
+    here = contents.overview.stability.response if contents.overview.stability else None
+    trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, -1.0)
     rows = []
     for j, name in enumerate(sweep.shafts):
-        now: Sequence[str] = ("–", "–")
-        if here is not None and here.response is not None:
-            mean = float(here.response.torque_mean[j])
-            amplitude = float(here.response.torque_amplitude[j])
-            # a mean far below the amplitude is its second-order part or rounding, not a load
-            now = (four(mean if abs(mean) > 1e-4 * max(amplitude, 1e-9) else 0.0), four(amplitude))
-        top = ("–", "–")
-        if np.any(sweep.linear):
-            i = int(np.nanargmax(trusted[:, j]))
-            top = (four(float(trusted[i, j])), four(float(sweep.speed[i]) * speed_factor(unit)))
-        rows.append((name, *now, *top))
-    heads = (
-        "shaft", "mean, operating [N·m]", "amplitude, operating [N·m]", "largest amplitude [N·m]", f"at [{unit}]",
-    )  # fmt: skip
-    return Table(heads, tuple(rows))
+        mean = amplitude = np.nan
+        if here is not None:
+            mean, amplitude = here.torque_mean[j], here.torque_amplitude[j]
+            if not abs(mean) > 1e-4 * max(amplitude, 1e-9):  # its second-order part or rounding, not a load
+                mean = 0.0
+        most = int(np.nanargmax(trusted[:, j]))
+        known = bool(np.any(sweep.linear))
+        row = {
+            "shaft": name,
+            "mean, operating [N·m]": mean,
+            "amplitude, operating [N·m]": amplitude,
+            "largest amplitude [N·m]": trusted[most, j] if known else np.nan,
+            f"at [{unit}]": sweep.speed[most] * speed_factor(unit) if known else np.nan,
+        }
+        rows.append(row)
+    return Table.of(rows)
 
 
 def under_load(contents: Contents) -> Table | None:
     """Every case: stability of the true motion and of the two linearisations, and the shaft that swings most."""
-    if not contents.loaded:
-        return None
-    rows = []
-    for motion in contents.loaded:
-        response, linear = motion.response, motion.response.comparison
-        worst = int(response.torque_peak_to_peak.argmax())
-        rates = (four(linear.zero_twist.growth_rate), four(linear.static_twist.growth_rate)) if linear else ("–", "–")
-        rows.append(
-            (
-                motion.case,
-                str(response.verdict),
-                four(response.growth_rate),
-                *rates,
-                response.shafts[worst],
-                four(float(response.torque_mean[worst])),
-                four(float(response.torque_peak_to_peak[worst])),
-                four(float(linear.linear_torque_peak_to_peak[worst])) if linear else "–",
-            )
-        )
-    heads = (
-        "case", "true motion", "growth rate [1/s]", "about zero twist [1/s]", "about static twist [1/s]",
-        "most loaded shaft", "mean torque [N·m]", "peak to peak [N·m]", "by linear theory [N·m]",
-    )  # fmt: skip
-    return Table(heads, tuple(rows))
+    return Table.of(_of_motion(motion) for motion in contents.loaded) if contents.loaded else None
+
+
+def _of_motion(motion: LoadedMotion) -> dict[str, object]:
+    response, linear = motion.response, motion.response.comparison
+    worst = int(response.torque_peak_to_peak.argmax())
+    return {
+        "case": motion.case,
+        "true motion": response.verdict,
+        "growth rate [1/s]": response.growth_rate,
+        "about zero twist [1/s]": linear.zero_twist.growth_rate if linear else np.nan,
+        "about static twist [1/s]": linear.static_twist.growth_rate if linear else np.nan,
+        "most loaded shaft": response.shafts[worst],
+        "mean torque [N·m]": response.torque_mean[worst],
+        "peak to peak [N·m]": response.torque_peak_to_peak[worst],
+        "by linear theory [N·m]": linear.linear_torque_peak_to_peak[worst] if linear else np.nan,
+    }
 
 
 def contacts(contents: Contents) -> Table | None:
     """Every case and every mesh or shaft with stages: sides touched, time between them, impacts."""
+    found = [(motion.case, contact) for motion in contents.loaded for contact in motion.response.contacts]
     rows = [
-        (
-            motion.case, c.spring, c.contact, four(100 * c.play_share), str(c.impacts),
-            four(float(c.approach_speeds.max())) if c.rattles else "–", four(c.impact_energy) if c.rattles else "–",
-        )
-        for motion in contents.loaded
-        for c in motion.response.contacts
-    ]  # fmt: skip
-    heads = (
-        "case", "spring", "contact", "in the softest stage [%]", "impacts per period", "fastest approach [rad/s]",
-        "impact energy per period [J]",
-    )  # fmt: skip
-    return Table(heads, tuple(rows)) if rows else None
+        {
+            "case": case,
+            "spring": c.spring,
+            "contact": c.contact,
+            "in the softest stage [%]": 100 * c.play_share,
+            "impacts per period": c.impacts,
+            "fastest approach [rad/s]": c.approach_speeds.max() if c.rattles else np.nan,
+            "impact energy per period [J]": c.impact_energy if c.rattles else np.nan,
+        }
+        for case, c in found
+    ]
+    return Table.of(rows) if rows else None
 
 
 def bending(contents: Contents, unit: str) -> Table:
     """Bending critical speeds of tubes against the highest speed of the range."""
     high = contents.overview.speed_range[1]
-    rows = [
-        (
-            b.shaft,
-            four(b.critical_speed * speed_factor(unit)),
-            four(b.input_speed * speed_factor(unit)),
-            four(100 * high / b.input_speed),
-            shown(b.young_modulus, PRESSURE, digits=4) + (" (from the shear modulus)" if b.assumed_modulus else ""),
-        )
+    return Table.of(
+        {
+            "tube": b.shaft,
+            f"critical speed of the tube [{unit}]": b.critical_speed * speed_factor(unit),
+            f"of the input [{unit}]": b.input_speed * speed_factor(unit),
+            "top of the range over it [%]": 100 * high / b.input_speed,
+            "E": shown(b.young_modulus, PRESSURE, digits=4)
+            + (" (from the shear modulus)" if b.assumed_modulus else ""),
+        }
         for b in contents.bending
-    ]
-    heads = (
-        "tube", f"critical speed of the tube [{unit}]", f"of the input [{unit}]", "top of the range over it [%]", "E",
-    )  # fmt: skip
-    return Table(heads, tuple(rows))
+    )
 
 
 def operation(contents: Contents, unit: str) -> Table:

@@ -10,18 +10,19 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion._version import __version__
+from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
-from trunnion.results.declared import Held, Result, axis, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.files import read_dataset, save_numbers
 from trunnion.results.quantity_axes import parameter_axis
 from trunnion.results.verdict import Verdict, flag_attributes
@@ -29,13 +30,8 @@ from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
-    from trunnion.driveline.operation import Operation
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Resample = Callable[[Array, Array], tuple[Array, Array, Complex, NDArray[np.int8]]]
+Resample = Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]
 FORMAT = "trunnion stability chart 4"
 
 
@@ -87,7 +83,7 @@ class StabilityChart(Result):
     spectral_radius: Array
     error_estimate: Array
     critical_multiplier: Complex
-    verdict: NDArray[np.int8]
+    verdict: Codes
     speed: float | None
     period: float
     tolerance: float
@@ -163,23 +159,24 @@ class StabilityChart(Result):
         """Radius, error, critical multiplier and verdict over both parameters; settings, driveline and remarks."""
         yield axis("x", self.x, self.x_unit, self.x_label)
         yield axis("y", self.y, self.y_unit, self.y_label)
-        yield over("y x", "spectral_radius", self.spectral_radius, "1")
-        yield over("y x", "error_estimate", self.error_estimate, "1")
+        yield from fields_over("y x", self, spectral_radius="1", error_estimate="1")
         yield over("y x", "critical_multiplier_real", self.critical_multiplier.real, "1")
         yield over("y x", "critical_multiplier_imaginary", self.critical_multiplier.imag, "1")
         yield over("y x", "verdict", self.verdict, **flag_attributes())
-        yield remark("format", FORMAT)
-        yield remark("version", __version__)
-        yield remark("period", self.period)
-        yield remark("tolerance", self.tolerance)
-        yield remark("statically_twisted", int(self.statically_twisted))
-        yield remark("remarks", json.dumps(list(self.remarks)))
-        yield remark("driveline", "" if self.line is None else dumps(self.line))
-        yield remark("x_parameter", _parameter_text(self.x_parameter))
-        yield remark("y_parameter", _parameter_text(self.y_parameter))
-        yield remark("speed", float("nan") if self.speed is None else self.speed)
-        yield remark("way", self.way)
-        yield remark("spot_check", json.dumps(asdict(self.spot_check) if self.spot_check else None))
+        yield from remarks(
+            format=FORMAT,
+            version=__version__,
+            period=self.period,
+            tolerance=self.tolerance,
+            statically_twisted=int(self.statically_twisted),
+            remarks=json.dumps(list(self.remarks)),
+            driveline="" if self.line is None else dumps(self.line),
+            x_parameter=_parameter_text(self.x_parameter),
+            y_parameter=_parameter_text(self.y_parameter),
+            speed=float("nan") if self.speed is None else self.speed,
+            way=self.way,
+            spot_check=json.dumps(asdict(self.spot_check) if self.spot_check else None),
+        )
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write netCDF-4, patches included; an existing file is replaced only when all is written."""
@@ -339,15 +336,16 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float | np.number) and not isinstance(value, bool) and bool(np.isfinite(value))
 
 
-def _is_log(axis: Array) -> bool:
-    """Whether pixels stand at equal ratios."""
+def is_log(axis: Array) -> bool:
+    """Whether pixels stand at equal ratios rather than at equal distances."""
     if len(axis) < 3 or axis[0] <= 0:
         return False
-    return np.allclose(axis, np.geomspace(axis[0], axis[-1], len(axis)), rtol=1e-9, atol=0)
+    even, ratios = (spaced(axis[0], axis[-1], len(axis)) for spaced in (np.linspace, np.geomspace))
+    return not np.allclose(axis, even, rtol=1e-9, atol=0) and np.allclose(axis, ratios, rtol=1e-9, atol=0)
 
 
 def _inside(axis: Array, request: Sequence[float | str], label: str) -> Array:
-    scale = request[3] if len(request) == 4 else "log" if _is_log(axis) else "linear"
+    scale = request[3] if len(request) == 4 else "log" if is_log(axis) else "linear"
     numbers = request[:3]
     if len(request) not in (3, 4) or not all(map(_is_number, numbers)) or scale not in ("linear", "log"):
         remedy = 'numbers, then "linear" or "log" if you like'

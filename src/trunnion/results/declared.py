@@ -81,10 +81,15 @@ def remarks_of(result: object, *names: str) -> Iterator[Held]:
         yield remark(name, getattr(result, name))
 
 
+def remarks(**values: object) -> Iterator[Held]:
+    """Several remarks by name."""
+    for name, value in values.items():
+        yield remark(name, value)
+
+
 def ending(outcome: Outcome) -> Iterator[Held]:
     """How the computation ended."""
-    yield remark("outcome", outcome.kind)
-    yield remark("outcome_sentence", outcome.sentence)
+    yield from remarks(outcome=outcome.kind, outcome_sentence=outcome.sentence)
 
 
 def parameters_of(system: System) -> Iterator[Held]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-import numpy as np
-from numpy.typing import NDArray
-
+from trunnion.arrays import Array
 from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.results.units import signs
+from trunnion.systems.system import System
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class QuantityAxis:
         """``input speed 1500 rpm``, from SI."""
         return f"{self.quantity} {self.number(number)}"
 
-    def said(self, values: NDArray[np.float64]) -> str:
+    def said(self, values: Array) -> str:
         """``input speed from 300 rpm to 2400 rpm``, from SI."""
         return f"{self.quantity} from {self.number(float(values[0]))} to {self.number(float(values[-1]))}"
 
@@ -42,7 +42,7 @@ def quantity_axis(label: str, unit: str, speed_unit: str) -> QuantityAxis:
     """Axis of a chart parameter: degrees for angles, ``speed_unit`` for the speed, SI signs otherwise."""
     if label == "speed":
         return QuantityAxis("input speed", speed_unit, speed_factor(speed_unit))
-    shown, factor = unit.replace("*", "·").replace("^2", "²").replace("^3", "³"), 1.0
+    shown, factor = signs(unit), 1.0
     if unit == "rad":
         shown, factor = "°", 180 / pi
     elif unit == "rad/s":
@@ -58,11 +58,20 @@ def parameter_axis(label: str, unit: str, speed_unit: str | None) -> QuantityAxi
     return QuantityAxis(label, "" if unit == "1" else unit, 1.0)
 
 
-def state_axis(name: str, unit: str, speed_unit: str | None) -> QuantityAxis:
-    """How a state of equations reads: rates of a line in its ``speed_unit``, all else as its unit says."""
-    if speed_unit is not None and unit == "rad/s":
-        return QuantityAxis(name, speed_unit, speed_factor(speed_unit))
-    return QuantityAxis(name, "" if unit == "1" else unit, 1.0)
+def axis_of_parameter(system: System, name: str) -> QuantityAxis:
+    """How a parameter of a system reads."""
+    return parameter_axis(name, system.parameter_units.get(name, "1"), system.speed_unit)
+
+
+def state_axes(system: System) -> list[QuantityAxis]:
+    """How the states of a system read: rates of a line in its speed unit, all else as their units say."""
+    rate = system.speed_unit
+    return [
+        QuantityAxis(name, rate, speed_factor(rate))
+        if rate is not None and unit == "rad/s"
+        else QuantityAxis(name, "" if unit == "1" else unit, 1.0)
+        for name, unit in zip(system.states, system.units, strict=True)
+    ]
 
 
 def _words(label: str) -> str:

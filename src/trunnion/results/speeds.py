@@ -27,3 +27,18 @@ def frequency_unit(speed_unit: str | None) -> str:
 def show_speed(speed: float, unit: str = "rad/s") -> str:
     """``1500 rpm``: six figures at most."""
     return f"{speed * speed_factor(unit):.6g} {unit}"
+
+
+def four_figures(value: float) -> str:
+    """``1234`` or ``0.01235``, as points of a grid deserve; powers of ten from 1e10 on."""
+    return f"{float(f'{value:.4g}'):.10g}"
+
+
+def rounded_speed(speed: float, unit: str) -> str:
+    """``1234 rpm``: four figures."""
+    return f"{four_figures(speed * speed_factor(unit))} {unit}"
+
+
+def rounded_span(low: float, high: float, unit: str, between: str = "to") -> str:
+    """``300 to 2400 rpm``: four figures each."""
+    return f"{four_figures(low * speed_factor(unit))} {between} {rounded_speed(high, unit)}"

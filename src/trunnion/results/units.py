@@ -5,6 +5,11 @@ from __future__ import annotations
 from trunnion.driveline.quantities import KINDS, SPEED, shown
 
 
+def signs(text: str) -> str:
+    """A unit, or a number with its unit, as a page prints it: "N·m", "kg·m²"."""
+    return text.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
 def with_unit(text: str, unit: str) -> str:
     """``text`` and its unit; the unit 1 of what has no dimension is left out."""
     return text if unit == "1" else f"{text} {unit}"

@@ -6,7 +6,9 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Codes
 
 
 class Verdict(IntEnum):
@@ -31,7 +33,7 @@ MEANING = {
 }
 
 
-def verdicts(radius: ArrayLike, error: ArrayLike, undamped: ArrayLike = False) -> NDArray[np.int8]:
+def verdicts(radius: ArrayLike, error: ArrayLike, undamped: ArrayLike = False) -> Codes:
     """Codes from spectral radius and error estimate; ``undamped`` turns undecided into marginal."""
     radius, error = np.asarray(radius, dtype=float), np.asarray(error, dtype=float)
     straddling = np.where(undamped, Verdict.MARGINAL, Verdict.UNDECIDED)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
 
 from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
+from trunnion.arrays import Array
+from trunnion.plots.paper_chart import draw
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, TITLE, head, new_figure, plain
 from trunnion.results.chart import StabilityChart
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
+from trunnion.studies.result import PaperFigure
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,7 @@ def panel(chart: StabilityChart, caption: str, y_label: str, limits: tuple[float
 
 def side_by_side(panels: Sequence[Panel]) -> Figure:
     """One or two panels, dark = unstable."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-    from trunnion.plots.paper_chart import draw
-
-    figure = LiteralFigure(figsize=(5.0 * len(panels) + 0.4, 4.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(5.0 * len(panels) + 0.4, 4.6)
     grid: Any = figure.subplots(1, len(panels), squeeze=False)
     for axes, p in zip(grid[0], panels, strict=True):
         draw(
@@ -54,17 +48,16 @@ def side_by_side(panels: Sequence[Panel]) -> Figure:
     return figure
 
 
+def charts_figure(number: str, caption: str, assumed: str, *panels: Panel) -> PaperFigure:
+    """A figure of the paper that shows one or two charts."""
+    return PaperFigure(number, caption, assumed, partial(side_by_side, panels), tuple(p.chart for p in panels))
+
+
 def curves(
     x: Array, rows: Sequence[tuple[str, Array]], marks: Sequence[tuple[float, str]], y_label: str, title: str
 ) -> Figure:
     """Spectral radii over speed, one small panel each under a common speed axis; marks are named speeds."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    from trunnion.plots.literal_figure import LiteralFigure
-    from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, plain
-
-    figure = LiteralFigure(figsize=(7.2, 1.55 * len(rows) + 0.8), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(7.2, 1.55 * len(rows) + 0.8)
     grid: Any = figure.subplots(len(rows), 1, sharex=True, squeeze=False)
     for k, (axes, (name, values)) in enumerate(zip(grid[:, 0], rows, strict=True)):
         axes.axhline(1.0, color=FAINT, lw=0.8)
@@ -77,11 +70,11 @@ def curves(
         low, high = float(values.min()), float(values.max())
         axes.set_ylim(min(low, 0.999) - 0.05 * (high - low), max(high, 1.001) + 0.08 * (high - low))
         for at, word in marks:
-            axes.axvline(at, color="#0072b2", lw=0.8, ls=(0, (4, 3)), zorder=0)
+            axes.axvline(at, color=ACCENT, lw=0.8, ls=(0, (4, 3)), zorder=0)
             if k == 0:
-                look: dict[str, Any] = {"fontsize": SMALL, "color": "#0072b2", "ha": "center", "va": "bottom"}
-                axes.text(at, 1.03, word, transform=axes.get_xaxis_transform(), **look)
+                place = axes.get_xaxis_transform()
+                axes.text(at, 1.03, word, transform=place, fontsize=SMALL, color=ACCENT, ha="center", va="bottom")
     grid[-1, 0].set_xlabel("speed Ω [1]", fontsize=TEXT, color=INK)
     figure.supylabel(y_label, fontsize=TEXT, color=INK)
-    figure.suptitle(title, fontsize=TITLE - 1, color=INK, x=0.01, ha="left")
+    head(figure, title, TITLE - 1)
     return figure

@@ -16,7 +16,8 @@ PAPERS = {
     "double-tripod": "trunnion.studies.double_tripod.study:double_tripod",
     "gear-rattle": "trunnion.studies.gear_rattle.study:gear_rattle",
 }
-"""Catalogue names that have a reproduction, and the function that makes it."""
+"""Catalogue names that have a reproduction, and the function that makes it of ``points`` and of what tells the share
+done."""
 
 
 ALL = "all"
@@ -72,5 +73,7 @@ def reproduce(
 
 def _one(name: str, points: int, progress: Callable[[float], None] | None) -> Reproduction:
     module, function = PAPERS[name].split(":")
-    made: Reproduction = getattr(import_module(module), function)(points=points, progress=progress)
+    tell = progress or (lambda share: None)
+    made: Reproduction = getattr(import_module(module), function)(points, tell)
+    tell(1.0)
     return made

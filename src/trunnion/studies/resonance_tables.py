@@ -7,21 +7,31 @@ import numpy as np
 from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-from trunnion.studies.result import Row
+from trunnion.studies.result import Comparison, Row
 from trunnion.studies.tips import FOLLOWED, Tip, tip
 
 Printed = tuple[str, tuple[int, ...], int, float]
 """Kind, modes, order k and the value a paper prints."""
 
 
-def resonance_row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]) -> Row:
-    """One printed resonance speed.
+def resonance_table(
+    title: str,
+    printed: tuple[Printed, ...],
+    charts: tuple[StabilityChart, ...],
+    faint: tuple[StabilityChart, ...],
+    note: str,
+) -> Comparison:
+    """Printed resonance speeds, one a row.
 
     Parameters
     ----------
     charts : the paper's, speed × angle; the one that holds the speed best is used, and its pixels.
     faint : the same line with a hundredth of the damping, in which tongues start near β = 0.
     """
+    return Comparison(title, tuple(_row(one, charts, faint) for one in printed), note)
+
+
+def _row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]) -> Row:
     kind, modes, order, value = printed
     assert charts[0].line is not None
     every = tuple(resonance_speeds(charts[0].line, max(3, order)))

@@ -7,14 +7,12 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from matplotlib.figure import Figure
+
+from trunnion.plots.style import DPI
 from trunnion.results.chart import StabilityChart
 from trunnion.writing import folder_written_whole
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 CHARTS_NOTE = (
     "Dark is unstable, as in the paper; grey, if anywhere, undecided (the spectral radius is 1 to within its error). "
@@ -60,8 +58,8 @@ class PaperFigure:
     number: str
     caption: str
     assumed: str
-    charts: tuple[StabilityChart, ...]
     draw: Callable[[], Figure] = field(repr=False, compare=False)
+    charts: tuple[StabilityChart, ...] = ()
 
     @property
     def file(self) -> str:
@@ -192,8 +190,6 @@ def _save(
 
 
 def _png(figure: Figure) -> bytes:
-    from trunnion.plots.style import DPI
-
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI)
     return stream.getvalue()

@@ -8,6 +8,7 @@ from math import hypot
 
 import numpy as np
 
+from trunnion.arrays import Flags
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
 from trunnion.studies.result import CONFIRMED, CORRECTED, UNDECIDED
@@ -46,6 +47,13 @@ def share(
     scatter = float(np.std(means, ddof=1) / np.sqrt(len(means))) if len(means) > 1 else 1.0
     open_ = float(np.mean((inside != Verdict.UNSTABLE) & (inside != Verdict.STABLE)))
     return Share(100 * float(unstable.mean()), 100 * (scatter + open_ / 2))
+
+
+def sampled_share(flags: Flags, digits: int) -> str:
+    """``12.3 ± 1.1 %``: share of independent samples and its standard error, which is left out where all are alike."""
+    part = float(np.mean(flags))
+    error = np.sqrt(part * (1 - part) / len(flags))
+    return f"{100 * part:.{digits}f}" + (f" ± {100 * error:.{digits}f}" if error else "") + " %"
 
 
 def bands(chart: StabilityChart, edges: tuple[float, ...], *, along: str, **rest: tuple[float, float]) -> list[Share]:

@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-
-Array = NDArray[np.float64]
 
 WINDOW = 0.05
 """Half-width of the window, relative to the resonance speed."""
@@ -69,7 +67,7 @@ def tip(chart: StabilityChart, resonance: Resonance, others: tuple[float, ...] =
     return Tip(resonance, float(fine.x[column]), float(fine.y[first]), _intercept(middle))
 
 
-def _nearest_tongue(inside: NDArray[np.bool_], distance: Array) -> NDArray[np.bool_] | None:
+def _nearest_tongue(inside: Flags, distance: Array) -> Flags | None:
     """The connected region whose lowest point is nearest to the named speed.
 
     Regions that come in through the side of the window are tongues of other resonances.
@@ -99,7 +97,7 @@ def _window(speed: float, others: tuple[float, ...], least: float, most: float) 
     return max(low, least), min(high, most)
 
 
-def _of_kind(multiplier: NDArray[np.complex128], kind: str) -> NDArray[np.bool_]:
+def _of_kind(multiplier: Complex, kind: str) -> Flags:
     real = np.abs(multiplier.imag) <= COMPLEX * np.abs(multiplier)
     if kind in ("sum", "difference"):
         return np.asarray(~real)

@@ -21,7 +21,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, axis, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import parameter_axis
+from trunnion.results.quantity_axes import axis_of_parameter
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
@@ -61,8 +61,7 @@ class BifurcationDiagram(Result):
         return drawing(self, "plot")(self, axes, state=state)
 
     def __str__(self) -> str:
-        unit = self.system.parameter_units.get(self.parameter, "1")
-        along = parameter_axis(self.parameter, unit, self.system.speed_unit)
+        along = axis_of_parameter(self.system, self.parameter)
         low, high = self.values[0] * along.factor, along.number(float(self.values[-1]))
         rows = [
             f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high}, "

@@ -28,7 +28,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, axis, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import parameter_axis
+from trunnion.results.quantity_axes import axis_of_parameter
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
@@ -69,8 +69,7 @@ class LyapunovSweep(Result):
 
     def __str__(self) -> str:
         known = np.isfinite(self.exponents[:, 0])
-        unit = self.system.parameter_units.get(self.parameter, "1")
-        along = parameter_axis(self.parameter, unit, self.system.speed_unit)
+        along = axis_of_parameter(self.system, self.parameter)
         head = (
             f"Lyapunov exponents of {self.system.name} over {self.parameter} = {self.values[0] * along.factor:.6g} … "
             f"{along.number(float(self.values[-1]))}, {len(self.values)} values, {self.periods} periods each"

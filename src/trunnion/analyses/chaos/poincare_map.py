@@ -24,7 +24,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import state_axis
+from trunnion.results.quantity_axes import state_axes
 from trunnion.systems.events import Event
 from trunnion.systems.maps import SectionMap, TimedMap
 from trunnion.systems.system import System
@@ -79,8 +79,7 @@ class PoincareMap(Result):
     def __str__(self) -> str:
         count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"
         head = f"Poincaré map of {self.system.name}: {count}, {self.section}"
-        states = zip(self.system.states, self.system.units, strict=True)
-        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
+        axes = state_axes(self.system)
         rows = [
             f"  {name}: {column.min() * axis.factor:.6g} … {axis.number(float(column.max()))}"
             for name, axis, column in zip(self.system.states, axes, self.wrapped.T, strict=True)

@@ -13,7 +13,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over
+from trunnion.results.declared import Held, Result, axis, fields_over, over
 
 
 @dataclass(frozen=True, repr=False)
@@ -34,8 +34,7 @@ class SafeAccelerations(Result):
         """The share of the limit that each acceleration tried reaches, and the edges of what keeps it."""
         yield axis("acceleration", self.acceleration, "rad/s^2")
         yield over("acceleration", "share", self.share, "1")
-        yield over("", "slowest", self.slowest, "rad/s^2")
-        yield over("", "fastest", self.fastest, "rad/s^2")
+        yield from fields_over("", self, slowest="rad/s^2", fastest="rad/s^2")
 
     def __str__(self) -> str:
         return self.sentence

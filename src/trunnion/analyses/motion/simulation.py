@@ -17,7 +17,7 @@ from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Tra
 from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import state_axis
+from trunnion.results.quantity_axes import state_axes
 from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
@@ -113,8 +113,7 @@ class Simulation(Result):
     def __str__(self) -> str:
         low, high = self.time_range
         least, most = self.range
-        states = zip(self.system.states, self.system.units, strict=True)
-        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
+        axes = state_axes(self.system)
         rows = [
             f"  {name}: {least[i] * axis.factor:.6g} … {axis.number(float(most[i]))}, at the end "
             f"{self.final[i] * axis.factor:.10g}"

@@ -29,7 +29,7 @@ from trunnion.numerics.spectrum import spectral_radius
 from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import state_axis
+from trunnion.results.quantity_axes import state_axes
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
 from trunnion.systems.system import System
@@ -138,8 +138,7 @@ class PeriodicOrbit(Result):
         changes = f", {self.regime_changes} changes of regime" if self.system.regimes else ""
         tangents = "" if self.system.exact_tangents else "; tangents differenced"
         what = "equilibrium" if self.outcome.kind == "at rest" else "periodic motion"
-        states = zip(self.system.states, self.system.units, strict=True)
-        axes = [state_axis(name, unit, self.system.speed_unit) for name, unit in states]
+        axes = state_axes(self.system)
         rows = [
             f"  {name}: {mean * axis.factor:.6g} ± {axis.number(float(peak) / 2)}"
             for name, mean, peak, axis in zip(self.system.states, self.mean, self.peak_to_peak, axes, strict=True)

@@ -20,7 +20,7 @@ from trunnion.analyses.tolerance.spread import Spread, numbers_at, tables
 from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
+from trunnion.results.declared import Held, Result, axis, over, remarks
 
 SECONDS = 30.0
 FEWEST, MOST = 4, 256
@@ -78,13 +78,14 @@ class CheckStudy(Result):
         yield over("check", "guideline", self.guideline.astype(np.int8))
         yield axis("check_parameter", [name for name, _ in self.ranking])
         yield over("check_parameter", "explained_of_check", np.array([share for _, share in self.ranking]), "1")
-        yield remark("checks_together", self.together)
-        yield remark("checks_together_interval", list(self.together_interval))
-        yield remark("checks_lines", self.lines)
-        yield remark("checks_failed", self.failed)
+        yield from remarks(
+            checks_together=self.together,
+            checks_together_interval=list(self.together_interval),
+            checks_lines=self.lines,
+            checks_failed=self.failed,
+        )
         if self.worst is not None:
-            yield remark("checks_worst", self.worst.check)
-            yield remark("checks_worst_spare", self.worst.spare)
+            yield from remarks(checks_worst=self.worst.check, checks_worst_spare=self.worst.spare)
 
     def __str__(self) -> str:
         low, high = self.together_interval

@@ -6,13 +6,14 @@ Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.analyses.kinetostatics.turn import kinetostatics
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.plots.kinetostatics import draw_paper
 from trunnion.studies.bicardan_elastic.conclusions import change, conclusions
@@ -20,13 +21,11 @@ from trunnion.studies.bicardan_elastic.errata import errata
 from trunnion.studies.bicardan_elastic.published import bicardan_elastic as published
 from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
 
-Array = NDArray[np.float64]
 NAME = "bicardan-elastic"
 
 
-def bicardan_elastic(points: int = 400, progress: Callable[[float], None] | None = None) -> Reproduction:
+def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction:
     """Reproduce S2 on ``points`` angles a turn."""
-    tell = progress or (lambda share: None)
 
     def turn(rigid: bool = False, **changes: Any) -> Kinetostatics:
         line: Driveline = published(**changes)
@@ -40,12 +39,12 @@ def bicardan_elastic(points: int = 400, progress: Callable[[float], None] | None
     shown = "1 rad/s, 150 N·m, ν₁₂ = 180°, β₁₂ = 266.4°. "
     figures = (
         PaperFigure("3", "Angles, speeds, accelerations and torques, intermediate shaft elastic",
-                    shown + "Stiffness in N·mm/rad.", (), lambda: draw_paper(elastic)),
+                    shown + "Stiffness in N·mm/rad.", partial(draw_paper, elastic)),
         PaperFigure("4", "Angles, speeds, accelerations and torques, intermediate shaft rigid",
-                    shown + "Alike to the width of a line: what differs stands in the table.", (),
-                    lambda: draw_paper(rigid)),
+                    shown + "Alike to the width of a line: what differs stands in the table.",
+                    partial(draw_paper, rigid)),
     )  # fmt: skip
-    result = Reproduction(
+    return Reproduction(
         NAME,
         "Two Hooke's joints and an elastic shaft between them (S2)",
         "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant, part III, 2007",
@@ -56,8 +55,6 @@ def bicardan_elastic(points: int = 400, progress: Callable[[float], None] | None
         conclusions(elastic, rigid, even, even_rigid),
         "Torques are those passed on to the load. The paper draws its curves without numbers.",
     )
-    tell(1.0)
-    return result
 
 
 def _numbers(rigid: Kinetostatics) -> Comparison:

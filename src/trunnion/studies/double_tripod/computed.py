@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.chaos.certify_chaos import ChaosCertificate, certify_chaos
 from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum
+from trunnion.arrays import Array
 from trunnion.numerics.integration.integration import integrate
 from trunnion.studies.double_tripod.contraction import Contraction, contraction
 from trunnion.studies.double_tripod.published import DoubleTripod
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 RANGES = {"input": (2950.0, 3200.0), "output": (2650.0, 2950.0)}
 """Frequencies η/2π [Hz] over which S4 draws its exponents."""
 DAMPINGS = {

@@ -14,12 +14,12 @@ figures show other values, so this reading is not what its authors computed.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from trunnion.arrays import Array
 from trunnion.numerics.integration.integration import integrate
 from trunnion.systems.system import System
 
-Array = NDArray[np.float64]
 PERTURBATION = 1e-5
 
 

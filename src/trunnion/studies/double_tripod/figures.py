@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.analyses.motion.simulation import Simulation, simulate_system
+from trunnion.arrays import Array
+from trunnion.plots.style import ACCENT, COLOURS, FAINT, INK, SMALL, TITLE, VERMILION, head, label_axes
 from trunnion.studies.double_tripod.estimator import printed_estimator
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
 HISTORY = 0.12
 """Time drawn [s]; the paper does not state its own."""
 DIES_OUT = 12.0
@@ -34,7 +33,7 @@ def frequency_figure(element: str) -> Figure:
     figure, (axes,) = _figure(1)
     beta = np.linspace(0, WORST_ANGLE, 91)
     part = DoubleTripod().element(element)
-    axes.plot(np.rad2deg(beta), [part.natural_frequency(b) for b in beta], color="#0072b2", lw=1.6)
+    axes.plot(np.rad2deg(beta), [part.natural_frequency(b) for b in beta], color=ACCENT, lw=1.6)
     _labels(axes, "joint angle β [°]", f"natural frequency of {part.name} [rad/s]")
     axes.set_xlim(0, 9)
     return figure
@@ -72,30 +71,22 @@ RISE = 0.02
 def motion_figure(motion: Simulation, title: str) -> Figure:
     """The paper's panels (a) to (d), φ and φ̇ over time, both in space with time, and the portrait; beside them what is
     left once the start has died out, at its own scale."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10.0, 7.2), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = _blank(10.0, 7.2)
     mosaic: Any = [["a", "a", "a", "b", "b", "b"], ["c", "c", "d", "d", "e", "e"]]
     axes: Any = figure.subplot_mosaic(mosaic, per_subplot_kw={"c": {"projection": "3d"}})
     times = np.linspace(0, HISTORY, 20_000)
     late = np.linspace(motion.end - SETTLED, motion.end, 8_000)
     state, settled = (motion.at(t) * np.array([1e6, 1.0]) for t in (times, late))
     phi, rate = "rotation [µrad]", "rate [rad/s]"
-    axes["a"].plot(times, state[:, 0], color="#0072b2", lw=0.4)
-    axes["b"].plot(times, state[:, 1], color="#0072b2", lw=0.4)
-    axes["c"].plot(state[:, 0], state[:, 1], times, color="#0072b2", lw=0.3)
-    axes["d"].plot(state[:, 0], state[:, 1], color="#0072b2", lw=0.3)
+    axes["a"].plot(times, state[:, 0], color=ACCENT, lw=0.4)
+    axes["b"].plot(times, state[:, 1], color=ACCENT, lw=0.4)
+    axes["c"].plot(state[:, 0], state[:, 1], times, color=ACCENT, lw=0.3)
+    axes["d"].plot(state[:, 0], state[:, 1], color=ACCENT, lw=0.3)
     axes["e"].plot(settled[:, 0], settled[:, 1], color="#c04f00", lw=1.0)
     rests = bool(np.all(np.ptp(settled, axis=0) < 1e-3 * np.ptp(state, axis=0)))
     if rests:
         axes["e"].plot(settled[-1:, 0], settled[-1:, 1], "o", color="#c04f00", ms=7)
-        half = np.ptp(state, axis=0) / 20
-        axes["e"].set(
-            xlim=(settled[-1, 0] - half[0], settled[-1, 0] + half[0]),
-            ylim=(settled[-1, 1] - half[1], settled[-1, 1] + half[1]),
-        )
+        _about(axes["e"], settled[-1], np.ptp(state, axis=0) / 20)
     for letter, x, y in (("a", "time [s]", phi), ("b", "time [s]", rate), ("d", phi, rate), ("e", phi, rate)):
         _labels(axes[letter], x, y)
     _in_space(axes["c"], phi, rate)
@@ -103,9 +94,16 @@ def motion_figure(motion: Simulation, title: str) -> Figure:
         axes[letter].set_xlim(0, HISTORY)
     names = {"a": "(a)", "b": "(b)", "c": "(c)", "d": "(d)", "e": "settled: at rest" if rests else "settled"}
     for letter, name in names.items():
-        axes[letter].set_title(name, fontsize=9.5, color="#4a4a4a", loc="left")
-    _title(figure, title)
+        _named(axes[letter], name)
+    head(figure, title, TITLE - 1)
     return figure
+
+
+def _about(axes: Axes, middle: Array, half: Array) -> None:
+    """Show a place (2,) and so much to both sides."""
+    (left, bottom), (right, top) = middle - half, middle + half
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
 
 
 def _in_space(axes: Any, phi: str, rate: str) -> None:
@@ -121,19 +119,18 @@ def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
     """Exponents and their sum over η/2π: the panels (a) to (d) of Figures 17 to 24."""
     figure, (left, right) = _figure(2)
     x = sweep.values / (2 * np.pi)
-    colours, styles = ("#0072b2", "#d55e00", "#009e73"), ("-", "-", "--")
-    for j in range(3):
-        left.plot(x, sweep.exponents[:, j], styles[j], color=colours[j], lw=1.4, label=f"L{j + 1}")
-    left.axhline(0.0, color="#6b6b6b", lw=0.8, ls=(0, (4, 3)), zorder=0)
-    right.plot(x, sweep.exponents.sum(axis=1), color="#1a1a1a", lw=1.4)
+    for j, style in enumerate(("-", "-", "--")):
+        left.plot(x, sweep.exponents[:, j], style, color=COLOURS[j], lw=1.4, label=f"L{j + 1}")
+    left.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=0)
+    right.plot(x, sweep.exponents.sum(axis=1), color=INK, lw=1.4)
     total = float(np.mean(sweep.exponents.sum(axis=1)))
     right.set_ylim(total - 0.1 * abs(total), total + 0.1 * abs(total))
-    left.legend(fontsize=9.5, frameon=False, loc="center right")
+    left.legend(fontsize=SMALL, frameon=False, loc="center right")
     _labels(left, "excitation frequency η/2π [Hz]", "exponent [1/s]")
     _labels(right, "excitation frequency η/2π [Hz]", "sum of the exponents [1/s]")
     for axes in (left, right):
         axes.set_xlim(x[0], x[-1])
-    _title(figure, title)
+    head(figure, title, TITLE - 1)
     return figure
 
 
@@ -149,17 +146,13 @@ def map_figure(found: PoincareMap, counts: tuple[int, int], title: str) -> Figur
     figure, panels = _figure(2)
     for axes, points in zip(panels, counts, strict=True):
         at = found.points[:points, [0, 2]] * np.array([1e6, 1.0])
-        size = found.size[[0, 2]] * np.array([1e6, 1.0])
-        look: dict[str, Any] = {"marker": ".", "ls": "", "color": "#0072b2", "mew": 0}
-        small = 2.4 if points < 20_000 else 1.2
-        axes.plot(at[:, 0], at[:, 1], ms=8.0 if found.repeat else small, rasterized=True, **look)
+        size = 8.0 if found.repeat else 2.4 if points < 20_000 else 1.2
+        axes.plot(at[:, 0], at[:, 1], marker=".", ls="", color=ACCENT, mew=0, ms=size, rasterized=True)
         if found.repeat:  # one point: shown at the size of the motion
-            axes.set_xlim(at[-1, 0] - size[0], at[-1, 0] + size[0])
-            axes.set_ylim(at[-1, 1] - size[1], at[-1, 1] + size[1])
-        words = f"N = {points}" + (", all on one point" if found.repeat else "")
-        axes.set_title(words, fontsize=9.5, color="#4a4a4a", loc="left")
+            _about(axes, at[-1], found.size[[0, 2]] * np.array([1e6, 1.0]))
+        _named(axes, f"N = {points}" + (", all on one point" if found.repeat else ""))
         _labels(axes, "rotation [µrad]", "rate [rad/s]")
-    _title(figure, title)
+    head(figure, title, TITLE - 1)
     return figure
 
 
@@ -178,37 +171,32 @@ def estimator_curves(element: str, frequencies: Array, counts: tuple[int, ...] =
 def estimator_figure(frequencies: Array, curves: Array) -> Figure:
     """The printed estimator of the rotation over η/2π for two numbers of intervals N."""
     figure, (axes,) = _figure(1)
-    for count, curve, colour in zip(COUNTS, curves, ("#0072b2", "#d55e00"), strict=True):
+    for count, curve, colour in zip(COUNTS, curves, (ACCENT, VERMILION), strict=True):
         axes.plot(frequencies, curve[:, 0], color=colour, lw=1.3, label=f"N = {count}")
-    axes.legend(fontsize=9.5, frameon=False, loc="best")
+    axes.legend(fontsize=SMALL, frameon=False, loc="best")
     axes.set_xlim(frequencies[0], frequencies[-1])
     _labels(axes, "excitation frequency η/2π [Hz]", "printed “exponent” L₁₁ [log₁₀/s]")
-    _title(figure, "Not a Lyapunov exponent: it changes with N")
+    head(figure, "Not a Lyapunov exponent: it changes with N", TITLE - 1)
+    return figure
+
+
+def _blank(width: float, height: float) -> Figure:
+    """A figure laid out at the resolution that it is saved with."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
     return figure
 
 
 def _figure(count: int) -> tuple[Figure, list[Any]]:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    widths = {1: 6.3, 2: 9.6, 3: 12.0}
-    figure = Figure(figsize=(widths[count], 3.9), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = _blank({1: 6.3, 2: 9.6}[count], 3.9)
     grid: Any = figure.subplots(1, count, squeeze=False)
     return figure, list(grid[0])
 
 
 def _labels(axes: Axes, x: str, y: str) -> None:
-    from trunnion.plots.style import INK, TEXT, plain
-
-    axes.set_xlabel(x, fontsize=TEXT, color=INK)
-    axes.set_ylabel(y, fontsize=TEXT, color=INK)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
+    label_axes(axes, x, y)
     axes.ticklabel_format(useOffset=False)
-    plain(axes)
 
 
-def _title(figure: Figure, text: str) -> None:
-    from trunnion.plots.style import INK, TITLE
-
-    figure.suptitle(text, fontsize=TITLE - 1, color=INK, x=0.01, ha="left")
+def _named(axes: Axes, name: str) -> None:
+    axes.set_title(name, fontsize=SMALL, color="#4a4a4a", loc="left")

@@ -20,15 +20,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.laws import tripod
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction
 
-Array = NDArray[np.float64]
 DENSITY, SHEAR_MODULUS = 7850.0, 77.3e9
 """ρ [kg/m³] and G [Pa] of Tables 1 and 2."""
 MIDSHAFT_LENGTH = 0.940

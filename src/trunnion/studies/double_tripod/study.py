@@ -7,7 +7,7 @@ for the double tripod industrial driveshafts in the principal parametric resonan
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from trunnion.studies.double_tripod import figures as drawn
 from trunnion.studies.double_tripod.computed import (
     BELOW,
     RANGES,
+    Case,
     cases,
     exponents_at_resonance,
     floquet_exponents,
@@ -27,9 +28,6 @@ from trunnion.studies.double_tripod.contraction import argument
 from trunnion.studies.double_tripod.errata import errata
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NAME = "double-tripod"
 MOTIONS = (
@@ -48,33 +46,19 @@ MAPS = (
 ASSUMED = "9°, printed χ_n, consistent Ī, Ω_AEM = 600π rad/s."
 
 
-def double_tripod(points: int = 400, progress: Callable[[float], None] | None = None) -> Reproduction:
+def double_tripod(points: int, tell: Callable[[float], None]) -> Reproduction:
     """Reproduce S4; a sixteenth of ``points``, 8 or more, for each curve over frequency: these are runs, not pixels."""
-    tell = progress or (lambda share: None)
     points = max(points // 16, 8)
     found = cases(points, lambda share: tell(0.5 * share))
     by_damping = {(c.element, c.damping_ratio): c for c in found}
     motions = {number: drawn.motion_of(element, ratio) for number, element, ratio in MOTIONS}
     tell(0.6)
-    figures = [*_frequencies(), *_motions(motions)]
-    for number, element, ratio in SWEEPS:
-        sweep = by_damping[element, ratio].sweep
-        title = f"{PARTS[element]}, 9°, ζ = {ratio:g}"
-        figures.append(
-            _paper_figure(
-                number, f"Lyapunov exponents and their sum, {title}", ASSUMED + " Natural logarithm.",
-                lambda sweep=sweep, title=title: drawn.exponents_figure(sweep, title),  # type: ignore[misc]
-            )
-        )  # fmt: skip
-    for number, element, ratio, counts in MAPS:
-        mapped = drawn.map_of(element, ratio, max(counts))
-        title = f"{PARTS[element]}, 9°, ζ = {ratio:g}, η = 2Ω"
-        figures.append(
-            _paper_figure(
-                number, f"Poincaré map, {title}", ASSUMED + " One point per turn of the phase Θ, settled.",
-                lambda mapped=mapped, counts=counts, title=title: drawn.map_figure(mapped, counts, title),  # type: ignore[misc]
-            )
-        )  # fmt: skip
+    figures = [
+        *(_frequencies(number, element) for number, element in (("9", "input"), ("10", "output"))),
+        *(_motion(number, _case(element, ratio), motions[number]) for number, element, ratio in MOTIONS),
+        *(_exponents_over(n, _case(element, ratio), by_damping[element, ratio]) for n, element, ratio in SWEEPS),
+        *(_map(*numbers) for numbers in MAPS),
+    ]
     tell(0.75)
     against = refuted()
     tell(0.85)
@@ -82,7 +66,7 @@ def double_tripod(points: int = 400, progress: Callable[[float], None] | None = 
     tell(0.97)
     opened = {e: opening_depth(e) for e in PARTS}
     beats = {number: (element, ratio, drawn.beats(motions[number])) for number, element, ratio in MOTIONS}
-    result = Reproduction(
+    return Reproduction(
         NAME,
         "A double tripod industrial driveshaft (S4)",
         "Bugaru and Vasile, Applied Sciences 12 (2022) 6182",
@@ -94,40 +78,35 @@ def double_tripod(points: int = 400, progress: Callable[[float], None] | None = 
         "Lyapunov exponents are of the standard definition: variational equations, natural logarithm.",
         argument(),
     )
-    tell(1.0)
-    return result
 
 
-def _paper_figure(number: str, caption: str, assumed: str, draw: Callable[[], Figure]) -> PaperFigure:
-    return PaperFigure(number, caption, assumed, (), draw)
+def _case(element: str, ratio: float) -> str:
+    return f"{PARTS[element]}, 9°, ζ = {ratio:g}"
 
 
-def _frequencies() -> list[PaperFigure]:
-    return [
-        _paper_figure(
-            number, f"Natural frequency of {PARTS[element]} over the joint angle", "Printed geometry.",
-            lambda element=element: drawn.frequency_figure(element),  # type: ignore[misc]
-        )
-        for number, element in (("9", "input"), ("10", "output"))
-    ]  # fmt: skip
+def _frequencies(number: str, element: str) -> PaperFigure:
+    caption = f"Natural frequency of {PARTS[element]} over the joint angle"
+    return PaperFigure(number, caption, "Printed geometry.", partial(drawn.frequency_figure, element))
 
 
-def _motions(motions: dict[str, Simulation]) -> list[PaperFigure]:
-    made = []
-    for number, element, ratio in MOTIONS:
-        motion = motions[number]
-        title = f"{PARTS[element]}, 9°, ζ = {ratio:g}"
-        assumed = (
-            f"{ASSUMED} From rest without twist, {drawn.HISTORY:g} s of it, of which the paper states nothing; the "
-            f"last panel is the same motion at {motion.end - drawn.SETTLED:.2g} s, once the start has died out."
-        )
-        made.append(
-            _paper_figure(
-                number, f"Time history and portrait, {title}", assumed,
-                lambda motion=motion, title=title: drawn.motion_figure(motion, title),  # type: ignore[misc]
-            )
-        )  # fmt: skip
-    return made
+def _motion(number: str, title: str, motion: Simulation) -> PaperFigure:
+    assumed = (
+        f"{ASSUMED} From rest without twist, {drawn.HISTORY:g} s of it, of which the paper states nothing; the "
+        f"last panel is the same motion at {motion.end - drawn.SETTLED:.2g} s, once the start has died out."
+    )
+    draw = partial(drawn.motion_figure, motion, title)
+    return PaperFigure(number, f"Time history and portrait, {title}", assumed, draw)
+
+
+def _exponents_over(number: str, title: str, found: Case) -> PaperFigure:
+    draw = partial(drawn.exponents_figure, found.sweep, title)
+    return PaperFigure(number, f"Lyapunov exponents and their sum, {title}", ASSUMED + " Natural logarithm.", draw)
+
+
+def _map(number: str, element: str, ratio: float, counts: tuple[int, int]) -> PaperFigure:
+    title = f"{_case(element, ratio)}, η = 2Ω"
+    draw = partial(drawn.map_figure, drawn.map_of(element, ratio, max(counts)), counts, title)
+    return PaperFigure(number, f"Poincaré map, {title}", ASSUMED + " One point per turn of the phase Θ, settled.", draw)
 
 
 def _evidence(points: int) -> tuple[PaperFigure, ...]:
@@ -136,19 +115,19 @@ def _evidence(points: int) -> tuple[PaperFigure, ...]:
     frequencies = np.linspace(*RANGES["input"], 11)
     curves = drawn.estimator_curves("input", frequencies)
     return (
-        _paper_figure(
+        PaperFigure(
             "beyond", f"Lyapunov exponents and their sum, {title}",
             "About φ = 0, without load, at a damping ratio the paper does not have: the largest exponent turns "
             "positive close to 2Ω, where the motion grows without bound. "
             "That is parametric resonance of a linear equation, not chaos.",
-            lambda: drawn.exponents_figure(below, title),
+            partial(drawn.exponents_figure, below, title),
         ),
-        _paper_figure(
+        PaperFigure(
             "estimator", "Warning: the paper's own estimator, equation (31), as a historical curve",
             "Not a Lyapunov exponent. As the text reads: log₁₀, perturbations of 1e-5 of the state that start anew in "
             "each of N intervals, over 0.02 s. It changes with N at one and the same motion, and is negative here: the "
             "paper's figures are not what its text describes.",
-            lambda: drawn.estimator_figure(frequencies, curves),
+            partial(drawn.estimator_figure, frequencies, curves),
         ),
     )  # fmt: skip
 

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from trunnion.analyses.orbits.basins import Basins
 from trunnion.analyses.orbits.frequency_response import FrequencyResponse, ResponseComparison
 from trunnion.analyses.orbits.piecewise_sweep import Sweep
 from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
+from trunnion.arrays import Array
 from trunnion.plots.frequency_response import DASHED, draw_basins, draw_responses
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, new_axes, plain
+from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, TITLE, VERMILION, label_axes, new_axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
 RIGHT = 2.0
 """Highest frequency of the picture of ranges."""
 DRAWN = (2.0, 3.0, 4.0, 5.0, 8.0)
@@ -82,26 +79,14 @@ def _rising(response: ApproximateResponse) -> tuple[Array, Array]:
 def index_figure(up: Sweep, down: Sweep) -> Figure:
     """Rattle index over frequency, swept both ways."""
     axes = new_axes(8.0, 4.4)
-    for one, shape, colour in ((up, "^-", "#d55e00"), (down, "v-", "#0072b2")):
+    for one, shape, colour in ((up, "^-", VERMILION), (down, "v-", ACCENT)):
         words = "sweep up" if one.up else "sweep down"
-        axes.plot(
-            one.frequency,
-            one.impact_energy,
-            shape,
-            color=colour,
-            ms=3.5,
-            lw=1.2,
-            mfc="none",
-            label=words,
-            markevery=0.02,
-        )
-    axes.set_xlabel(FREQUENCY, fontsize=TEXT, color=INK)
-    axes.set_ylabel("energy of the impacts per period, Σ I v²/2", fontsize=TEXT, color=INK)
+        look: dict[str, Any] = {"ms": 3.5, "lw": 1.2, "mfc": "none", "markevery": 0.02}
+        axes.plot(one.frequency, one.impact_energy, shape, color=colour, label=words, **look)
+    label_axes(axes, FREQUENCY, "energy of the impacts per period, Σ I v²/2")
     axes.set_ylim(bottom=0)
-    axes.grid(which="major", color="#dddddd", lw=0.6)
     axes.legend(fontsize=SMALL, frameon=False)
     axes.set_title("Rattle index, B₀ = 0.05", fontsize=TITLE, color=INK)
-    plain(axes)
     return axes.figure.figure
 
 

@@ -7,6 +7,7 @@ multiple scales and averaging (in Persian).
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -51,9 +52,8 @@ SMALL = 0.6
 """Below this frequency lie the smaller peaks."""
 
 
-def gear_rattle(points: int = 101, progress: Callable[[float], None] | None = None) -> Reproduction:
+def gear_rattle(points: int, tell: Callable[[float], None]) -> Reproduction:
     """Reproduce S5; sweeps of 100 to 400 steps, about ``points``."""
-    tell = progress or (lambda share: None)
     grid = np.linspace(LOW, HIGH, 1 + 100 * min(max(round(points / 100), 1), 4))
     loaded, unloaded = published(), published(mean_force=0.0)
     half_gap = loaded.breakpoints[1]
@@ -81,19 +81,19 @@ def gear_rattle(points: int = 101, progress: Callable[[float], None] | None = No
         "scales and averaging (one curve) for Figure 2."
     )
     figures = (
-        PaperFigure("2 and 3", "Frequency response by every method, B₀ = 0.05", assumed, (),
-                    lambda: methods_figure(found, "Gear pair with backlash, B₀ = 0.05", doubled)),
+        PaperFigure("2 and 3", "Frequency response by every method, B₀ = 0.05", assumed,
+                    partial(methods_figure, found, "Gear pair with backlash, B₀ = 0.05", doubled)),
     )  # fmt: skip
     evidence = (
-        PaperFigure("unloaded", "The same without mean force", assumed, (),
-                    lambda: methods_figure(free, "Gear pair with backlash, B₀ = 0")),
+        PaperFigure("unloaded", "The same without mean force", assumed,
+                    partial(methods_figure, free, "Gear pair with backlash, B₀ = 0")),
         PaperFigure("ranges", "First-order perturbation for several ranges of the cubic fit",
-                    "Uniform least squares of the force over ± the range.", (),
-                    lambda: ranges_figure(found["exact"], ranges)),
+                    "Uniform least squares of the force over ± the range.",
+                    partial(ranges_figure, found["exact"], ranges)),
         PaperFigure("rattle-index", "Energy of the impacts per period over frequency, B₀ = 0.05",
-                    "Entries into contact from the gap, on either side.", (), lambda: index_figure(up, down)),
+                    "Entries into contact from the gap, on either side.", partial(index_figure, up, down)),
         PaperFigure("basins", "Which motion is reached from where, B₀ = 0.05",
-                    "101 × 101 starts at phase zero; crosses: the motions.", (), lambda: basins_figure(at_08)),
+                    "101 × 101 starts at phase zero; crosses: the motions.", partial(basins_figure, at_08)),
     )  # fmt: skip
     tables = (
         _methods(found, "B₀ = 0.05"),
@@ -102,7 +102,7 @@ def gear_rattle(points: int = 101, progress: Callable[[float], None] | None = No
         _epsilons(used),
         _ranges(ranges, off),
     )
-    result = Reproduction(
+    return Reproduction(
         NAME,
         "Rattling of two meshing gears with damping (S5)",
         "M. Rezaee and A. Farshidianfar, multiple scales and averaging for gear rattle (in Persian)",
@@ -112,8 +112,6 @@ def gear_rattle(points: int = 101, progress: Callable[[float], None] | None = No
         evidence,
         _conclusions(found, off, doubled[0], _trends(), at_08, (up, down)),
     )
-    tell(1.0)
-    return result
 
 
 def _doubled(loaded: PiecewiseOscillator, at: float) -> FrequencyResponse:

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.analyses.linear.stability import stability
 from trunnion.studies.entries import catalogue
 from trunnion.studies.result import Comparison, Row
+from trunnion.studies.shares import sampled_share
 from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
 
 ANGLES = (0.2, 0.5)
@@ -24,23 +25,19 @@ def errata() -> Comparison:
     line = catalogue("three-shaft-cardan", angle_1=ANGLES[0], angle_2=ANGLES[1])
     general = np.array([stability(line, float(s), tolerance=1e-9).spectral_radius for s in SPEEDS])
 
-    def share(version: str) -> str:
-        part = float(np.mean(radius[version] > 1 + 1e-6))
-        error = np.sqrt(part * (1 - part) / len(SPEEDS))
-        return f"{100 * part:.0f}{f' ± {100 * error:.0f}' if error else ''} % of speeds unstable"
-
+    unstable = {version: f"{sampled_share(of > 1 + 1e-6, 0)} of speeds unstable" for version, of in radius.items()}
     shift = float(np.max(np.abs(radius["second at input"] - radius["derived"])))
     agree = float(np.max(np.abs(radius["derived"] - general)))
     return Comparison(
         "Errata",
         (
-            Row("E₂₁, E₃₁, E₃₂, F₂₁, F₃₁, F₃₂ as printed", "η₁′ …, +η₁/Ω² …", share("printed"),
+            Row("E₂₁, E₃₁, E₃₂, F₂₁, F₃₁, F₃₂ as printed", "η₁′ …, +η₁/Ω² …", unstable["printed"],
                 "factors 2 on slopes, terms in η″ and signs are missing: everything would be unstable"),
-            Row("η₂ taken at τ", "η₂(τ)", share("second at input"),
+            Row("η₂ taken at τ", "η₂(τ)", unstable["second at input"],
                 f"it belongs at ψ₁(τ), behind joint 1: spectral radii move by up to {shift:.2g}"),
             Row("Figures 4 to 6, captions", "β₂ = 0.2, 0.2, 0.4 rad", "β₁",
                 "their axis is β₂; the text varies β₁ = 0.2, 0.4 (mended in the captions here)"),
-            Row("derived", "η₂(ψ₁(τ))", share("derived"),
+            Row("derived", "η₂(ψ₁(τ))", unstable["derived"],
                 f"agrees with the general equations of this program to {agree:.0e}"),
         ),
         f"β₁ = {ANGLES[0]}, β₂ = {ANGLES[1]} rad, γ₂ = 10, ζ = 0.001, {len(SPEEDS)} evenly spaced speeds from "

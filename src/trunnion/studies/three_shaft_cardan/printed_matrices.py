@@ -9,12 +9,11 @@ errata; analyses use ``equations``.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trunnion.studies.two_shaft_cardan.printed_matrices import joint_ratio
+from trunnion.arrays import Array
+from trunnion.studies.two_shaft_cardan.printed_matrices import joint_ratio, stacked
 from trunnion.systems.periodic_linear import PeriodicLinearSystem, from_matrices
 
-Array = NDArray[np.float64]
 VERSIONS = ("printed", "second at input", "derived")
 
 
@@ -44,26 +43,25 @@ def printed_three_shaft_system(
     def e(tau: Array) -> Array:
         eta, eta1, _ = joint_ratio(tau, angles[0])
         two, two1, _ = second(tau, eta, eta1)
-        m = np.zeros((len(tau), 3, 3))
-        m[:, 0, 0], m[:, 0, 1] = loss, -loss * eta
-        m[:, 1, 0] = (1 if printed else 2) * eta1 - loss * eta
-        m[:, 1, 1], m[:, 1, 2] = loss * (eta**2 + 1), -loss * two
-        m[:, 2, 0] = eta1 * two1 if printed else 2 * eta * two1
-        m[:, 2, 1] = (1 if printed else 2) * two1 - loss * two
-        m[:, 2, 2] = loss * (two**2 + 1 / gamma)
-        return m
+        slopes = 1 if printed else 2
+        return stacked(
+            [loss, -loss * eta, 0],
+            [slopes * eta1 - loss * eta, loss * (eta**2 + 1), -loss * two],
+            [eta1 * two1 if printed else 2 * eta * two1, slopes * two1 - loss * two, loss * (two**2 + 1 / gamma)],
+        )
 
     def f(tau: Array) -> Array:
         eta, eta1, eta2 = joint_ratio(tau, angles[0])
         two, two1, two2 = second(tau, eta, eta1)
-        m = np.zeros((len(tau), 3, 3))
-        m[:, 0, 0], m[:, 0, 1] = 1 / square, -eta / square
-        m[:, 1, 0] = eta / square if printed else eta2 - eta / square
-        m[:, 1, 1], m[:, 1, 2] = (eta**2 + 1) / square, -two / square
-        m[:, 2, 0] = eta1 * two2 if printed else 2 * eta1 * two1 + eta * two2
-        m[:, 2, 1] = two2 / square if printed else two2 - two / square
-        m[:, 2, 2] = (two**2 + 1 / gamma) / square
-        return m
+        if printed:
+            below = [eta / square, eta1 * two2, two2 / square]
+        else:
+            below = [eta2 - eta / square, 2 * eta1 * two1 + eta * two2, two2 - two / square]
+        return stacked(
+            [1 / square, -eta / square, 0],
+            [below[0], (eta**2 + 1) / square, -two / square],
+            [below[1], below[2], (two**2 + 1 / gamma) / square],
+        )
 
     names = tuple(f"twist of shaft {i}" for i in (1, 2, 3))
     return from_matrices(np.eye(3), e, f, period=np.pi, names=names)

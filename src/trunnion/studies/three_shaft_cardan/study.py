@@ -11,10 +11,10 @@ from typing import Any
 from trunnion.analyses.charts.stability_chart import stability_chart
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.drawing import Panel, panel, side_by_side
+from trunnion.studies.drawing import charts_figure, panel
 from trunnion.studies.entries import catalogue
-from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_row
-from trunnion.studies.result import Comparison, PaperFigure, Reproduction
+from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
+from trunnion.studies.result import Comparison, Reproduction
 from trunnion.studies.three_shaft_cardan.conclusions import conclusions
 from trunnion.studies.three_shaft_cardan.errata import errata
 
@@ -48,9 +48,8 @@ TABLE_2: tuple[Printed, ...] = (
 )  # fmt: skip
 
 
-def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None = None) -> Reproduction:
+def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction:
     """Reproduce S3 on ``points`` × ``points`` pixels a chart."""
-    tell = progress or (lambda share: None)
 
     def chart(tolerance: float = 1e-9, ends: tuple[float, float] = (LOW, HIGH), **changes: Any) -> StabilityChart:
         line = catalogue(NAME, **changes)
@@ -75,10 +74,10 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
         "show, the forks in line as one would assemble them. Ranges assumed: 0–2 and 0–1.5 rad."
     )
     figures = [
-        _figure("2", "Validation: one joint (β₂ = 0, third shaft left out), γ₁ = 10",
+        charts_figure("2", "Validation: one joint (β₂ = 0, third shaft left out), γ₁ = 10",
                 "The two-shaft line; ranges assumed.",
                 panel(plane, "two shafts, γ₁ = 10", "joint angle β₁ [rad]", limits)),
-        _figure("3", "Check of the three-shaft model against its resonance speeds, γ₂ = 10",
+        charts_figure("3", "Check of the three-shaft model against its resonance speeds, γ₂ = 10",
                 "β₁ = 0 assumed, as for the natural frequencies that the paper compares it with.",
                 panel(alone, "β₁ = 0, γ₂ = 10", two, limits)),
     ]  # fmt: skip
@@ -87,16 +86,15 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
             panel(worst[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, joints in phase", two, limits),
             panel(inline[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, forks in line", two, limits),
         )
-        figures.append(_figure(n, f"{CAPTIONS[n]}, γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
+        figures.append(charts_figure(n, f"{CAPTIONS[n]}, γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
     modes = natural_frequencies(catalogue(NAME)).frequency
-    rows = [resonance_row(p, (alone,), faint) for p in (*TABLE_1, *TABLE_2)]
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."
     tables = (
         Comparison("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),
-        Comparison("Table 1, harmonic and subharmonic resonance", tuple(rows[: len(TABLE_1)]), note),
-        Comparison("Table 2, combination resonance", tuple(rows[len(TABLE_1) :]), note),
+        resonance_table("Table 1, harmonic and subharmonic resonance", TABLE_1, (alone,), faint, note),
+        resonance_table("Table 2, combination resonance", TABLE_2, (alone,), faint, note),
     )
-    found = Reproduction(
+    return Reproduction(
         NAME,
         "Three shafts and two Hooke's joints (S3)",
         "Soltan Rezaee and co-authors, Modares Mechanical Engineering 12 (6), March 2013 (in Persian)",
@@ -106,9 +104,3 @@ def three_shaft_cardan(points: int = 400, progress: Callable[[float], None] | No
         (),
         conclusions(worst["4"], worst["5"], worst["6"], inline),
     )
-    tell(1.0)
-    return found
-
-
-def _figure(number: str, caption: str, assumed: str, *panels: Panel) -> PaperFigure:
-    return PaperFigure(number, caption, assumed, tuple(p.chart for p in panels), lambda: side_by_side(panels))

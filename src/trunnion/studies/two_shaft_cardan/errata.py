@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trunnion.analyses.linear.stability import stability
+from trunnion.arrays import Array
 from trunnion.studies.drawing import curves
 from trunnion.studies.result import Comparison, PaperFigure, Row
+from trunnion.studies.shares import sampled_share
 from trunnion.studies.two_shaft_cardan.printed_matrices import VERSIONS, printed_system
 
-Array = NDArray[np.float64]
 BETA, GAMMA = 0.5, 100.0
 SPEEDS = np.linspace(0.25, 1.6, 109)
 """Evenly spaced: shares of them are shares of the range."""
@@ -66,8 +66,7 @@ def versions_figure() -> PaperFigure:
         "errata",
         "Spectral radius over speed: matrices as printed, mended step by step, and derived",
         "β = 0.5 rad, γ = 100, ζ = 0.001; each point by direct integration of the matrices.",
-        (),
-        lambda: curves(x, rows, marks, "spectral radius", title),
+        partial(curves, x, rows, marks, "spectral radius", title),
     )
 
 
@@ -82,11 +81,7 @@ def errata() -> Comparison:
     """The misprints, and what the matrices give with and without them."""
     radii = _radii()
 
-    def unstable(version: str) -> str:
-        share = float(np.mean(radii[version] > 1 + 1e-6))
-        error = np.sqrt(share * (1 - share) / len(SPEEDS))
-        return f"{100 * share:.1f} %" if error == 0 else f"{100 * share:.1f} ± {100 * error:.1f} %"
-
+    unstable = {version: sampled_share(of_version > 1 + 1e-6, 1) for version, of_version in radii.items()}
     peak, height, below = difference_tongue()
     band = SPEEDS[(radii["single"] > 1 + 1e-5) & (np.abs(SPEEDS - HALF) < 0.06)]
     spans = f"{band.min():.2f}–{band.max():.2f}" if len(band) else "nowhere"
@@ -94,13 +89,13 @@ def errata() -> Comparison:
     return Comparison(
         "Errata",
         (
-            Row("E₂₁, P₂₁ as printed", "η′ − …, +η/Ω²", f"{unstable('printed')} of speeds unstable",
+            Row("E₂₁, P₂₁ as printed", "η′ − …, +η/Ω²", f"{unstable['printed']} of speeds unstable",
                 "everything would be unstable"),
-            Row("sign of P₂₁ mended", "−η/Ω²", f"{unstable('sign')} unstable", "nothing would be unstable"),
+            Row("sign of P₂₁ mended", "−η/Ω²", f"{unstable['sign']} unstable", "nothing would be unstable"),
             Row("η″ added, η′ single", "η″ − η/Ω²", f"ρ up to {height:.5f} at {peak:.4f}",
                 f"a false tongue near (ω₂−ω₁)/4, and a false band at {spans}"),
             Row("derived", "2η′, η″ − η/Ω²", f"ρ = {below:.5f} at {peak:.4f}",
-                f"no difference tongue; {unstable('derived')} of the speeds unstable"),
+                f"no difference tongue; {unstable['derived']} of the speeds unstable"),
             Row("eq 14", "ζ = c₁/√(k₁J₁)", "ζ = c₁/(2√(k₁J₁))", "the 2ζ/Ω of its matrix E needs the factor 2"),
             Row("eq 25", "√(1 + μ(1/γ+1)² − 4μ/γ)", "√((1 + μ(1/γ+1))² − 4μ/γ)",
                 f"bracket: as printed it gives {printed[0]:.3f} and {printed[1]:.3f} for μ = 1, γ = 100"),

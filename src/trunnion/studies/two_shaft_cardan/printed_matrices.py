@@ -15,12 +15,12 @@ They are kept as evidence for the errata; analyses use ``equations``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.systems.periodic_linear import PeriodicLinearSystem, from_matrices
-
-Array = NDArray[np.float64]
 
 VERSIONS = {
     "printed": "as printed",
@@ -63,10 +63,14 @@ def matrices(
     eta, eta1, eta2 = joint_ratio(tau, angle)
     slopes = 2 if version == "derived" else 1
     coupling = {"printed": eta / square, "sign": -eta / square}.get(version, eta2 - eta / square)
-    e = _square(
-        [loss + 0 * eta, -alpha * loss * eta], [slopes * eta1 - loss * eta, alpha * loss * (eta**2 + 1 / gamma)]
+    e = stacked(
+        [loss, -alpha * loss * eta],
+        [slopes * eta1 - loss * eta, alpha * loss * (eta**2 + 1 / gamma)],
     )
-    p = _square([1 / square + 0 * eta, -mu * eta / square], [coupling, mu / square * (eta**2 + 1 / gamma)])
+    p = stacked(
+        [1 / square, -mu * eta / square],
+        [coupling, mu / square * (eta**2 + 1 / gamma)],
+    )
     return e, p
 
 
@@ -79,6 +83,7 @@ def joint_ratio(tau: Array, beta: float | Array) -> tuple[Array, Array, Array]:
     return np.cos(beta) / d, slope, curve
 
 
-def _square(first: list[Array], second: list[Array]) -> Array:
-    """An array (…, 2, 2) from its rows."""
-    return np.stack([np.stack(first, -1), np.stack(second, -1)], -2)
+def stacked(*rows: Sequence[float | Array]) -> Array:
+    """Matrices (…, n, n) from the entries of their rows, which broadcast."""
+    shape = np.broadcast_shapes(*(np.shape(entry) for row in rows for entry in row))
+    return np.stack([np.stack([np.broadcast_to(entry, shape) for entry in row], -1) for row in rows], -2)

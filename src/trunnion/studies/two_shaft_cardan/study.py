@@ -11,10 +11,10 @@ from typing import Any
 from trunnion.analyses.charts.stability_chart import stability_chart
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.drawing import Panel, panel, side_by_side
+from trunnion.studies.drawing import charts_figure, panel
 from trunnion.studies.entries import catalogue
-from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_row
-from trunnion.studies.result import Comparison, PaperFigure, Reproduction
+from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
+from trunnion.studies.result import Comparison, Reproduction
 from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, conclusions
 from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
 from trunnion.studies.two_shaft_cardan.published import DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2, group_parameters
@@ -41,9 +41,8 @@ TABLE_2: tuple[Printed, ...] = (
 )  # fmt: skip
 
 
-def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None = None) -> Reproduction:
+def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction:
     """Reproduce S1 on ``points`` × ``points`` pixels a chart."""
-    tell = progress or (lambda share: None)
     heavy = {"inertia_of_disk_2": 100.0}
 
     def over_angle(low: float, high: float, tolerance: float = 1e-9, **changes: Any) -> StabilityChart:
@@ -70,46 +69,45 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
     whole = (0.0, 2.0)
     from_zero = "Hatched: not computed, a turn there spans very many vibrations."
     figures = (
-        _figure("2a", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001: the model checked against another",
+        charts_figure("2a", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001: the model checked against another",
                 "The paper prints the chart of its reference [17] (Bulut and Parlar 2011). In its place stand the "
                 f"paper's equations in twists, mended: {agreement(twists, (slow, fast))} " + from_zero,
                 panel(twists[0], "equations in twists, low speeds", beta, (0.0, 0.4)),
                 panel(twists[1], "equations in twists", beta, (0.25, 2.0))),
-        _figure("2b", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001, at low and at high speed", from_zero,
+        charts_figure("2b", "β–Ω for γ = 100, α = μ = 1, ζ = 0.001, at low and at high speed", from_zero,
                 panel(slow, "γ = 100, low speeds", beta, (0.0, 0.4)), panel(fast, "γ = 100", beta, (0.25, 2.0))),
-        _figure("3", "β–Ω, base case α = μ = γ = 1, ζ = 0.001", from_zero, panel(base, "base case", beta, whole)),
-        _figure("4", "β–Ω with 20 times the damping of shaft 2, beside the base case", from_zero,
+        charts_figure("3", "β–Ω, base case α = μ = γ = 1, ζ = 0.001", from_zero, panel(base, "base case", beta, whole)),
+        charts_figure("4", "β–Ω with 20 times the damping of shaft 2, beside the base case", from_zero,
                 panel(damped, "α = 20", beta, whole), panel(base, "α = 1 (Figure 3)", beta, whole)),
-        _figure("5", "damping ratio α–Ω, μ = γ = 1",
+        charts_figure("5", "damping ratio α–Ω, μ = γ = 1",
                 f"β = {BETA} rad (29°) and α up to {MOST:g}: the text states neither.",
                 panel(damping, f"β = {BETA} rad", "damping of shaft 2 over shaft 1, α [1]", whole)),
-        _figure("6", "β–Ω with 20 times the stiffness of shaft 2, beside the base case",
+        charts_figure("6", "β–Ω with 20 times the stiffness of shaft 2, beside the base case",
                 "The text says damping here; caption, section and figure are about stiffness. " + from_zero,
                 panel(stiff, "μ = 20", beta, whole), panel(base, "μ = 1 (Figure 3)", beta, whole)),
-        _figure("7", "stiffness ratio μ–Ω, α = γ = 1",
+        charts_figure("7", "stiffness ratio μ–Ω, α = γ = 1",
                 f"β = {BETA} rad (29°) and μ up to {MOST:g}: the text states neither.",
                 panel(stiffness, f"β = {BETA} rad", "stiffness of shaft 2 over shaft 1, μ [1]", whole, name=False)),
     )  # fmt: skip
     modes = natural_frequencies(catalogue(NAME, **heavy)).frequency
-    rows = [resonance_row(p, (slow, fast), faint) for p in (*TABLE_1, *TABLE_2)]
-    tell(0.8)
     note = "γ = 100, α = μ = 1. Tongues are followed at a hundredth of the damping down to β = 0."
     tables = (
         Comparison(
             "Natural frequencies",
             frequency_rows("eq 26", (0.072, 1.422), modes, "equation 25 gives the computed value, its bracket mended"),
         ),
-        Comparison("Table 1, harmonic and subharmonic resonance", tuple(rows[: len(TABLE_1)]), note),
-        Comparison("Table 2, combination resonance", tuple(rows[len(TABLE_1) :]), note),
+        resonance_table("Table 1, harmonic and subharmonic resonance", TABLE_1, (slow, fast), faint, note),
+        resonance_table("Table 2, combination resonance", TABLE_2, (slow, fast), faint, note),
     )
+    tell(0.8)
     evidence = (
         versions_figure(),
-        _figure("stiffness", "β–Ω with 1 and 20 times the stiffness of shaft 2, up to 30° and Ω = 12",
+        charts_figure("stiffness", "β–Ω with 1 and 20 times the stiffness of shaft 2, up to 30° and Ω = 12",
                 "α = γ = 1. The conclusion on stiffness is drawn over this box: the first-order tongues of μ = 20 lie "
                 "between Ω = 3 and 7, outside Figure 6.",
                 panel(wide[0], "μ = 1", beta, (0.0, WIDE[1])), panel(wide[1], "μ = 20", beta, (0.0, WIDE[1]))),
     )  # fmt: skip
-    found = Reproduction(
+    return Reproduction(
         NAME,
         "Two shafts and a Hooke's joint (S1)",
         "Soltan Rezaee and Ghazavi, Modares Mechanical Engineering 14 (12), 2014, 163–170",
@@ -119,8 +117,6 @@ def two_shaft_cardan(points: int = 400, progress: Callable[[float], None] | None
         evidence,
         conclusions(base, damped, wide[0], wide[1], fast),
     )
-    tell(1.0)
-    return found
 
 
 def _over_group(label: str, points: int) -> StabilityChart:
@@ -135,7 +131,3 @@ def _wide(stiffness: float, points: int) -> StabilityChart:
     """One stiffness ratio over the speeds and angles its conclusion is about."""
     line = catalogue(NAME, stiffness_of_shaft_2=stiffness)
     return stability_chart(line, ("speed", *WIDE, 3 * points), (ANGLE, 0.0, PRACTICAL, points // 2), tolerance=1e-9)
-
-
-def _figure(number: str, caption: str, assumed: str, *panels: Panel) -> PaperFigure:
-    return PaperFigure(number, caption, assumed, tuple(p.chart for p in panels), lambda: side_by_side(panels))

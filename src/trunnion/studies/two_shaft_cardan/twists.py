@@ -8,13 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trunnion.arrays import Array
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import verdicts
 from trunnion.studies.two_shaft_cardan.printed_matrices import matrices
 
-Array = NDArray[np.float64]
 TOP = 1.2
 """Largest joint angle [rad]: beyond, the ratio turns so sharply that fixed steps would be many."""
 PIXELS = (100, 60)
