@@ -56,7 +56,7 @@ def test_the_answer_loads_no_compiler(start):
         "from trunnion.reporting.answer import answer\n"
         "with output.compile_notice():\n"
         "    given = answer(tn.load('line.toml'))\n"
-        "assert given.stability is not None\n"
+        "assert given.along is not None\n"
         "print([name for name in ('numba', 'matplotlib', 'xarray') if name in sys.modules])\n"
     )
     code, out, err = finished(start(program=("-c", script)))
