@@ -122,7 +122,7 @@ BASE = {
 QUICK = {
     "phase_forks": ("Hooke's joint", "fork offset", "load torque", "branch"),
     "stability_chart": ("damping", "load torque", "excitation by order", "viscous load"),
-    "stable_limit": ("load torque", "free start"),
+    "stable_limit": ("load torque", "free start", "tripod joint"),
     **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
     "certify_stability": ("load torque", "stiffness", "ratio", "prescribed far end"),
     "assess": tuple(key for key in feature_lines.CHANGES if key != "mesh-stiffness variation"),

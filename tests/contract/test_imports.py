@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterable
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -87,8 +88,8 @@ def test_drawings_exist() -> None:
 
 
 def test_no_import_circle() -> None:
-    """Modules imported when a module is loaded never lead back to it."""
-    needs = {module_of(path): {m for m in loaded_modules(path) if m in MODULES} for path in FILES}
+    """What a module imports, when it is loaded, late or for types alone, never leads back to it."""
+    needs = {module_of(path): modules_in(ast.walk(tree(path))) & MODULES for path in FILES}
     done: set[str] = set()
 
     def visit(name: str, trail: tuple[str, ...]) -> None:
@@ -110,9 +111,14 @@ MODULES = {module_of(path) for path in FILES}
 
 
 def loaded_modules(path: Path) -> set[str]:
-    """Modules of the package that loading a file imports: its statements outside functions and TYPE_CHECKING."""
+    """Modules that loading a file imports: its statements outside functions and TYPE_CHECKING."""
+    return modules_in(tree(path).body)
+
+
+def modules_in(nodes: Iterable[ast.AST]) -> set[str]:
+    """Modules that the imports among some nodes name."""
     found: set[str] = set()
-    for node in tree(path).body:
+    for node in nodes:
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:

@@ -52,13 +52,3 @@ def square_root(a: Array) -> Array:
 def rate(a: Array) -> Array:
     """da/dt, one order lower."""
     return np.stack([k * a[k] for k in range(1, len(a))])
-
-
-def integral(rate_of_change: Array, start: Array) -> Array:
-    """The jet whose rate is given and whose value is ``start``, one order higher."""
-    return np.stack([start, *(r / (k + 1) for k, r in enumerate(rate_of_change))])
-
-
-def derivative(a: Array, order: int) -> Array:
-    """dᵏa/dtᵏ at the instant itself, k = ``order``."""
-    return a[order] * float(np.prod(np.arange(1, order + 1)))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from trunnion._version import __version__
 from trunnion.plots.style import DPI
+from trunnion.reporting.pictures import address
 from trunnion.results.chart import StabilityChart
 from trunnion.writing import folder_written_whole
 
@@ -176,8 +178,6 @@ def _save(
     folder: str | os.PathLike[str], first: str, studies: tuple[Reproduction, ...], prefix: Callable[[Reproduction], str]
 ) -> list[Path]:
     """Write the page and the pictures, whose names start with the ``prefix`` of their study."""
-    from trunnion.studies.page import page
-
     drawn = [(study, study.drawn()) for study in studies]
     written = [first]
     with folder_written_whole(folder) as temporary:
@@ -185,8 +185,22 @@ def _save(
             for figure, png in zip((*study.figures, *study.evidence), pictures, strict=True):
                 written.append(prefix(study) + figure.file)
                 (temporary / written[-1]).write_bytes(png)
-        (temporary / first).write_text(page(drawn), encoding="utf-8", newline="\n")
+        (temporary / first).write_text(_page(drawn), encoding="utf-8", newline="\n")
     return [Path(folder) / name for name in written]
+
+
+def _page(studies: Sequence[tuple[Reproduction, Sequence[bytes]]]) -> str:
+    """HTML of one study or several, with an index on top; each with the PNGs of its figures and then its evidence."""
+    from trunnion.reporting.page import environment
+
+    shown = []
+    for found, drawn in studies:
+        addresses = [address("image/png", png) for png in drawn]
+        count = len(found.figures)
+        figures = list(zip(found.figures, addresses[:count], strict=True))
+        shown.append((found, figures, list(zip(found.evidence, addresses[count:], strict=True))))
+    template = environment("studies").get_template("reproduction.html.j2")
+    return template.render(studies=shown, labels=LABELS, version=__version__)
 
 
 def _png(figure: Figure) -> bytes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,13 +20,10 @@ from trunnion.driveline.operation import Operation
 from trunnion.driveline.schedules import Schedule
 from trunnion.equations.coefficients import assemble
 from trunnion.results.declared import Held, Result, axis, members_over, over, remark, remarks_of
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 POINTS = 5
 LIMIT_SPEEDS = 60

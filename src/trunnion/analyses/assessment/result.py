@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from trunnion.analyses.assessment.check import Check, Status, merged, percent
 from trunnion.results.counts import few
-from trunnion.results.declared import Held, Result, axis, members_over, over, remark
+from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 
@@ -86,10 +86,12 @@ class Assessment(Result):
         yield from members_over("check", self.checks, because="")
         yield from members_over("check", [c.rule for c in self.checks], formula="", source="", certainty="")
         yield from members_over("check", self.checks, inputs="", load_case="")
-        yield remark("verdict", str(self.verdict))
-        yield remark("sentence", self.sentence)
-        yield remark("findings", [str(f) for f in self.findings])
-        yield remark("barred_rad_per_s", [float(x) for pair in self.barred for x in pair])
+        yield from remarks(
+            verdict=str(self.verdict),
+            sentence=self.sentence,
+            findings=[str(f) for f in self.findings],
+            barred_rad_per_s=[float(x) for pair in self.barred for x in pair],
+        )
 
     def table(self, unit: str | None = None) -> list[dict[str, object]]:
         """One row a check, speeds in ``unit``."""

@@ -36,7 +36,7 @@ from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
-from trunnion.results.declared import Held, Result, remark
+from trunnion.results.declared import Held, Result, remark, remarks
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
@@ -102,11 +102,13 @@ class ChaosCertificate(Result):
     def declared(self) -> Iterator[Held]:
         """The exponents, with the verdict and its reasons."""
         yield from self.spectrum.declared()
-        yield remark("verdict", str(self.verdict))
-        yield remark("kind", self.kind)
-        yield remark("repeat", self.repeat)
-        yield remark("reasons", "\n".join(self.reasons))
-        yield remark("criteria", "\n".join(map(str, self.criteria)))
+        yield from remarks(
+            verdict=str(self.verdict),
+            kind=self.kind,
+            repeat=self.repeat,
+            reasons="\n".join(self.reasons),
+            criteria="\n".join(map(str, self.criteria)),
+        )
         if self.zero_one is not None:
             yield remark("zero_one_test", self.zero_one.k)
         if np.isfinite(self.period):

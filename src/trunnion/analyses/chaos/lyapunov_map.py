@@ -25,7 +25,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, about, axis, over
+from trunnion.results.declared import Held, Result, about, axis, fields_over, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import axis_of_parameter
@@ -108,8 +108,7 @@ class LyapunovMap(Result):
         """Largest exponent [1/s] and its half-width over (y, x)."""
         for name, values, parameter in zip("xy", (self.x, self.y), self.parameters, strict=True):
             yield axis(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
-        yield over("y x", "exponent", self.exponent, "1/s")
-        yield over("y x", "half_width", self.half_width, "1/s")
+        yield from fields_over("y x", self, exponent="1/s", half_width="1/s")
         effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
         yield from about(self.system, self.outcome, **effort)
 

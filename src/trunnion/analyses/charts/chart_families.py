@@ -312,7 +312,7 @@ class LineFamily(ChartFamily):
         # Many points differ in numbers that move no joint, such as the speed.
         moving = [
             coefficients.shift,
-            *(np.reshape(part, (len(x), -1)) for law in coefficients.joints for part in law.numbers),
+            *(np.broadcast_to(part, (len(x), 1)) for law in coefficients.joints for part in law.numbers),
         ]
         unlike = np.unique(np.concatenate(moving, axis=1), axis=0, return_index=True)[1]
         coefficients = self._coefficients(x[unlike], y[unlike])

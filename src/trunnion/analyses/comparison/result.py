@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, isnan, nan
-from typing import TYPE_CHECKING
 
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.changes import Change
-from trunnion.results.declared import Held, Result, axis, members_over, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.units import in_words, with_unit
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 ALIKE, LITTLE = 1e-9, 1e-3
 """Relative differences below which two values count as the same, and are left out of print."""
@@ -123,11 +119,13 @@ class Comparison(Result):
             speed = {f"speed_{name}": "rad/s"}
             yield from members_over("quantity", self.differences, "in the unit of the quantity", **{name: ""})
             yield from members_over("quantity", self.differences, "input speed where it stands", **speed)
-        yield remark("names", list(self.names))
-        yield remark("verdicts", ["" if v is None else str(v) for v in self.verdicts])
-        yield remark("binding", ["" if c is None else c.name for c in self.binding])
-        yield remark("sentence", self.sentence)
-        yield remark("findings", [str(f) for f in self.findings])
+        yield from remarks(
+            names=list(self.names),
+            verdicts=["" if v is None else str(v) for v in self.verdicts],
+            binding=["" if c is None else c.name for c in self.binding],
+            sentence=self.sentence,
+            findings=[str(f) for f in self.findings],
+        )
 
     def table(self) -> list[dict[str, object]]:
         """One row a quantity, in words."""

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,14 +21,11 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.results.declared import Described, Held, axis, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Described, Held, axis, over, remark, remarks
+from trunnion.results.drawing import Figure, drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.writing import written_whole
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 ANGLES = (
     ("angle", "rad", "rotation"),
@@ -252,15 +249,17 @@ class Kinetostatics(Described):
             )
             yield over("bearing standing input_angle", "support_force", self.supports.force, "N", force)
             yield over("loaded_joint axis input_angle", "joint_force", self.supports.joint_force, "N", between)
-        yield remark("version", __version__)
-        yield remark("driveline", dumps(self.line))
-        yield remark("input_speed", self.input_speed)
-        yield remark("input_acceleration", self.input_acceleration)
-        yield remark("output", self.branch)
-        yield remark("output_torque", self.output_torque)
-        yield remark("turns", self.turns)
-        yield remark("rigid", int(self.rigid))
-        yield remark("inertia", int(self.inertia))
+        yield from remarks(
+            version=__version__,
+            driveline=dumps(self.line),
+            input_speed=self.input_speed,
+            input_acceleration=self.input_acceleration,
+            output=self.branch,
+            output_torque=self.output_torque,
+            turns=self.turns,
+            rigid=int(self.rigid),
+            inertia=int(self.inertia),
+        )
         for name in ("irregularity", "equivalent_angle", "homokinetic_deviation", "peak_acceleration"):
             yield remark(name, getattr(self, name))
 

@@ -12,15 +12,13 @@ import numpy as np
 
 from trunnion.analyses.tongues.windows import StableWindows
 from trunnion.arrays import Array, Codes, Integers
-from trunnion.results.declared import Described, Held, axis, over, remark, remarks_of
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Described, Held, axis, over, remark, remarks, remarks_of
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
 from trunnion.results.speeds import show_speed, speed_factor
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from trunnion.driveline.operation import Operation
 
 STABILITY = "stability"
@@ -216,10 +214,12 @@ class StableLimit(Described):
         yield over("other_limit", "allowed", np.array([o.allowed for o in self.others], dtype=float))
         yield over("other_limit", "allowed_unit", [o.unit for o in self.others])
         yield from remarks_of(self, "parameter", "low", "high")
-        yield remark("complete", int(self.complete))
-        yield remark("search", self.search)
-        yield remark("others_search", self.others_search or None)
-        yield remark("sentence", self.sentence)
+        yield from remarks(
+            complete=int(self.complete),
+            search=self.search,
+            others_search=self.others_search or None,
+            sentence=self.sentence,
+        )
         if self.whole is not None:
             yield remark("whole_range", self.whole.sentence)
 

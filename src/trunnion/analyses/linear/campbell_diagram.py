@@ -31,13 +31,11 @@ from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Judged, axis, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from trunnion.driveline.operation import Operation
 
 MULTIPLES = (1, 2)

@@ -16,7 +16,7 @@ from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remark
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
 
 LINEAR_RANGE = 0.1
 """Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the
@@ -73,8 +73,7 @@ class LinearResponse(Result):
         yield from fields_over("input_angle shaft", self, twist="rad", torque="N*m")
         yield over("input_angle coordinate", "rotation", self.rotation, "rad")
         yield over("joint", "joint_rotation", self.joint_rotation, "rad")
-        yield remark("linear_range", LINEAR_RANGE)
-        yield remark("within_linear_range", int(self.linear))
+        yield from remarks(linear_range=LINEAR_RANGE, within_linear_range=int(self.linear))
 
     def __str__(self) -> str:
         rows = [

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +15,9 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import AlignedMatrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.declared import Held, Result, axis, fields_over, over
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Figure, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NO_OSCILLATION = 1e-3
 """Share of the lowest elastic frequency below which an eigenvalue does not oscillate."""

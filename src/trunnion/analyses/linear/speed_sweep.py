@@ -21,13 +21,11 @@ from trunnion.equations.exciters import exciters
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
 from trunnion.results.declared import Described, Held, axis, fields_over, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from trunnion.driveline.operation import Operation
 
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])

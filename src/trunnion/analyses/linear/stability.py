@@ -33,7 +33,7 @@ from trunnion.equations.steady_base import moves_by_itself
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.declared import Held, Judged, fields_over, over, remark
+from trunnion.results.declared import Held, Judged, fields_over, over, remarks
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import MEANING, Verdict, verdicts
@@ -152,9 +152,9 @@ class Stability(Judged):
         yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s")
         yield over("", "period", self.period, "rad", "period in input angle")
         yield over("", "speed", self.speed, "rad/s")
-        yield remark("verdict", str(self.verdict))
-        yield remark("resonance", str(self.resonance or ""))
-        yield remark("liouville_defect", self.liouville_defect)
+        yield from remarks(
+            verdict=str(self.verdict), resonance=str(self.resonance or ""), liouville_defect=self.liouville_defect
+        )
         if self.response is not None:
             yield from (held for held in self.response.declared() if held.axes is not None)
 

@@ -12,7 +12,7 @@ from trunnion.analyses.linear.forced_response import LINEAR_RANGE
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.arrays import Array, Complex
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
@@ -160,21 +160,15 @@ class LinearityCheck(Result):
         yield axis("order", self.order, "1", "cycles per turn of the input")
         yield axis("spring", self.springs)
         yield axis("response", ("linear", "nonlinear"))
-        yield over("order spring", "linear_torque", self.linear_torque, "N*m")
-        yield over("order spring", "nonlinear_torque", self.nonlinear_torque, "N*m")
-        yield over("order spring", "difference", self.difference, "N*m")
+        yield from fields_over("order spring", self, linear_torque="N*m", nonlinear_torque="N*m", difference="N*m")
         yield over("spring", "relative_difference", self.relative_difference, "1")
-        yield over("response spring", "peak_torque", self.peak_torque, "N*m")
-        yield over("response spring", "vibratory_torque", self.vibratory_torque, "N*m")
-        yield over("", "departure", self.departure, "1")
-        yield over("", "speed", self.speed, "rad/s")
+        yield from fields_over("response spring", self, peak_torque="N*m", vibratory_torque="N*m")
+        yield from fields_over("", self, departure="1", speed="rad/s")
         if self.passage is not None:
             yield over("spring", "passing_vibration", self.passage.vibration, "N*m")
             yield over("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
             yield over("spring", "passing_linear", self.passage.linear, "N*m")
-        yield remark("holds", int(self.holds))
-        yield remark("allowed", self.allowed)
-        yield remark("because", "; ".join(self.because))
+        yield from remarks(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
         yield from ending(self.nonlinear.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str | None = None, unit: str | None = None) -> Axes:

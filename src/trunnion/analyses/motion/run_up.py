@@ -39,7 +39,7 @@ from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
@@ -156,20 +156,16 @@ class RunUp(Result):
         yield over("turn shaft", "torque_upper", self.upper, "N*m")
         yield over("turn shaft", "torque_lower", self.lower, "N*m")
         yield over("turn", "speed", self.speed, "rad/s")
-        yield over("shaft", "peak_torque", self.peak_torque, "N*m")
-        yield over("shaft", "peak_speed", self.peak_speed, "rad/s")
-        yield over("shaft", "inertia_torque", self.inertia_torque, "N*m")
+        yield from fields_over("shaft", self, peak_torque="N*m", peak_speed="rad/s", inertia_torque="N*m")
         yield over("turn shaft", "vibration", self.vibration, "N*m")
-        yield over("shaft", "peak_vibration", self.peak_vibration, "N*m")
-        yield over("shaft", "vibration_speed", self.vibration_speed, "rad/s")
+        yield from fields_over("shaft", self, peak_vibration="N*m", vibration_speed="rad/s")
         yield over("turn", "lag", self.lag, "rad/s")
         if self.steady is not None:
             yield axis("steady_speed", self.steady.speed, "rad/s")
             yield over("steady_speed shaft", "steady_torque", self.steady.largest, "N*m")
             yield over("steady_speed shaft", "steady_swing", self.steady.swing, "N*m")
             yield over("steady_speed", "steady_verdict", self.steady.verdict)
-        yield remark("acceleration", self.acceleration)
-        yield remark("ramp", self.ramp)
+        yield from remarks(acceleration=self.acceleration, ramp=self.ramp)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:

@@ -21,7 +21,7 @@ from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, joined
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remark, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
@@ -159,14 +159,12 @@ class LineSimulation(Result):
         if self.line.sliders:
             yield axis("slider", [slider.name for slider in self.line.sliders])
             yield over("time slider", "deflection", self.state[:, 2 * n :], "rad")
-        yield over("time shaft", "twist", self.twist, "rad")
-        yield over("time shaft", "torque", self.torque, "N*m")
+        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
         yield over("time", "input_speed", self.input_speed, "rad/s")
         yield over("time", "input_angle", self.profile.angle(self.time), "rad")
         yield remark("driveline", self.pieces[0].system.name)
         yield from ending(self.outcome)
-        yield remark("tolerance", self.pieces[0].tolerance)
-        yield remark("steps", self.steps)
+        yield from remarks(tolerance=self.pieces[0].tolerance, steps=self.steps)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
         """Torques over time; see ``trunnion.plots.motion``."""

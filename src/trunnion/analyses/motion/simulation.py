@@ -14,7 +14,7 @@ from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
@@ -97,9 +97,11 @@ class Simulation(Result):
         yield over("event state", "state_after", self.event_after)
         yield remark("system", self.system.name)
         yield from ending(self.outcome)
-        yield remark("tolerance", self.tolerance)
-        yield remark("steps", self.trajectory.steps)
-        yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from remarks(
+            tolerance=self.tolerance,
+            steps=self.trajectory.steps,
+            tangents="exact" if self.system.exact_tangents else "differenced",
+        )
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:

@@ -21,7 +21,7 @@ from trunnion.analyses.orbits.branch import PeriodicBranch, Problem, collect, fo
 from trunnion.arrays import Array
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
-from trunnion.results.declared import Held, Result, over, remark
+from trunnion.results.declared import Held, Result, over, remarks
 from trunnion.results.drawing import Axes
 from trunnion.results.outcome import Outcome
 
@@ -55,8 +55,7 @@ class SeriesBranch(Result):
         yield from self.branch.declared()
         yield over("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
         yield over("point", "tail", self.tail)
-        yield remark("harmonics", self.harmonics)
-        yield remark("periods", self.periods)
+        yield from remarks(harmonics=self.harmonics, periods=self.periods)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
         """Response curve with its jumps; see ``trunnion.plots.response_curve``."""

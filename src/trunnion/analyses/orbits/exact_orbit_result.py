@@ -16,7 +16,7 @@ from trunnion.equations.staged_line import StagedLine
 from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear.piecewise import states
 from trunnion.numerics.piecewise_linear.staged_flow import move
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING, Verdict
@@ -99,10 +99,9 @@ class PiecewiseOrbit(ExactMotion, Result):
         yield over("crossing", "crossing_time", self.crossings[:, 0], "s")
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield from fields_over("", self, **dict.fromkeys(NUMBERS, ""))
-        yield remark("oscillator", self.oscillator.name)
-        yield remark("verdict", str(self.verdict))
-        yield remark("contact", self.contact)
-        yield remark("periods", self.periods)
+        yield from remarks(
+            oscillator=self.oscillator.name, verdict=str(self.verdict), contact=self.contact, periods=self.periods
+        )
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -187,9 +186,7 @@ class ExactOrbit(ExactMotion, Result):
         yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield from fields_over("", self, period="s", clearance="rad", slowest_crossing="rad/s")
-        yield remark("driveline", self.line.name)
-        yield remark("verdict", str(self.verdict))
-        yield remark("value", self.value)
+        yield from remarks(driveline=self.line.name, verdict=str(self.verdict), value=self.value)
         yield from ending(self.outcome)
 
     def __str__(self) -> str:

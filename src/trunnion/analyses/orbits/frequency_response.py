@@ -40,7 +40,7 @@ from trunnion.equations.stage_laws import has_stages
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.curves import at_place, meetings
-from trunnion.results.declared import Described, Held, ending, fields_over, over, remark
+from trunnion.results.declared import Described, Held, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
@@ -118,8 +118,7 @@ class FrequencyResponse(Described):
         yield from fields_over("point", self, frequency="rad/s", half_peak_to_peak="", stable="")
         yield over("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
         yield over("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
-        yield remark("method", self.method)
-        yield remark("curve", self.curve)
+        yield from remarks(method=self.method, curve=self.curve)
         yield from ending(self.outcome)
 
     def plot(

@@ -26,7 +26,7 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.numerics.spectrum import spectral_radius
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remark
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
@@ -120,12 +120,13 @@ class PeriodicOrbit(Result):
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
         yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
-        yield remark("system", self.system.name)
-        yield remark("verdict", str(self.verdict))
+        yield from remarks(system=self.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
-        yield remark("residual", self.residual)
-        yield remark("liouville_defect", self.liouville_defect)
-        yield remark("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from remarks(
+            residual=self.residual,
+            liouville_defect=self.liouville_defect,
+            tangents="exact" if self.system.exact_tangents else "differenced",
+        )
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:

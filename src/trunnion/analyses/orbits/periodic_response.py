@@ -33,7 +33,7 @@ from trunnion.equations.loads import given_shares
 from trunnion.equations.steady_base import imbalance, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.curves import Extremes, extremes, fourier
-from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark
+from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
@@ -206,8 +206,7 @@ class PeriodicResponse(Judged):
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield over("multiplier_number", "multiplier_error", self.orbit.multiplier_error, "1")
         yield from fields_over("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
-        yield remark("driveline", self.orbit.system.name)
-        yield remark("verdict", str(self.verdict))
+        yield from remarks(driveline=self.orbit.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
         yield remark("comparison", str(self.comparison or self.no_comparison))
 

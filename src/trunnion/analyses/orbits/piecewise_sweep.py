@@ -29,7 +29,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
 from trunnion.numerics.piecewise_linear.staged_flow import kernel
-from trunnion.results.declared import Described, Held, Result, axis, ending, fields_over, over, remark
+from trunnion.results.declared import Described, Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
@@ -93,8 +93,7 @@ class Sweep(Result):
         yield from fields_over("frequency", self, **dict.fromkeys(NUMBERS, ""))
         yield over("frequency", "contact", np.array(self.contact, dtype=str))
         yield over("frequency", "periods", self.periods)
-        yield remark("oscillator", self.oscillator.name)
-        yield remark("direction", "up" if self.up else "down")
+        yield from remarks(oscillator=self.oscillator.name, direction="up" if self.up else "down")
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
@@ -196,8 +195,7 @@ class LineSweep(Described):
             values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
             yield over(f"{clock} staged_spring", name, values.reshape(len(self.value), len(staged)), unit)
         yield from fields_over(clock, self, settled="", periods="")
-        yield remark("driveline", self.line.name)
-        yield remark("direction", "up" if self.up else "down")
+        yield from remarks(driveline=self.line.name, direction="up" if self.up else "down")
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:

@@ -14,15 +14,13 @@ from trunnion.analyses.orders.amplitudes import OrderSpectrum, Range
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remarks
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from trunnion.driveline.operation import Operation
 
 WAVE_POINTS = 64
@@ -247,8 +245,7 @@ class OrderResponse(Judged):
         yield over("speed", "joint_rotation", self.joint_rotation, "rad")
         yield over("speed", "linear", self.linear.astype(np.int8))
         yield over("speed", "cut_off", self.cut_off, "1")
-        yield remark("linear_range", LINEAR_RANGE)
-        yield remark("sum_is_bound", int(self.sum_is_bound))
+        yield from remarks(linear_range=LINEAR_RANGE, sum_is_bound=int(self.sum_is_bound))
 
     def plot(
         self,

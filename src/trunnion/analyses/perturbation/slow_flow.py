@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from trunnion.arrays import Array, Flags
 from trunnion.errors import InputError
 from trunnion.numerics.curves import at_place, meetings
-from trunnion.results.declared import Held, Result, ending, fields_over, remark
+from trunnion.results.declared import Held, Result, ending, fields_over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -71,8 +71,7 @@ class ApproximateResponse(Result):
     def declared(self) -> Iterator[Held]:
         """Frequency, amplitude, mean and stability over the points."""
         yield from fields_over("point", self, frequency="rad/s", amplitude="", mean="", stable="")
-        yield remark("method", self.method)
-        yield remark("note", self.note)
+        yield from remarks(method=self.method, note=self.note)
         yield from ending(self.outcome)
 
     def plot(

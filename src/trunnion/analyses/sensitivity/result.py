@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, log10, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +14,10 @@ from trunnion.arrays import Array
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, members_over, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.units import in_words, with_unit
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 STRONGEST = 3
 """Parameters printed of each quantity."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,14 +27,11 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remark, remarks_of
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks, remarks_of
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 BATCH = {1: 48, 2: 24, 3: 8}
 """Boxes judged together, by unknowns: some 300 MB of matrices."""
@@ -84,8 +80,7 @@ class StabilityCertificate(Result):
         yield from fields_over("proved_box variable", self, proved_low="", proved_high="")
         yield over("", "largest_radius", self.largest_radius, "1", "largest multiplier at the middle of any box")
         yield from remarks_of(self, "verdict", "undecided_share")
-        yield remark("speeds", list(self.speeds))
-        yield remark("boxes", self.boxes)
+        yield from remarks(speeds=list(self.speeds), boxes=self.boxes)
 
     @property
     def ends(self) -> tuple[Array, Array]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,14 +27,11 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.chart import require_pixels
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remark, remarks_of
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks, remarks_of
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
@@ -97,12 +93,13 @@ class ToleranceStudy(Result):
         yield over("speed", "stable_share", self.stable_share, "1")
         yield axis("quantile", np.array(QUANTILES), "1")
         yield over("speed quantile", "growth_rate", np.nanquantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
-        yield remark("probability", self.probability)
-        yield remark("interval", list(self.interval))
+        yield from remarks(probability=self.probability, interval=list(self.interval))
         yield from remarks_of(self, "confidence", "undecided", "samples")
-        yield remark("worst_speed", self.worst.speed)
-        yield remark("worst_growth_rate", self.worst.growth_rate)
-        yield remark("worst_verdict", str(self.worst.verdict))
+        yield from remarks(
+            worst_speed=self.worst.speed,
+            worst_growth_rate=self.worst.growth_rate,
+            worst_verdict=str(self.worst.verdict),
+        )
         if self.checks is not None:
             yield from self.checks.declared()
 

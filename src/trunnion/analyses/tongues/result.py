@@ -14,14 +14,12 @@ from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, over, remarks
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from trunnion.driveline.driveline import Driveline
 
 Intervals = Callable[[float], Array]
@@ -191,14 +189,16 @@ class Tongues(Result):
             yield over(
                 "unknown", f"unknown_x_{end}", np.array([u.x[k] for u in self.unknown]), self.x_unit, self.x_label
             )
-        yield remark("x", self.x_label)
-        yield remark("y", self.y_label)
-        yield remark("x_range", list(self.x_range))
-        yield remark("y_range", list(self.y_range))
-        yield remark("rows", self.rows)
-        yield remark("row_step", self.row_step)
-        yield remark("complete", int(self.complete))
-        yield remark("search", self.search)
+        yield from remarks(
+            x=self.x_label,
+            y=self.y_label,
+            x_range=list(self.x_range),
+            y_range=list(self.y_range),
+            rows=self.rows,
+            row_step=self.row_step,
+            complete=int(self.complete),
+            search=self.search,
+        )
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per point of a boundary: number and name of the tongue, x, y."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,12 +21,9 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, over, remark
-from trunnion.results.drawing import drawing
+from trunnion.results.declared import Held, Result, axis, over, remarks
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.speeds import show_speed
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 Progress = Callable[[float], None]
 DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
@@ -111,12 +107,14 @@ class StableWindows(Result):
             speed = [float("nan") if e[k] is None else e[k].speed for e in self.ends]  # type: ignore[union-attr]
             yield over("window", f"{name}_speed", np.array(speed), "rad/s")
             yield over("window", f"{name}_region", ["" if e[k] is None else e[k].region for e in self.ends])  # type: ignore[union-attr]
-        yield remark("parameter", self.parameter)
-        yield remark("speeds", list(self.speeds))
-        yield remark("margin", self.margin)
-        yield remark("range", [self.low, self.high])
-        yield remark("search", self.search)
-        yield remark("sentence", self.sentence)
+        yield from remarks(
+            parameter=self.parameter,
+            speeds=list(self.speeds),
+            margin=self.margin,
+            range=[self.low, self.high],
+            search=self.search,
+            sentence=self.sentence,
+        )
 
     def plot(self, axes: Axes | None = None, *, unit: str | None = None, labelled: int = 12) -> Axes:
         """The unstable regions over speed and parameter; see ``plots.tongues.draw_windows``."""
