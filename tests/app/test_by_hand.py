@@ -19,14 +19,14 @@ from trunnion.driveline.starter import starter
 QUICK = {
     "driveline": "",
     "verdict": "",
-    "orders": "orders.speed=1234.0&orders.spring=Shaft+2&orders.mode=2",
     "stability": "stability.across=8&stability.up=6&stability.at_x=707.0&stability.at_y=19.5&stability.look=True",
-    "joints": "joints.torque=250.0&joints.turn=40.0&joints.side=5.0&joints.top=7.0",
     "limits": "limits.what=errors+of+assembly&limits.error=2.0",
     "motion": "motion.speed=900.0",
 }
-"""Settings of every view that differ from its own, and compute quickly."""
+"""Settings of a view that differ from its own, and compute quickly."""
 LONGER = {
+    "orders": ("orders", "orders.speed=1234.0&orders.spring=Shaft+2&orders.mode=2"),
+    "joints": ("joints", "joints.torque=250.0&joints.turn=40.0&joints.side=5.0&joints.top=7.0"),
     "stable limit": ("limits", "limits.speeds=3&limits.high=20.0"),
     "windows": ("limits", "limits.what=stable+windows+of+a+parameter&limits.high=20.0"),
     "tolerances": ("limits", "limits.what=tolerances&limits.tolerance=4.0"),
@@ -35,7 +35,7 @@ LONGER = {
     "map": ("motion", "motion.what=section&motion.returns=20"),
     "rattle": ("motion", "motion.what=rattle&motion.points=3&line=" + pack(tn.dumps(rattling()))),
 }
-"""The other questions of a view."""
+"""The other views, and the other questions of a view."""
 CASES = [pytest.param(view, settings, id=view) for view, settings in QUICK.items()]
 CASES += [pytest.param(*case, id=name, marks=pytest.mark.slow) for name, case in LONGER.items()]
 

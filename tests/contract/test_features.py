@@ -150,7 +150,9 @@ QUICK = {
 """Features seen in the quick run, where an analysis takes long; the others are seen in the slow one."""
 
 
-COSTLY = {(name, "mesh-stiffness variation") for name in ("order_response", "speed_sweep", "tolerance_study")}
+COSTLY = {
+    (name, "mesh-stiffness variation") for name in ("stability", "order_response", "speed_sweep", "tolerance_study")
+}
 
 
 def cells():
