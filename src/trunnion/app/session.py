@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import zip_longest
 from typing import Any
@@ -296,9 +296,9 @@ class Session:
         """Whether a step took long when it was last computed, or never was."""
         return self.took.get((view.name, name), QUICK) >= QUICK
 
-    async def ask(self, call: Call, show: str, side: str, **options: Any) -> Any:
-        """What one further computation for a side gives."""
-        return (await self.pool.run(Job(self._toml(side), call, show, options), self)).value
+    async def ask(self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None) -> Any:
+        """What one further computation for a side gives; ``options`` of what makes plain data of it."""
+        return (await self.pool.run(Job(self._toml(side), call, show, options or {}), self)).value
 
     def line(self, side: str) -> Driveline:
         """The present line, or the kept one."""

@@ -96,7 +96,9 @@ class Host(Protocol):
     def setting_chosen(self) -> None:
         """Hear that a setting of the visible view is another."""
 
-    def ask(self, call: Call, show: str, side: str, **options: Any) -> Coroutine[Any, Any, Any]:
+    def ask(
+        self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None
+    ) -> Coroutine[Any, Any, Any]:
         """One further computation for the line of a variant."""
 
     def beside(self, work: Coroutine[Any, Any, None]) -> None:

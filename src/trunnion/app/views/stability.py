@@ -229,7 +229,7 @@ class _Side(Side["StabilityView"]):
         across, up = (bounded(self.view.settings[key], 2) for key in ("across", "up"))
         zoom = ((*ends[0], across), (*ends[1], up))
         whole, extent = self.whole, self.extent
-        data = await self.view.session.ask(self.chart_call, "chart", self.variant, zoom=zoom)
+        data = await self.view.session.ask(self.chart_call, "chart", self.variant, {"zoom": zoom})
 
         def draw() -> None:
             if extent is not None and self.whole is whole:
