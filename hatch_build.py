@@ -17,7 +17,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-LINES = ("examples/truck.toml", "examples/gear-stage.toml")
+LINES = ("examples/pto-shaft.toml", "examples/truck.toml", "examples/gear-stage.toml")
 """What a first report is likely to need is what these need."""
 
 

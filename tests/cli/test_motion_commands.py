@@ -62,7 +62,7 @@ def test_linearity_check(run, here):
     result = run(*call, "-o", "a.png", "-o", "a.csv")
     assert result.exit_code == 0, result.stderr
     assert result.stdout.startswith("linear and nonlinear response at 900 rpm")
-    assert "Linear theory holds at 900 rpm" in result.stdout and "Passed at 40 rad/s² from 720 rpm" in result.stdout
+    assert "Linear theory holds at 900 rpm" in result.stdout and "Passed at 382 rpm/s from 720 rpm" in result.stdout
     assert (here / "a.png").is_file() and "linear_torque" in (here / "a.csv").read_text(encoding="utf-8")
     data = json.loads(run(*call[:6], "--json").stdout)
     expected = tn.linearity_check(tn.load("line.toml"), tn.rpm(900), "climb")
@@ -137,3 +137,27 @@ def test_refusals(run, here, call, code, words):
     assert result.exit_code == code
     assert words in result.stderr and result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
     assert not (here / "trunnion-out").exists()
+
+
+FREE = [
+    tn.Disk(inertia=0.4, drive_share=1.0, excitation=[{"order": 2, "amplitude": 40.0}]),
+    tn.Shaft(stiffness=6e3, damping=1.5),
+    tn.Disk(inertia=0.2),
+    tn.HookeJoint(angle=0.35),
+    tn.Shaft(stiffness=4e3, damping=1.0),
+    tn.Disk(inertia=1.5, quadratic_load=0.003),
+]
+
+
+@pytest.mark.slow
+def test_a_captured_run_up_is_a_result(run, here):
+    """Exit code 0: what was asked for was found out."""
+    tn.dump(tn.Driveline(FREE, operation=tn.Operation(speed="400 rpm")), "free.toml")
+    call = ("run-up", "free.toml", "--from", "200 rpm", "--to", "600 rpm", "--acceleration", "100 rpm")
+    result = run(*call, "-o", "a.png", "--json")
+    assert result.exit_code == 0 and (here / "a.png").is_file(), result.stderr
+    data = json.loads(result.stdout)
+    assert data["outcome"] == "captured" and "captured at 39" in data["says"]
+    assert "rpm, short of 600 rpm: order 2" in data["says"] and "accelerate faster, damp Shaft 2 more" in data["says"]
+    assert data["end_speed"] == pytest.approx(tn.rpm(391), rel=0.02) and data["hung"]["speed"] < tn.rpm(400)
+    assert data["hung"]["until"] == data["end"] > 4 + data["hung"]["since"]

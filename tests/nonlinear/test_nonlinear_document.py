@@ -15,4 +15,5 @@ def test_examples_run_in_order() -> None:
     assert names["orbit"].outcome.ok and names["strobe"].system.compiled
     assert len(names["series"].branch.folds) == 2 and "harmonic balance with" in text
     assert np.isfinite(names["safe"].slowest), str(names["safe"])
+    assert names["slow"].outcome.kind == "captured" and "captured at 41.1 rad/s" in text
     assert names["passage"].peak_torque[0] < names["passage"].steady_peak[0]

@@ -7,7 +7,6 @@ import pytest
 from jointed_lines import two_shafts
 
 import trunnion as tn
-from trunnion.analyses.motion.order_map import times_at_angles
 
 
 @pytest.mark.slow
@@ -46,10 +45,15 @@ def test_safe_accelerations_keep_the_limit() -> None:
     ):
         run = tn.run_up(line, 28.0, 46.0, acceleration=rate, steady=0)
         assert (run.peak_torque.max() <= limit * 1.002) == keeps
+    assert found.share[found.safe].max() <= 1 and (np.diff(found.acceleration) > 0).all()
+    assert f"safe at each of the {len(found.stretch)} accelerations tried" in str(found)
     none = tn.safe_accelerations(line, 28.0, 46.0, limit=5.0, accelerations=(10.0, 100.0), points=3)
-    assert np.isnan(none.slowest) and "no acceleration between" in str(none)
+    assert np.isnan(none.slowest) and str(none).startswith("none of the 3 accelerations tried from 10 to 100 rad/s²")
+    assert "the quietest that reaches 46 rad/s, 100 rad/s², comes to 77" in str(none)
+    # Nothing is said of what was not run.
     wide = tn.safe_accelerations(line, 28.0, 46.0, limit={"Shaft 1": 1e6}, accelerations=(10.0, 100.0), points=2)
-    assert wide.slowest == 0 and wide.fastest == np.inf
+    assert (wide.slowest, wide.fastest) == (10.0, pytest.approx(100.0))
+    assert "nothing slower was tried; nothing faster was tried; neighbours are up to 10 times apart" in str(wide)
 
 
 def test_orders_stay_in_place_while_the_speed_changes() -> None:
@@ -69,7 +73,7 @@ def test_angles_and_times_are_inverse() -> None:
     profile = tn.SpeedProfile([0.0, 2.0, 3.0], [50.0, 150.0, 100.0])
     run = tn.simulate(two_shafts(), 4.0, speed=profile)
     angles = np.linspace(0, float(profile.angle(4.0)), 500)
-    np.testing.assert_allclose(profile.angle(times_at_angles(run, angles)), angles, atol=1e-9)
+    np.testing.assert_allclose(profile.angle(run.input.times_at(angles)), angles, atol=1e-9)
     np.testing.assert_allclose(profile.angle([0.0, 2.0, 3.0, 4.0]), [0.0, 200.0, 325.0, 425.0])
     assert [len(run.pieces), run.input_speed[-1]] == [3, 100.0]
 

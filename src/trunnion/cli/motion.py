@@ -30,7 +30,7 @@ from trunnion.cli.places import check_places, deliver
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.analyses.motion.run_up import RunUp
+    from trunnion.analyses.motion.run_up_result import RunUp
     from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
     from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 
@@ -76,8 +76,9 @@ def simulate(
             check_places(to)
             seconds = 100.0 if duration is None else duration
             result = tn.simulate(subject, seconds, start=read_state(start), tolerance=tolerance)
+    text = partial(result.describe, unit) if isinstance(subject, tn.Driveline) else None
     written = deliver(
-        "simulate", file, result, to, as_json, what="motion", draw=_draw(subject, result, unit),
+        "simulate", file, result, to, as_json, what="motion", draw=_draw(subject, result, unit), text=text,
         content=lambda: _simulation_json(result),
     )  # fmt: skip
     output.finish(result.outcome, written)
@@ -190,14 +191,23 @@ def run_up(
         if torque is not None:
             tried = (rate / 4, rate * 4)
             safe = tn.safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
-    content, said = _run_up_json(result), result.describe(unit)
+    content, said = _run_up_json(result, unit), result.describe(unit)
     if safe is not None:
-        content["safe_accelerations"] = {"slowest": safe.slowest, "fastest": safe.fastest, "says": str(safe)}
-        said += f"\n  {safe}"
-    deliver(
+        content["safe_accelerations"] = {
+            "slowest": safe.slowest,
+            "fastest": safe.fastest,
+            "tried": [
+                {"acceleration": one.acceleration, "outcome": one.kind, "share_of_limit": one.share, "safe": one.safe}
+                for one in safe.trials
+            ],
+            "says": safe.describe(unit),
+        }
+        said += f"\n  {safe.describe(unit)}"
+    written = deliver(
         "run-up", file, result, to, as_json,
         draw=lambda: result.plot(unit=unit), content=lambda: content, text=lambda: said,
     )  # fmt: skip
+    output.finish(result.outcome, written)
 
 
 def _subject(
@@ -263,7 +273,7 @@ def _print_orders(result: PeriodicResponse, unit: str) -> None:
 
 
 def _simulation_json(result: Any) -> dict[str, Any]:
-    from trunnion.analyses.motion.simulate import LineSimulation
+    from trunnion.analyses.motion.line_simulation import LineSimulation
 
     content = {
         "outcome": result.outcome.kind,
@@ -272,9 +282,13 @@ def _simulation_json(result: Any) -> dict[str, Any]:
         "final_state": result.final,
     }
     if isinstance(result, LineSimulation):
+        extremes = result.torque_extremes
+        content |= {"turns": result.turns, "first_speed": result.input_speed[0], "last_speed": result.input_speed[-1]}
+        if result.starts_free and len(result.whole.turns[1]):
+            content |= {"first_speed": result.whole.turns[1][0], "last_speed": result.whole.last_turn()[1]}
         content["shafts"] = [
             {"name": name, "smallest_torque": low, "largest_torque": high}
-            for name, low, high in zip(result.shafts, result.torque.min(axis=0), result.torque.max(axis=0), strict=True)
+            for name, low, high in zip(result.shafts, extremes.low, extremes.high, strict=True)
         ]
     return content
 
@@ -308,12 +322,18 @@ def _response_json(result: PeriodicResponse) -> dict[str, Any]:
     }
 
 
-def _run_up_json(result: RunUp) -> dict[str, Any]:
+def _run_up_json(result: RunUp, unit: str) -> dict[str, Any]:
+    ending = result.ending
     return {
         "outcome": result.outcome.kind,
-        "says": str(result.outcome),
+        "says": str(result.outcome_in(unit)),
         "acceleration": result.acceleration,
         "ramp": result.ramp,
+        "end": result.simulation.end,
+        "end_speed": ending.speed if ending else result.schedule.last,
+        "hung": {"speed": ending.hanging.speed, "since": ending.hanging.since, "until": ending.hanging.until}
+        if ending and ending.hanging
+        else None,
         "shafts": [
             {
                 "name": name,

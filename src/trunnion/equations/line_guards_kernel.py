@@ -13,6 +13,7 @@ from __future__ import annotations
 from numba import carray, cfunc, njit, types
 from trunnion_kernels.line_kernel import (
     COMPLIANCES,
+    COORDINATE,
     FAR,
     FAR_COORDINATE,
     GUARDS,
@@ -29,6 +30,7 @@ from trunnion_kernels.line_kernel import (
     PER_STATION,
     REACH,
     REFERENCE,
+    SHARE,
     SLIDERS,
     SLIPS_ON,
     STAGES,
@@ -38,6 +40,7 @@ from trunnion_kernels.line_kernel import (
     STRIDE,
     UNKNOWNS,
     course,
+    mean_rotation,
     mesh_error,
     places,
     walk,
@@ -85,14 +88,15 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
     d, v = space[:count], space[count : 2 * count]
     r, r1, r2 = space[2 * count : 3 * count], space[3 * count : 4 * count], space[4 * count :]
     walk(theta, omega, x, p, count, HEAD, d, v, r, r1, r2)
+    turned, turning = mean_rotation(theta, omega, p, count, d, v)
     m = 0
     for e in range(joined):
         q = compliance + e * PER_COMPLIANCE
         if p[q + STAGES] < 2.0:
             continue
         near, far = int(p[q + NEAR]), int(p[q + FAR])
-        error, error_rate, error_acceleration = mesh_error(p, q, theta, omega, alpha)
-        twist, rate = d[far] - d[near] + error, v[far] - v[near] + error_rate
+        error, error_slope, bend = mesh_error(p, q, turned)
+        twist, rate = d[far] - d[near] + error, v[far] - v[near] + error_slope * turning
         stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
         for guard in range(GUARDS):
             at = stage + 3 + PER_GUARD * guard
@@ -101,7 +105,14 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
             if sloped != 0:
                 row = slope[m * wide : (m + 1) * wide]
                 gradient(row, p, q, by_twist, by_rate, omega, alpha, v, r, r1)
-                row[wide - 1] += by_twist * error_rate + by_rate * error_acceleration
+                by_turn = by_twist * error_slope + by_rate * bend * turning
+                row[wide - 1] += by_turn * omega + by_rate * error_slope * alpha
+                for s in range(count):
+                    share = p[HEAD + s * PER_STATION + SHARE]
+                    if share != 0.0:
+                        i = int(p[HEAD + s * PER_STATION + COORDINATE])
+                        row[i] += by_turn * share
+                        row[n + i] += by_rate * error_slope * share
             m += 1
     for s in range(sliding):
         at = slider + s * PER_SLIDER

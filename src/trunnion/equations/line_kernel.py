@@ -33,8 +33,9 @@ HEAD = 11
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 # LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
-INERTIA, LOAD, VISCOUS, QUADRATIC, BY_SPEED, BY_SQUARE = range(10, 16)
-PER_STATION = 16
+# SHARE: of the station's deviation in that of the mean rotation, by which meshes run; 0 where the input is prescribed.
+INERTIA, LOAD, VISCOUS, QUADRATIC, BY_SPEED, BY_SQUARE, SHARE = range(10, 17)
+PER_STATION = 17
 # Per compliance.
 NEAR, FAR, NEAR_COORDINATE, FAR_COORDINATE, STIFFNESS, DAMPING = range(6)
 LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
@@ -116,27 +117,45 @@ def walk(theta, omega, d_rate, p, count, place, d, v, r, r1, r2):
 
 
 @njit(cache=True, nogil=True)
-def mesh_error(p, q, theta, omega, alpha):
-    """Transmission error of compliance at p[q:] as an angle, its rate and its acceleration."""
+def mean_rotation(theta, omega, p, count, d, v):
+    """Angle and speed of the mean rotation: those of the input where it is prescribed, else those with which the whole
+    line turns as a rigid body, Σ Jρφ/Σ Jρ²."""
+    for s in range(count):
+        q = HEAD + s * PER_STATION
+        if p[q + SHARE] != 0.0:
+            theta += p[q + SHARE] * d[s]
+    turning = omega
+    for s in range(count):
+        q = HEAD + s * PER_STATION
+        if p[q + SHARE] != 0.0:
+            turning += p[q + SHARE] * (v[s] - p[q + MEAN] * omega)
+    return theta, turning
+
+
+@njit(cache=True, nogil=True)
+def mesh_error(p, q, theta):
+    """Transmission error of compliance at p[q:] as an angle, its slope and its bend by the mean rotation."""
     at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE
-    e, rate, acceleration = 0.0, 0.0, 0.0
+    e, slope, bend = 0.0, 0.0, 0.0
     for i in range(int(p[q + ERRORS])):
         size, cycles, phase = p[at + 3 * i], p[at + 3 * i + 1], p[at + 3 * i + 2]
         c, s = size * math.cos(cycles * theta + phase), size * math.sin(cycles * theta + phase)
         e += c
-        rate -= s * cycles * omega
-        acceleration -= c * (cycles * omega) ** 2 + s * cycles * alpha
-    return e, rate, acceleration
+        slope -= s * cycles
+        bend -= c * cycles * cycles
+    return e, slope, bend
 
 
 @njit(cache=True, nogil=True)
 def mesh_wave(p, q, theta):
-    """Mesh stiffness over its mean."""
+    """Mesh stiffness over its mean, and its slope by the mean rotation."""
     at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE + int(p[q + ERRORS]) * PER_WAVE
-    wave = 1.0
+    wave, slope = 1.0, 0.0
     for i in range(int(p[q + WAVES])):
-        wave += p[at + 3 * i] * math.cos(p[at + 3 * i + 1] * theta + p[at + 3 * i + 2])
-    return wave
+        cycles, argument = p[at + 3 * i + 1], p[at + 3 * i + 1] * theta + p[at + 3 * i + 2]
+        wave += p[at + 3 * i] * math.cos(argument)
+        slope -= p[at + 3 * i] * cycles * math.sin(argument)
+    return wave, slope
 
 
 @njit(cache=True, nogil=True)
@@ -160,7 +179,7 @@ def line(t, y_, p_, k, regime, out_):
     head = carray(p_, (HEAD,))
     n, count, joined, sliding = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
     compliance, harmonic, slider, scratch = places(head)
-    p = carray(p_, (scratch + 5 * count + 7 * n + 3 * joined,))
+    p = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,))
     wide = 2 * n + sliding
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
     theta, omega, alpha = course(t, p)
@@ -171,9 +190,11 @@ def line(t, y_, p_, k, regime, out_):
     inertia, half_slope, half_bend = rest[:n], rest[n : 2 * n], rest[2 * n : 3 * n]
     torque, by_angle, by_rate = rest[3 * n : 4 * n], rest[4 * n : 5 * n], rest[5 * n : 6 * n]
     acceleration, shaft = rest[6 * n : 7 * n], rest[7 * n : 7 * n + joined]
-    stiff, damp = rest[7 * n + joined : 7 * n + 2 * joined], rest[7 * n + 2 * joined :]
+    stiff, damp = rest[7 * n + joined : 7 * n + 2 * joined], rest[7 * n + 2 * joined : 7 * n + 3 * joined]
+    by_turn, by_turning = rest[7 * n + 3 * joined : 7 * n + 4 * joined], rest[7 * n + 4 * joined :]
     rest[: 6 * n] = 0.0
     walk(theta, omega, y, p, count, HEAD, d, v, r, r1, r2)
+    turned, turning = mean_rotation(theta, omega, p, count, d, v)
     for s in range(count):
         q = HEAD + s * PER_STATION
         i = int(p[q + COORDINATE])
@@ -209,16 +230,19 @@ def line(t, y_, p_, k, regime, out_):
     for e in range(joined):
         q = compliance + e * PER_COMPLIANCE
         near, far = int(p[q + NEAR]), int(p[q + FAR])
-        stiff[e], damp[e] = p[q + STIFFNESS], p[q + DAMPING]
+        stiff[e], damp[e], by_turn[e], by_turning[e] = p[q + STIFFNESS], p[q + DAMPING], 0.0, 0.0
         if p[q + LAW] == 0.0:
             shaft[e] = stiff[e] * (d[far] - d[near]) + damp[e] * (v[far] - v[near])
         else:
             stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
-            error, rate, _ = mesh_error(p, q, theta, omega, alpha)
-            wave = mesh_wave(p, q, theta)
+            error, slope, bend = mesh_error(p, q, turned)
+            wave, swell = mesh_wave(p, q, turned)
             damp[e], stiff[e] = p[stage], wave * p[stage + 1]
-            shaft[e] = stiff[e] * (d[far] - d[near] + error) + wave * p[stage + 2]
-            shaft[e] += damp[e] * (v[far] - v[near] + rate)
+            twist = d[far] - d[near] + error
+            shaft[e] = stiff[e] * twist + wave * p[stage + 2]
+            shaft[e] += damp[e] * (v[far] - v[near] + slope * turning)
+            by_turn[e] = stiff[e] * slope + damp[e] * bend * turning + swell * (p[stage + 1] * twist + p[stage + 2])
+            by_turning[e] = damp[e] * slope
         for s in range(sliding):
             at = slider + s * PER_SLIDER
             if int(p[at + OF]) == e:
@@ -245,6 +269,12 @@ def line(t, y_, p_, k, regime, out_):
         for i in range(n):
             o[i] = w[n + i]
             o[n + i] = by_angle[i] * w[i] + by_rate[i] * w[n + i]
+        more, faster = 0.0, 0.0
+        for s in range(count):
+            q = HEAD + s * PER_STATION
+            if p[q + SHARE] != 0.0:
+                more += p[q + SHARE] * w[int(p[q + COORDINATE])]
+                faster += p[q + SHARE] * w[n + int(p[q + COORDINATE])]
         for e in range(joined):
             q = compliance + e * PER_COMPLIANCE
             near = int(p[q + NEAR])
@@ -256,7 +286,7 @@ def line(t, y_, p_, k, regime, out_):
                 reference = int(p[HEAD + near * PER_STATION + REFERENCE])
                 twist -= r[near] * w[i]
                 rate -= r1[near] * v[reference] * w[i] + r[near] * w[n + i]
-            change = stiff[e] * twist + damp[e] * rate
+            change = stiff[e] * twist + damp[e] * rate + by_turn[e] * more + by_turning[e] * faster
             for s in range(sliding):
                 at = slider + s * PER_SLIDER
                 if int(p[at + OF]) == e:
@@ -305,8 +335,9 @@ def observe(times, states, p, twist, torque, rotation, speed, stages):
     compliance, _, slider, _ = places(p)
     r, r1, r2 = np.empty(count), np.empty(count), np.empty(count)
     for m in range(times.size):
-        theta, omega, alpha = course(times[m], p)
+        theta, omega, _ = course(times[m], p)
         walk(theta, omega, states[m], p, count, HEAD, rotation[m], speed[m], r, r1, r2)
+        turned, turning = mean_rotation(theta, omega, p, count, rotation[m], speed[m])
         for e in range(int(p[COMPLIANCES])):
             q = compliance + e * PER_COMPLIANCE
             near, far = int(p[q + NEAR]), int(p[q + FAR])
@@ -315,12 +346,12 @@ def observe(times, states, p, twist, torque, rotation, speed, stages):
             if p[q + LAW] == 0.0:
                 torque[m, e] = p[q + STIFFNESS] * twist[m, e] + p[q + DAMPING] * rate
                 continue
-            error, error_rate, _ = mesh_error(p, q, theta, omega, alpha)
+            error, slope, _ = mesh_error(p, q, turned)
             twist[m, e] += error
-            rate += error_rate
+            rate += slope * turning
             stages[m, e] = stage_at(p, q, twist[m, e], rate)
             at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
-            torque[m, e] = mesh_wave(p, q, theta) * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
+            torque[m, e] = mesh_wave(p, q, turned)[0] * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
         for s in range(int(p[SLIDERS])):
             at = slider + s * PER_SLIDER
             torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]

@@ -18,6 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion
@@ -83,11 +84,21 @@ class HarmonicTorque(NamedTuple):
         if not self.law.varies:
             return row[None]
         if course.acceleration:
+            self.refuse_change()
+        return np.concatenate([[course.speed], row[1:]])[None]
+
+    def refuse_change(self) -> None:
+        """Refuse an amplitude by the speed where the speed changes.
+
+        Raises
+        ------
+        InputError : so.
+        """
+        if self.law.varies:
             raise InputError(
                 "has an amplitude that depends on the speed, which changes here", element=self.name, key="excitation",
                 remedy="give it an amplitude, or use tn.order_response",
             )  # fmt: skip
-        return np.concatenate([[course.speed], row[1:]])[None]
 
 
 @dataclass(frozen=True)
@@ -97,10 +108,15 @@ class LineSystem:
     ``system`` has the states "rotation of …" (deviations from uniform rotation at the mean speed, forks
     subtracted), "rate of …" and, of clutches with dry friction, "deflection of … slider …"; its parameters are the
     line's numbers by their paths, and the speed.
+
+    Meshes run with the input where it is prescribed, and with the mean speed given where the line starts free: that is
+    the speed of a periodic motion. ``leaves``: the line may leave that speed, as in a motion in time, and its meshes
+    run with the mean rotation that it has.
     """
 
     assembly: Assembly
     speed: float
+    leaves: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -222,6 +238,8 @@ class LineSystem:
         stations, compliances = self._stations.copy(), self._compliances.copy()
         stations[:, core.INERTIA] = co.inertia[case]
         stations[:, core.VISCOUS], stations[:, core.QUADRATIC] = co.viscous[case], co.quadratic[case]
+        if self.leaves and topo.free:
+            stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
@@ -245,9 +263,15 @@ class LineSystem:
             begin += behind[-1].size
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(rubbing)]
-        scratch = np.zeros(5 * len(stations) + 7 * topo.size + 3 * len(compliances))
+        scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+
+    def shares(self, inertia: Array) -> Array:
+        """Share of every unknown's deviation (n,) in that of the mean rotation of a line with ``inertia`` (station,),
+        Jρ/Σ Jρ²."""
+        felt, turning = self.assembly.topology.on_unknowns(inertia), rigid_rotation(self.assembly.topology)
+        return np.asarray(felt * turning / (felt @ turning**2))
 
     def _loads(
         self, row: Array, course: Course | None, drive: float, load: Array, inertia: Array
@@ -381,8 +405,9 @@ def harmonic_torques(assembly: Assembly) -> tuple[HarmonicTorque, ...]:
     )
 
 
-def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
-    """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from).
+def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False) -> LineSystem:
+    """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
+    leave).
 
     Raises
     ------
@@ -392,7 +417,7 @@ def line_system(line: Driveline | Assembly, speed: float) -> LineSystem:
     refuse_second_speed(assembly)
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
-    return LineSystem(assembly, float(speed))
+    return LineSystem(assembly, float(speed), leaves)
 
 
 def refuse_second_speed(assembly: Assembly) -> None:

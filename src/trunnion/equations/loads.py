@@ -34,7 +34,7 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
     """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0."""
     loads = _described(topo, column, table)
     if topo.free and (share := given_shares(topo, column, table)).any():
-        left = mean_load(topo, loads, table[:, 0]) @ np.abs(topo.mean_speeds)
+        left = load_at_input(topo, column, table)
         loads = replace(loads, constant=loads.constant + drive_torques(topo, share, left))
     return loads
 
@@ -68,6 +68,12 @@ def accelerating_loads(
     )
     constant, by_speed, by_square = (drive_torques(topo, share, torque)[0] for torque in needed)
     return loads.constant[0] + constant, by_speed, by_square
+
+
+def load_at_input(topo: Topology, column: Column, table: Array) -> Array:
+    """Torque [N m] at the input (case,) that the loads ask for at the speed in column 0, and that drives with a share
+    carry between them."""
+    return np.asarray(mean_load(topo, _described(topo, column, table), table[:, 0]) @ np.abs(topo.mean_speeds))
 
 
 def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:

@@ -64,3 +64,16 @@ class SpeedProfile:
             since = t[inside] - course.since
             out[inside] = course.angle + (course.speed + course.acceleration * since / 2) * since
         return out
+
+    def times_at(self, angles: Array, end: float) -> Array:
+        """Times [s] until ``end`` at which the input stands at ``angles`` [rad] (rising); NaN behind it."""
+        out = np.full(len(angles), np.nan)
+        for until, course in self.courses(end):
+            turned = angles - course.angle
+            length = until - course.since
+            last = (course.speed + course.acceleration * length / 2) * length
+            inside = (turned >= -1e-12) & (turned <= last * (1 + 1e-12))
+            # The root of ½at² + wt = θ that stays finite as a → 0.
+            root = np.sqrt(np.maximum(course.speed**2 + 2 * course.acceleration * turned[inside], 0.0))
+            out[inside] = np.clip(course.since + 2 * turned[inside] / (course.speed + root), course.since, until)
+        return out

@@ -30,6 +30,7 @@ from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import harmonic_torques, refuse_second_speed
 from trunnion.equations.sliders import sliders
+from trunnion.equations.steady_base import imbalance, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.laws.stages import Stages
@@ -235,6 +236,26 @@ def staged_line(line: Driveline | Assembly, speed: float | None = None) -> Stage
     refuse_second_speed(assembly)
     _refuse_inexact(assembly)
     return _Builder(assembly, Turning(assembly.line, speed)).build()
+
+
+def refuse_lost_speed(line: StagedLine) -> None:
+    """Refuse a free line whose excitation would turn with a speed that its torques do not keep.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    assembly = line.assembly
+    if line.speed is None or line.clock not in ("speed", "both"):
+        return
+    table = assembly.table(1, line.speed)
+    if imbalance(assembly, table)[0]:
+        raise InputError(
+            "starts free and its torques do not balance, so that it leaves the speed that its excitation turns with: "
+            f"{torques_in_words(assembly, table[0])}",
+            element="driveline", key="load_torque",
+            remedy="give the driving disk drive_share = 1, or use tn.simulate, which lets the line turn by itself",
+        )  # fmt: skip
 
 
 def twisting_of(topo: Topology, turns: bool) -> Array:

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.motion.simulate import LineSimulation
+from trunnion.analyses.motion.line_simulation import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation
 from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.plots.style import (
     COLOURS,
@@ -24,7 +23,7 @@ from trunnion.plots.style import (
     printed,
 )
 from trunnion.results.quantity_axes import state_axes
-from trunnion.results.speeds import show_speed
+from trunnion.results.speeds import rounded_speed, show_speed
 from trunnion.systems.system import System
 
 POINTS = 6000
@@ -102,11 +101,10 @@ def draw_line_history(
     """Torque of the shafts over time; the envelope where the cycles are too many to tell apart."""
     axes = axes or new_axes(7.2, 4.2)
     chosen = [result.shafts.index(s) for s in shafts] or range(len(result.shafts))
-    turns = float(result.profile.angle(result.end)) / (2 * np.pi)
     torque = result.torque
     for k, i in enumerate(chosen):
         look = _look(k)
-        if turns > DENSE:
+        if result.turns > DENSE:
             count = max(len(result.time) // 600, 2)
             whole = len(result.time) // count * count
             blocks = torque[:whole, i].reshape(-1, count)
@@ -119,12 +117,20 @@ def draw_line_history(
             axes.plot(result.time, torque[:, i], label=result.shafts[i], **{**look, "lw": 0.9})
     label_axes(axes, "time [s]", "torque [N·m]")
     axes.set_xlim(result.time[0], result.time[-1])
-    unit = unit or speed_unit(result.line.assembly.line)
-    low, high = result.profile.at(np.array([0.0, result.end]))
-    span = show_speed(low, unit) if low == high else f"{show_speed(low, unit)} to {show_speed(high, unit)}"
-    headed(axes, f"input at {span}")
+    headed(axes, f"input at {_input_speeds(result, unit or result.unit)}")
     _legend(axes)
     return axes
+
+
+def _input_speeds(result: LineSimulation, unit: str) -> str:
+    """The first and the last speed of the input: of a line that starts free, means of its first and last turn."""
+    if not result.starts_free:
+        low, high = result.profile.at(np.array([0.0, result.end]))
+        return show_speed(low, unit) if low == high else f"{show_speed(low, unit)} to {show_speed(high, unit)}"
+    speed = result.whole.turns[1]
+    low, high = float(speed[0]) if len(speed) else result.profile.speed[0], result.whole.last_turn()[1]
+    first, last = rounded_speed(low, unit), rounded_speed(high, unit)
+    return first if first == last else f"{first} in the first turn, {last} in the last"
 
 
 def draw_period(result: PeriodicResponse, axes: Axes | None = None, *, unit: str = "") -> Axes:

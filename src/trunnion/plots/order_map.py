@@ -6,12 +6,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
+from trunnion.analyses.motion.line_simulation import LineSimulation
 from trunnion.analyses.motion.order_map import OrderMap, order_map
-from trunnion.analyses.motion.simulate import LineSimulation
 from trunnion.plots.style import colour_bar, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
 
 DECADES = 3.0
+LEAST = 0.01
+"""Relative change of the speed over a run that makes it an axis: a line that starts free always drifts a bit."""
 
 
 def draw(
@@ -25,12 +27,13 @@ def draw(
 ) -> Axes:
     """Torque amplitude of one shaft (the first, or ``shaft``), three decades below the largest.
 
-    Over input speed where it changes, over time where it does not.
+    Over input speed where it rises or falls all along, over time where it does not.
     """
     found = result if isinstance(result, OrderMap) else order_map(result, window=window, highest=highest)
     axes, unit = axes or new_axes(7.2, 4.6), unit or found.unit
     i = found.shafts.index(shaft) if shaft else 0
-    varies = abs(found.speed[-1] - found.speed[0]) > 1e-6 * found.speed[0]
+    change = np.diff(found.speed)
+    varies = len(change) and (np.all(change > 0) or np.all(change < 0)) and np.ptp(found.speed) > LEAST * found.speed[0]
     x = found.speed * speed_factor(unit) if varies else found.time
     amplitude = found.amplitude[:, 1:, i]
     top = max(float(amplitude.max()), 1e-300)

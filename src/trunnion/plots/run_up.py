@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.motion.run_up import RunUp
+from trunnion.analyses.motion.run_up_result import RunUp
 from trunnion.plots.style import COLOURS, FAINT, headed, key_below, label_axes, new_axes
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 
@@ -33,11 +33,17 @@ def draw(result: RunUp, axes: Axes | None = None, *, shaft: str = "", unit: str 
     axes.plot(result.speed * factor, result.largest[:, i], color=COLOURS[1], lw=1.3, label="largest in each turn")
     axes.plot(
         result.peak_speed[i] * factor, result.peak_torque[i], "D", color=COLOURS[1], ms=6,
-        label=f"{result.peak_torque[i]:.4g} N·m at {show_speed(result.peak_speed[i], unit)}",
+        label=f"{result.peak_torque[i]:.4g} N·m at {rounded_speed(result.peak_speed[i], unit)}",
     )  # fmt: skip
     label_axes(axes, f"input speed [{unit}]", f"largest torque of {result.shafts[i]} [N·m]")
     axes.set_ylim(bottom=0)
-    low, high = result.simulation.profile.speed[0], result.simulation.profile.speed[-1]
-    headed(axes, f"{show_speed(low, unit)} to {show_speed(high, unit)} at {show_speed(result.acceleration, unit)}/s")
+    asked = result.schedule
+    ends = f"{show_speed(asked.first, unit)} to {show_speed(asked.last, unit)}"
+    title = f"{ends} at {show_acceleration(asked.acceleration, unit)}"
+    if result.ending is not None and result.ending.kind != "reached":
+        hung = result.ending.hung_speed
+        title += f": {result.ending.kind} at {about_speed(hung, unit)}"
+        axes.axvline(hung * factor, color=FAINT, lw=1, ls=":", label="where it hangs")
+    headed(axes, title)
     key_below(axes, 2)
     return axes

@@ -39,6 +39,32 @@ def rounded_speed(speed: float, unit: str) -> str:
     return f"{four_figures(speed * speed_factor(unit))} {unit}"
 
 
+def about_speed(speed: float, unit: str) -> str:
+    """``1230 rpm``: three figures, of a speed that fluctuates."""
+    return about_span(speed, speed, unit)
+
+
+def about_span(low: float, high: float, unit: str) -> str:
+    """``1230 to 1250 rpm``: the same of two, one of them where they read alike."""
+    ends = dict.fromkeys(f"{float(f'{one * speed_factor(unit):.3g}'):.10g}" for one in (low, high))
+    return f"{' to '.join(ends)} {unit}"
+
+
+def show_acceleration(acceleration: float, unit: str) -> str:
+    """``100 rpm/s`` or ``5 rad/s²``: four figures."""
+    return f"{four_figures(acceleration * speed_factor(unit))} {_per_second(unit)}"
+
+
+def acceleration_span(low: float, high: float, unit: str) -> str:
+    """``5 to 100 rpm/s``: four figures each, one of two that read alike."""
+    ends = dict.fromkeys(four_figures(one * speed_factor(unit)) for one in (low, high))
+    return f"{' to '.join(ends)} {_per_second(unit)}"
+
+
+def _per_second(unit: str) -> str:
+    return "rad/s²" if unit == "rad/s" else f"{unit}/s"
+
+
 def rounded_span(low: float, high: float, unit: str, between: str = "to") -> str:
     """``300 to 2400 rpm``: four figures each."""
     return f"{four_figures(low * speed_factor(unit))} {between} {rounded_speed(high, unit)}"

@@ -17,7 +17,7 @@ from trunnion.analyses.motion.simulation import positive_time
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.staged_line import StagedLine, staged_line
+from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
@@ -181,9 +181,11 @@ def exact_motion(
 
     Raises
     ------
-    InputError : a line that has no exact motion, no duration, a start of the wrong size, times outside the run.
+    InputError : a line that has no exact motion, or starts free and leaves the speed that its excitation turns with; no
+        duration, a start of the wrong size, times outside the run.
     """
     prepared = staged_line(line, speed)
+    refuse_lost_speed(prepared)
     shown = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
     if duration is None and shown is not None and shown.size:
         duration = float(shown[-1]) - start_time

@@ -163,5 +163,5 @@ def _passed(line: Driveline, linear_line: Driveline, speed: float, acceleration:
     steady = order_response(linear_line, speeds).vibratory_torque
     return Passage(
         run.shafts, low, high, run.acceleration, run.peak_vibration, run.vibration_speed,
-        np.nanmax(steady, axis=0), speeds[np.nanargmax(steady, axis=0)],
+        np.nanmax(steady, axis=0), speeds[np.nanargmax(steady, axis=0)], run.ending,
     )  # fmt: skip

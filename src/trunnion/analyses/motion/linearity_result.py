@@ -9,13 +9,14 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
+from trunnion.analyses.motion.run_up_ending import RunUpEnding
 from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.arrays import Array, Complex
 from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed
+from trunnion.results.speeds import show_acceleration, show_speed
 from trunnion.results.verdict import Verdict
 
 SMALL = 0.01
@@ -47,7 +48,8 @@ class Passage:
     """A run from speed ``low`` to ``high`` [rad/s] at ``acceleration`` [rad/s²].
 
     vibration (spring,) [N m]: largest distance of the torque from the quasi-static one, at ``vibration_speed``
-    [rad/s]; linear (spring,) [N m]: largest linear vibratory torque in that range, at ``linear_speed`` [rad/s].
+    [rad/s]; linear (spring,) [N m]: largest linear vibratory torque in that range, at ``linear_speed`` [rad/s]; ending:
+    how a line that starts free came through, None where the speed is prescribed.
     """
 
     springs: tuple[str, ...]
@@ -58,6 +60,12 @@ class Passage:
     vibration_speed: Array
     linear: Array
     linear_speed: Array
+    ending: RunUpEnding | None = None
+
+    @property
+    def kind(self) -> str:
+        """How it ended, as the outcome of ``run_up`` has it."""
+        return "reached" if self.ending is None else self.ending.kind
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,6 +176,7 @@ class LinearityCheck(Result):
             yield over("spring", "passing_vibration", self.passage.vibration, "N*m")
             yield over("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
             yield over("spring", "passing_linear", self.passage.linear, "N*m")
+            yield from remarks(passing_outcome=self.passage.kind)
         yield from remarks(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
         yield from ending(self.nonlinear.outcome)
 
@@ -301,11 +310,15 @@ def _sentence(result: LinearityCheck, at: str) -> Finding:
 
 def _passing(passage: Passage, unit: str) -> Finding:
     share = np.where(passage.linear > 0, passage.vibration / np.where(passage.linear > 0, passage.linear, 1.0), 0.0)
-    s = int(np.argmax(passage.vibration))
+    s, rate = int(np.argmax(passage.vibration)), show_acceleration(passage.acceleration, unit)
+    way = f"from {show_speed(passage.low, unit)} to {show_speed(passage.high, unit)}"
+    passed = passage.ending is None or passage.kind == "reached"
+    begin = f"Passed at {rate} {way}"
+    if passage.ending is not None and not passed:
+        begin = f"Run at {rate} {way} the line does not pass ({passage.ending.sentence(unit)}); until then"
     return Finding(
-        Gravity.NOTE,
-        f"Passed at {passage.acceleration:.4g} rad/s² from {show_speed(passage.low, unit)} to "
-        f"{show_speed(passage.high, unit)}, {passage.springs[s]} vibrates by {passage.vibration[s]:.4g} N m, at "
+        Gravity.NOTE if passed else Gravity.CAUTION,
+        f"{begin}, {passage.springs[s]} vibrates by {passage.vibration[s]:.4g} N m, at "
         f"{show_speed(float(passage.vibration_speed[s]), unit)}: {share[s]:.3g} times the {passage.linear[s]:.4g} N m "
         f"that linear theory gives where it is largest, at {show_speed(float(passage.linear_speed[s]), unit)}.",
     )

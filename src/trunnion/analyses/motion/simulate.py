@@ -2,188 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.analyses.motion.input_rotation import TURN, InputRotation
+from trunnion.analyses.motion.line_simulation import LineSimulation
 from trunnion.analyses.motion.simulation import Simulation, positive_time, rising_times, simulate_system
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import LineMotion, LineSystem, line_system
+from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
-from trunnion.equations.steady_base import require_share
+from trunnion.equations.steady_base import imbalance, require_share
 from trunnion.errors import InputError
-from trunnion.numerics.curves import Extremes, extremes_in
-from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, joined
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remark, remarks
-from trunnion.results.drawing import Axes, drawing
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 PER_TURN = 128
 MOST_SAMPLES = 200_000
-
-
-@dataclass(frozen=True, repr=False)
-class LineSimulation(Result):
-    """A motion of a line.
-
-    time (points,) [s]; rotation (points, coordinate): deviation from uniform rotation [rad], and rate [rad/s];
-    twist [rad] and torque [N m] of every shaft (points, shaft), positive with the twist; pieces: one simulation
-    per straight piece of the speed profile; outcome: how it ended.
-    """
-
-    line: LineSystem
-    profile: SpeedProfile
-    pieces: tuple[Simulation, ...]
-    time: Array
-
-    @property
-    def outcome(self) -> Outcome:
-        """How it ended."""
-        return self.pieces[-1].outcome
-
-    @cached_property
-    def _run(self) -> Simulation:
-        """All pieces as one, but for its system: that of the last."""
-        return replace(self.pieces[-1], trajectory=joined([piece.trajectory for piece in self.pieces]))
-
-    @property
-    def end(self) -> float:
-        """The last time [s]."""
-        return self.pieces[-1].end
-
-    @property
-    def final(self) -> Array:
-        """The last state (2n,)."""
-        return self.pieces[-1].final
-
-    @property
-    def shafts(self) -> tuple[str, ...]:
-        """Names of the shafts."""
-        return self.line.shafts
-
-    @property
-    def steps(self) -> int:
-        """Steps taken."""
-        return self._run.trajectory.steps
-
-    @property
-    def event_time(self) -> Array:
-        """Times of all events (events,) [s]."""
-        return self._run.trajectory.event_time
-
-    @property
-    def cuts(self) -> Array:
-        """Times (steps + 1,) [s] between which the motion is smooth."""
-        return self._run.trajectory.time_of_state
-
-    def at(self, time: ArrayLike) -> Array:
-        """States (…, 2n) at any times of the run; NaN outside it."""
-        return self._run.at(time)
-
-    def motion_at(self, time: ArrayLike) -> LineMotion:
-        """Twists, torques and rotations at times (m,) of the run."""
-        return LineMotion(*self._observed(time, LineMotion._fields))
-
-    def torque_at(self, time: ArrayLike) -> Array:
-        """Torque (m, shaft) [N m] of every shaft at times (m,) of the run."""
-        return self._observed(time, ("torque",))[0]
-
-    def _observed(self, time: ArrayLike, names: tuple[str, ...]) -> list[Array]:
-        times = np.atleast_1d(np.asarray(time, dtype=float))
-        order = np.argsort(times, kind="stable")
-        states, times = self.at(times[order]), times[order]
-        ends = np.searchsorted(times, [*(piece.time_range[0] for piece in self.pieces), np.nextafter(self.end, np.inf)])
-        parts = [
-            self.line.observe(piece.system, times[i:j], states[i:j])
-            for piece, i, j in zip(self.pieces, ends, ends[1:], strict=False)
-        ]
-        whole = []
-        for columns in ([getattr(part, name) for part in parts] for name in names):
-            found = np.full((len(times), columns[0].shape[1]), np.nan)
-            found[order[ends[0] : ends[-1]]] = np.concatenate(columns)
-            whole.append(found)
-        return whole
-
-    @cached_property
-    def _motion(self) -> LineMotion:
-        return self.motion_at(self.time)
-
-    @cached_property
-    def state(self) -> Array:
-        """States (points, 2n) at ``time``."""
-        return self.at(self.time)
-
-    @property
-    def twist(self) -> Array:
-        """Twist [rad] of every shaft, (points, shaft)."""
-        return self._motion.twist
-
-    @property
-    def torque(self) -> Array:
-        """Torque [N m] of every shaft, (points, shaft)."""
-        return self._motion.torque
-
-    @property
-    def input_speed(self) -> Array:
-        """Input speed [rad/s] at ``time``."""
-        return self.profile.at(self.time)
-
-    @property
-    def torque_peak_to_peak(self) -> Array:
-        """Largest minus smallest torque of every shaft [N m] from the first to the last of ``time``."""
-        return self.torque_extremes.span
-
-    @cached_property
-    def torque_extremes(self) -> Extremes:
-        """Lowest and highest torque of every shaft [N m] from the first to the last of ``time``, and when; found on the
-        dense output, whose error is about ten times the tolerance."""
-        return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
-
-    def declared(self) -> Iterator[Held]:
-        """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
-        n = len(self.line.names)
-        yield axis("time", self.time, "s")
-        yield axis("coordinate", self.line.names)
-        yield axis("shaft", self.shafts)
-        yield over("time coordinate", "rotation", self.state[:, :n], "rad")
-        yield over("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
-        if self.line.sliders:
-            yield axis("slider", [slider.name for slider in self.line.sliders])
-            yield over("time slider", "deflection", self.state[:, 2 * n :], "rad")
-        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
-        yield over("time", "input_speed", self.input_speed, "rad/s")
-        yield over("time", "input_angle", self.profile.angle(self.time), "rad")
-        yield remark("driveline", self.pieces[0].system.name)
-        yield from ending(self.outcome)
-        yield from remarks(tolerance=self.pieces[0].tolerance, steps=self.steps)
-
-    def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
-        """Torques over time; see ``trunnion.plots.motion``."""
-        return drawing(self, "plot")(self, axes, shafts=shafts, unit=unit)
-
-    def plot_order_map(
-        self, axes: Axes | None = None, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = ""
-    ) -> Axes:
-        """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
-        return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
-
-    def __str__(self) -> str:
-        rows = [
-            f"  {name}: torque {low:.6g} … {high:.6g} N m"
-            for name, low, high in zip(self.shafts, self.torque_extremes.low, self.torque_extremes.high, strict=True)
-        ]
-        turns = float(self.profile.angle(self.end)) / (2 * np.pi)
-        head = f"motion of {self.pieces[0].system.name} over {self.end:.6g} s ({turns:.6g} turns): {self.steps} steps"
-        return "\n".join([head, *rows, f"  {self.outcome}"])
+REACHED = "reached"
+"""Kind of the outcome of a piece that came to its end."""
+MOST_TIMES = 64
+"""As long as turns take at the speed that a free line begins with, after which it is not waited for any longer."""
 
 
 @overload
@@ -237,11 +84,12 @@ def simulate(
 
     Parameters
     ----------
-    duration : [s]; or ``turns`` of a driveline's input; or ``periods`` of a system's forcing; or up to the last of
+    duration : [s]; or ``turns`` of a driveline's input, its own where the line starts free; or ``periods`` of a
+    system's forcing; or up to the last of
         ``times``.
     speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``. A line that
         starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and what
-        accelerates its inertia along a profile; how it really turns is what the rotations tell.
+        accelerates its inertia along a profile; ``input_speed`` and ``turns`` tell how it really turns.
     start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
         default the line without twist; of a system (n,), by default its own.
     start_time : of a system [s]; the phase of its forcing.
@@ -257,7 +105,8 @@ def simulate(
 
     Raises
     ------
-    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject.
+    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
+        excitation by the speed on a line that starts free and leaves the speed it begins with.
     """
     if isinstance(system, System):
         _refuse("belongs to a driveline", "leave it out", turns=turns, speed=speed)
@@ -304,7 +153,7 @@ def simulate_line(
     profile = speed
     if not isinstance(profile, SpeedProfile):
         profile = SpeedProfile([0.0], [operating_speed(description, profile)])
-    prepared = line_system(line, profile.speed[0])
+    prepared = line_system(line, profile.speed[0], leaves=True)
     wanted = None if times is None else rising_times(times, 0.0)
     if turns is not None:
         if duration is not None:
@@ -318,25 +167,102 @@ def simulate_line(
     state = prepared.rest() if start is None else prepared.system.checked(start, "start")
     if len(profile.time) > 1:
         require_share(prepared.assembly)
+    elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:
+        for one in prepared.harmonics:
+            one.refuse_change()
+    go = _Going(tuple(events), tolerance, most_steps, dense)
+    if turns is not None and prepared.assembly.topology.free:
+        pieces = _made_turns(prepared, profile, state, turns, duration, go)
+    else:
+        pieces = _along(prepared, profile, state, duration, drive, go)
+    run = LineSimulation(prepared, profile, tuple(pieces), np.array([pieces[-1].end]))
+    if wanted is None:
+        return _sampled(run) if dense else run
+    return replace(run, time=wanted[wanted <= run.end])
+
+
+def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: float = TOLERANCE) -> LineSimulation:
+    """A run along a profile, followed for another ``duration`` [s] behind the end of the profile.
+
+    ``drive`` [N m at the input] is what a free line's drives give there beyond what balances the loads at the last
+    speed.
+    """
+    end, course = run.profile.courses(run.end + duration)[-1]
+    row = run.line.assembly.table(1, run.profile.speed[0])[0]
+    system = run.line.system.reading(run.line.numbers(row, course, drive))
+    piece = _Going((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
+    return _sampled(replace(run, pieces=(*run.pieces, piece)))
+
+
+def _sampled(run: LineSimulation) -> LineSimulation:
+    """The run at even times, so many in a turn."""
+    count = int(np.clip(PER_TURN * run.turns, 256, MOST_SAMPLES))
+    return replace(run, time=np.linspace(0.0, run.end, count + 1))
+
+
+@dataclass(frozen=True)
+class _Going:
+    """How a line is integrated."""
+
+    events: tuple[Event, ...]
+    tolerance: float
+    most_steps: int
+    dense: bool
+
+    def on(self, system: System, state: Array, since: float, until: float) -> Simulation:
+        """From one time to another [s]."""
+        return simulate_system(
+            system, until - since, start=state, start_time=since, events=self.events, tolerance=self.tolerance,
+            most_steps=self.most_steps, dense=self.dense,
+        )  # fmt: skip
+
+
+def _along(
+    prepared: LineSystem, profile: SpeedProfile, state: Array, duration: float, drive: float, go: _Going
+) -> list[Simulation]:
+    """The pieces of a run along a profile."""
     row = prepared.assembly.table(1, profile.speed[0])[0]
-    pieces: list[Simulation] = []
     known = prepared.untwisted(row[None])
+    pieces: list[Simulation] = []
     for end, course in profile.courses(duration):
         system = prepared.system
         if len(profile.time) > 1:
             system = system.reading(prepared.numbers(row, course, drive, known))
-        pieces.append(
-            simulate_system(
-                system, end - course.since, start=state, start_time=course.since, events=events,
-                tolerance=tolerance, most_steps=most_steps, dense=dense,
-            )
-        )  # fmt: skip
+        pieces.append(go.on(system, state, course.since, end))
         state = pieces[-1].final
-        if pieces[-1].end < end:
+        if pieces[-1].outcome.kind != REACHED:
             break
-    reached = pieces[-1].end
-    if wanted is None:
-        turned = float(profile.angle(reached)) / (2 * np.pi)
-        count = int(np.clip(PER_TURN * turned, 256, MOST_SAMPLES))
-        wanted = np.linspace(0.0, reached, count + 1) if dense else np.array([reached])
-    return LineSimulation(prepared, profile, tuple(pieces), wanted[wanted <= reached])
+    return pieces
+
+
+def _made_turns(
+    prepared: LineSystem, profile: SpeedProfile, state: Array, turns: float, guess: float, go: _Going
+) -> list[Simulation]:
+    """The pieces of a run of a free line until its input has made ``turns``, which takes ``guess`` [s] at the speed
+    that it begins with."""
+    system, pieces, span, until, furthest = prepared.system, list[Simulation](), guess, 0.0, 0.0
+    dense = replace(go, dense=True)
+    while True:
+        pieces.append(dense.on(system, state, until, until + span))
+        turning = LineSimulation(prepared, profile, tuple(pieces), np.zeros(0)).input
+        reached = float(turning.times_at(np.array([TURN * turns]))[0])
+        if np.isfinite(reached):
+            pieces[-1] = dense.on(system, state, until, reached)
+            break
+        if pieces[-1].outcome.kind != REACHED:
+            break
+        stuck = until > 0 and turning.furthest <= furthest
+        until, state, furthest = pieces[-1].end, pieces[-1].final, turning.furthest
+        if stuck or until >= MOST_TIMES * guess:
+            pieces[-1] = replace(pieces[-1], outcome=_too_slow(turning, turns))
+            break
+        speed = turning.last_turn()[1]
+        left = TURN * turns - turning.furthest
+        span = float(np.clip(1.1 * left / speed, guess / 8, until)) if speed > 0 else until
+    return pieces if go.dense else [piece.without_dense_output() for piece in pieces]
+
+
+def _too_slow(turning: InputRotation, turns: float) -> Outcome:
+    """A free line that does not get as far as it was asked to."""
+    made = f"the input made {turning.furthest / TURN:.3g} of the {turns:g} turns asked for in {turning.end:.4g} s"
+    return Outcome(False, "too slow", f"{made}; give a duration, or let the drive give more torque than the loads take")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -66,6 +66,10 @@ class Simulation(Result):
         inside = (times >= self.time_range[0]) & (times <= self.time_range[1])
         found = self.trajectory.at(np.where(inside, times, self.time_range[0]))
         return np.asarray(np.where(inside[..., None], found, np.nan))
+
+    def without_dense_output(self) -> Simulation:
+        """The same without what ``at`` needs."""
+        return replace(self, trajectory=replace(self.trajectory, coefficients=self.trajectory.coefficients[:0]))
 
     @property
     def time_range(self) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from trunnion.analyses.orbits.spring_contacts import SpringContact
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.staged_line import StagedLine, staged_line
+from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.piecewise_linear.piecewise import Passage, move
@@ -181,6 +181,7 @@ def refuse_found_speed(line: StagedLine) -> None:
             element="driveline", key="viscous_load",
             remedy="put a ConstantSpeed in front, or use tn.periodic_response, which finds the speed",
         )  # fmt: skip
+    refuse_lost_speed(line)
 
 
 def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
