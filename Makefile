@@ -16,7 +16,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: demo test slow studies check format clean
 
 demo: $(VENV)/.installed
-	$(BIN)/trunnion analyze examples/truck.toml
+	$(BIN)/trunnion analyze examples/pto-shaft.toml
 
 test: $(VENV)/.installed-dev
 	$(PYTEST) -m "not slow"

@@ -23,6 +23,7 @@ from trunnion.studies.result import Reproduction
 pytest_plugins = ["served"]  # the fixtures of the browser
 
 STUDIES = {
+    "test_captured_run_ups.py": "300 run-ups against a stiff integrator",
     "test_command_lines.py": "500 random command lines",
     "test_extremes_and_spectra.py": "50 gear lines against their exact motion",
     "test_features.py": "every feature crossed with every analysis, the costly ones too",

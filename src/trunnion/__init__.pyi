@@ -76,6 +76,7 @@ from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
+from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint

@@ -115,6 +115,38 @@ def test_a_load_of_no_disk_keeps_its_field() -> None:
     assert document.problems == ()
 
 
+def test_the_application_is_chosen_and_left_open_again() -> None:
+    document = Document(starter("two-shaft"))
+    (field,) = [f for g in document.groups() for f in g.fields if f.label == "application"]
+    assert (field.text, field.choices[0], "steering" in field.choices) == ("", "", True)
+    document.set_text(field.path, "steering")
+    assert document.line.operation.application == "steering"
+    document.set_text(field.path, "")
+    assert document.line == Document(starter("two-shaft")).line
+
+
+def test_a_rule_is_switched_off_with_a_reason_or_not_at_all() -> None:
+    """Until the reason is given the line stays as it was, and the field says why."""
+    document = Document(starter("two-shaft"))
+
+    def fields() -> dict[str, tuple[str, str]]:
+        return {f.label: (f.text, f.message) for g in document.groups() if g.kind == "switched off" for f in g.fields}
+
+    document.switch_off()
+    assert fields()["rule"] == ("spicer-angles", "") and "gives no reason" in fields()["reason"][1]
+    assert document.line.operation.switched_off == () and document.problems
+    place = ("operation", "switched_off", 0)
+    document.set_text((*place, "reason"), "[2] joints at a hand's speed")
+    assert [str(one) for one in document.line.operation.switched_off] == ["spicer-angles: [2] joints at a hand's speed"]
+    document.switch_off()
+    document.set_text(("operation", "switched_off", 1, "rule"), "spicer-angles")
+    document.set_text(("operation", "switched_off", 1, "reason"), "again")
+    assert any("names two reasons" in g.message for g in document.groups())
+    document.remove(("operation", "switched_off", 1))
+    document.remove(place)
+    assert document.line == Document(starter("two-shaft")).line
+
+
 def test_slider_moves_are_undone_as_one() -> None:
     document = Document(starter("two-shaft"))
     start = document.line

@@ -22,7 +22,9 @@ def line(schedules: list[tn.Schedule], cases: tuple[tn.LoadCase, ...] = ()) -> t
         tn.Shaft(stiffness=1e3, damping=1.0, name="rear"),
         tn.Disk(inertia=0.2, load_torque=30.0, name="load"),
     ]
-    operation = tn.Operation(speed_range=(40.0, 60.0), speed_unit="rad/s", load_cases=cases, schedules=schedules)
+    operation = tn.Operation(
+        speed_range=(40.0, 60.0), speed_unit="rad/s", application="road", load_cases=cases, schedules=schedules
+    )
     limits = [tn.Limit(of="rear", max_torque=200.0, vibratory_torque=60.0)]
     return tn.Driveline(parts, operation=operation, limits=limits)
 
@@ -61,7 +63,8 @@ def test_the_worst_is_what_assess_says_there() -> None:
 
 def test_torques_over_speed_are_judged_at_their_own_speeds() -> None:
     found = tn.envelope(line([PULL]), points=2)
-    assert [p.value for p in found.places[1:]] == [40.0, 60.0]  # 90 rad/s lies outside the range
+    assert [p.value for p in found.places[1:-1]] == [40.0, 60.0]  # 90 rad/s lies outside the range
+    assert found.places[-1].label == "along pull, 40 rad/s to 60 rad/s"
     k = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
     direct = tn.assess(line([]).replace("load", load_torque=80.0), (60.0, 60.0)).check("max torque of rear")
     assert found.margin[2, k] == pytest.approx(direct.margin, rel=1e-12)
@@ -77,11 +80,29 @@ def test_the_stable_limit_of_every_place() -> None:
     assert f"angle of joint: stable up to {np.degrees(found.limit.min()):.6g}°, least" in str(found)
 
 
+def test_between_the_points_of_a_schedule_over_speed_the_largest_torque_is_found() -> None:
+    """A resonance of order 2 at 27.4 rad/s lies between two points, where the joint is bent most of all."""
+    bends = tn.Schedule(name="bend", speed=[20.0, 27.0, 40.0], angles={"joint": ["2 deg", "20 deg", "2 deg"]})
+    one = line([bends])
+    found = tn.envelope(one, (20.0, 40.0), points=3)
+    k = next(i for i, c in enumerate(found.checks) if c.name == "vibratory torque of rear")
+    dense = max(
+        tn.order_response(line([]).replace("joint", angle=float(angle)), [speed]).vibratory_torque[0, 1]
+        for speed, angle in (
+            (speed, np.interp(speed, [20.0, 27.0, 40.0], np.radians([2, 20, 2]))) for speed in np.linspace(26, 30, 401)
+        )
+    )
+    assert dense * (1 - 1e-6) <= found.checks[k].value <= dense * (1 + 1e-3)
+    assert found.places[found.where[k]].along == (20.0, 40.0)
+    assert found.checks[k].margin < np.nanmin(found.margin[:-1, k]) - 0.05
+    assert "between them nothing" not in str(found)
+
+
 def test_torques_over_speed_are_judged_at_the_ends_of_the_range() -> None:
     """The schedule states points far outside the range; between them the torque rises with the speed."""
     wide = tn.Schedule(name="pull", speed=[5.0, 55.0], loads={"load": [0.0, 110.0]})
     found = tn.envelope(line([wide]), (40.0, 60.0), points=2)
-    assert [place.value for place in found.places[1:]] == [40.0, 55.0]
+    assert [place.value for place in found.places[1:-1]] == [40.0, 55.0]
     there = tn.assess(line([]).replace("load", load_torque=110.0), (55.0, 55.0)).check("max torque of rear")
     k = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
     assert found.margin[2, k] == pytest.approx(there.margin, rel=1e-9)

@@ -20,6 +20,7 @@ from trunnion.driveline import (
     Ratio,
     Schedule,
     Shaft,
+    SwitchedOff,
     Tolerance,
     dump,
     load,
@@ -47,6 +48,12 @@ def free(**engine):
             Disk(inertia=0.5, load_torque=9.0, name="pump"),
         ]
     )
+
+
+def unbalanced():
+    """A straight line that nothing holds at a speed, excited by its rotation, whose drive is stronger than its load."""
+    engine = Disk(inertia=1.0, load_torque=-30.0, excitation=[{"order": 2, "amplitude": 5.0}], name="engine")
+    return Driveline([engine, Shaft(stiffness=900.0, damping=0.5), Disk(inertia=0.5, load_torque=9.0, name="pump")])
 
 
 AXLE = Schedule(name="axle", travel=[0, 1], angles={"joint": [0, 1]})
@@ -266,6 +273,33 @@ PYTHON = [
     (
         lambda: tn.run_up(free(load_torque=-9.0), 30, 40, acceleration=5),
         "driveline.drive_share: starts free, and no disk has a share",
+        "drive_share = 1",
+    ),
+    (
+        lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
+        "points = 1: must be a whole number from 2",
+        "13, say",
+    ),
+    (
+        lambda: tn.order_map(tn.simulate(free(load_torque=0.0), 6.0, speed=20.0), window=1),
+        "order map.run: has no orders: the line turns back at t = ",
+        "start at a higher speed",
+    ),
+    (
+        lambda: tn.simulate(
+            free(load_torque=-5.0, excitation=[{"order": 2, "quadratic_amplitude": 0.01}]), 1.0, speed=30.0
+        ),
+        "engine.excitation: has an amplitude that depends on the speed, which changes here",
+        "give it an amplitude",
+    ),
+    (
+        lambda: tn.exact_motion(unbalanced(), 1.0, speed=30.0),
+        "driveline.load_torque: starts free and its torques do not balance, so that it leaves the speed",
+        "use tn.simulate",
+    ),
+    (
+        lambda: tn.sweep(unbalanced(), [30.0, 40.0]),
+        "driveline.load_torque: starts free and its torques do not balance, so that it leaves the speed",
         "drive_share = 1",
     ),
     (
@@ -657,6 +691,64 @@ PYTHON = [
         "operation.angle_range = [0, 2]: must stay below 90 deg",
         "15 deg",
     ),
+    (lambda: Operation(application="boat"), "operation.application = 'boat': is not an application", "mill, ship, in"),
+    (lambda: Operation(application=3), "operation.application = 3: is not an application", "known: road, steering"),
+    (
+        lambda: Operation(switched_off=[{"rule": "bending"}]),
+        "switched-off rule bending.reason: is missing",
+        'reason = "measured on the vehicle"',
+    ),
+    (
+        lambda: SwitchedOff(rule="bending", reason=" "),
+        "switched-off rule bending.reason = ' ': gives no reason",
+        "why the rule does not fit",
+    ),
+    (
+        lambda: SwitchedOff(rule="bending", reason=3),
+        "switched-off rule bending.reason = 3: gives no reason",
+        "sentence",
+    ),
+    (
+        lambda: SwitchedOff(rule="bending", reason="x" * 301),
+        "switched-off rule bending.reason = 'xxx",
+        "is not one line of text; write one line of at most 300 characters",
+    ),
+    (
+        lambda: SwitchedOff(rule="bending", reason="two\nlines"),
+        "switched-off rule bending.reason = 'two\\nlines': is not one line of text",
+        "300 characters",
+    ),
+    (
+        lambda: SwitchedOff(rule="bendig", reason="x"),
+        "switched-off rule bendig.rule = 'bendig': is not a rule of assess",
+        'did you mean "bending"?',
+    ),
+    (lambda: SwitchedOff(reason="x"), "switched-off rule.rule: is missing", 'rule = "bending"'),
+    (
+        lambda: SwitchedOff(rule="stability", reason="x"),
+        "switched-off rule stability.rule = 'stability': cannot be switched off",
+        "change the line or its speed_range",
+    ),
+    (
+        lambda: SwitchedOff(rule="own-limits", reason="x"),
+        "switched-off rule own-limits.rule = 'own-limits': cannot be switched off",
+        "change or remove the [[limit]]",
+    ),
+    (
+        lambda: Operation(switched_off=[{"rule": "m68", "reason": "a"}, {"rule": "m68", "reason": "b"}]),
+        "operation.switched_off = 'm68': names two reasons",
+        "keep one of them",
+    ),
+    (
+        lambda: Operation(switched_off="bending"),
+        "operation.switched_off = 'bending': is not a list of switched-off rules",
+        'write switched_off = [{ rule = "bending", reason = "measured on the vehicle" }]',
+    ),
+    (
+        lambda: Operation(switched_off=["bending"]),
+        "operation.switched-off rule 1 = 'bending': is not a switched-off rule",
+        "write switched_off = [",
+    ),
     (lambda: LoadCase(loads={}), "load case.name: is missing", "full load"),
     (lambda: LoadCase(name="x"), "load case x.loads: is missing", "250 N*m"),
     (
@@ -918,6 +1010,26 @@ FILES = [
         HEAD + '[[operation.load_case]]\nname = "a"\nloads = { "Disk 2" = 1 }\n' + DISK,
         "bad.toml: load case a.Disk 2 = 1: is not a Disk of this driveline",
         'did you mean "Disk 1"?',
+    ),
+    (
+        HEAD + '[operation]\napplication = "boat"\n' + DISK,
+        "bad.toml: operation.application = 'boat': is not an",
+        "road",
+    ),
+    (
+        HEAD + '[[operation.switched_off]]\nrule = "bending"\n' + DISK,
+        "bad.toml: switched-off rule bending.reason: is missing",
+        'reason = "measured on the vehicle"',
+    ),
+    (
+        HEAD + '[[operation.switched_off]]\nrule = "stability"\nreason = "it is fine"\n' + DISK,
+        "bad.toml: switched-off rule stability.rule = 'stability': cannot be switched off",
+        "breaks the line",
+    ),
+    (
+        HEAD + '[operation.switched_off]\nrule = "bending"\nreason = "x"\n' + DISK,
+        "bad.toml: operation.switched_off: is a single table",
+        "double brackets",
     ),
     (
         HEAD + "[operation.schedule]\n" + DISK,

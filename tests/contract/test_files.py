@@ -35,6 +35,7 @@ from trunnion.driveline import (
 )
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.record import is_name
+from trunnion.driveline.rules import APPLICATIONS
 from trunnion.errors import ComputationError, InputRemark
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
@@ -111,6 +112,8 @@ def drivelines(draw):
             speed_range=draw(st.none() | st.just((low, low + 50.0))),
             angle_range=draw(st.none() | st.just((0.0, math.radians(15)))),
             speed_unit=draw(st.sampled_from(["rpm", "Hz", "rad/s"])),
+            application=draw(st.none() | st.sampled_from(sorted(APPLICATIONS))),
+            switched_off=draw(st.just(()) | st.just([{"rule": "m68", "reason": 'a [[table]] "within"'}])),
             load_cases=cases if draw(st.booleans()) else (),
             schedules=schedules if draw(st.booleans()) else (),
         )
@@ -231,6 +234,9 @@ def test_schema_covers_every_element_with_units():
             assert unit == (quantity.unit if quantity else None)
     assert schema["$defs"]["HookeJoint"]["required"] == ["type", "angle"]
     assert "load_case" in schema["$defs"]["Operation"]["properties"]
+    assert schema["$defs"]["Operation"]["properties"]["application"]["enum"] == list(APPLICATIONS)
+    assert "stability" not in schema["$defs"]["SwitchedOff"]["properties"]["rule"]["enum"]
+    assert schema["$defs"]["SwitchedOff"]["required"] == ["rule", "reason"]
 
 
 @pytest.fixture(scope="module")

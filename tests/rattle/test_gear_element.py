@@ -254,7 +254,10 @@ def test_transmission_error_excites_the_reduced_equation() -> None:
     r1, r2 = mesh().radii
     e, rate = 3e-6 * np.cos(0.5) + 1e-6, -3e-6 * 1800 * np.sin(0.5)
     times = np.linspace(0, 0.03, 40)
-    start = [(3e-5 + e) / r1, 0.0, rate / r1, 0.0]
+    # The mesh runs with the mean rotation, that of the whole line as a rigid body: here it turns by itself as asked.
+    turning, inertia = prepared.assembly.topology.mean_speeds[[0, -1]], np.array([2e-3, 5e-3])
+    apart = np.array([1.0, 0.0]) - turning * (inertia * turning)[0] / (inertia @ turning**2)
+    start = np.concatenate([apart * (3e-5 + e) / r1, apart * rate / r1])
     run = simulate_system(prepared.system, 0.03, start=start, tolerance=1e-12)
     u = -r2 * prepared.observe(prepared.system, times, run.at(times)).twist[:, 0]
     exact = piecewise.states(o.regimes, o.coefficients, o.frequency, [3e-5, 0.0], times)[:, 0]

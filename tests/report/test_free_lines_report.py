@@ -115,11 +115,11 @@ def test_lines_that_damp_all_frequencies_alike_have_a_first_page(ends: tuple[tn.
 
 
 def test_modes_that_need_the_same_check_are_said_together() -> None:
-    """One caution for all modes that limits would judge, however many they are."""
+    """One caution for all modes that orders meet, however many they are."""
     line = tn.load(LINES / "4x4-free.toml")
     cautions = [f.sentence for f in answer(line).findings if f.sentence.startswith("Separation of mode")]
-    assert len(cautions) == 1 and cautions[0].startswith("Separation of modes 6, 7 and 8 is not judged: order 2 meets")
-    assert cautions[0].count("state limits for") == 1
+    assert len(cautions) == 1 and cautions[0].startswith("Separation of modes 6, 7 and 8 is below 10 %: order 2 meets")
+    assert cautions[0].count("a resonance needs limits of torque or stress: state them for") == 1
 
 
 def test_lines_without_a_linear_response_are_reported_without_its_findings() -> None:

@@ -239,7 +239,7 @@ def test_reasons_without_a_margin_keep_their_commas() -> None:
     line = tn.loads(starter("two-shaft"))
     rows = {row[1]: row for row in checks(tn.assess(line)).rows}
     assert rows["torque without limit"][4] == "Shaft 1, Shaft 2: no limit of torque or stress is stated"
-    assert rows["uniformity"][2] == "exceeded by 1540 %".replace(" ", TIED)
+    assert rows["uniformity"][2] == "1540 % beyond".replace(" ", TIED)
     assert rows["uniformity"][4].endswith("as one joint of 12°")
 
 

@@ -16,11 +16,12 @@ from typing import Any
 
 import tomli_w
 
-from trunnion.app.form import LOAD_CASE, LOADS, Group, Path, disks_of, form
+from trunnion.app.form import LOAD_CASE, LOADS, SWITCHED_OFF, Group, Path, disks_of, form
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.quantities import Kind, eye_unit, parse
+from trunnion.driveline.rules import RULES
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
@@ -29,7 +30,7 @@ ROUNDING = 1e-15
 """What a number may lose when it is written short."""
 LARGEST_FILE = 1_000_000
 """Characters of a file that is taken from the browser."""
-_WORDS = ("name", "description", "after", "of", "speed_unit")
+_WORDS = ("name", "description", "after", "of", "speed_unit", "application", "rule", "reason")
 
 
 class Document:
@@ -100,8 +101,16 @@ class Document:
             disks = disks_of(data.get("element", []))
             cases.append({"name": name, LOADS: {disks[-1]: "100 N*m"} if disks else {}})
 
+    def switch_off(self) -> None:
+        """Switch off a rule that is not off yet; until its reason is given the line stays as it was."""
+        with self._changing() as data:
+            off = data.setdefault("operation", {}).setdefault(SWITCHED_OFF, [])
+            taken = {one.get("rule") for one in off if isinstance(one, dict)}
+            rule = next((name for name, one in RULES.items() if one.guideline and name not in taken), "")
+            off.append({"rule": rule, "reason": ""})
+
     def remove(self, path: Path) -> None:
-        """Take an element, a limit or a load case away."""
+        """Take an element, a limit, a load case or a rule switched off away."""
         *outer, section, place = path
         with self._changing() as data:
             owner: Any = data

@@ -40,7 +40,7 @@ export function render({ model }) {
     const set = () => say({ do: "set", path: f.path, text: input.value })
     if (f.choices.length) {
       input = element("select", { id, "aria-label": about, onchange: set })
-      for (const c of f.choices) input.append(element("option", { value: c }, c))
+      for (const c of f.choices) input.append(element("option", { value: c }, c || "not stated"))
     } else {
       const size = Math.min(48, Math.max(9, f.text.length + 1, f.hint.length))
       input = element("input", { id, type: "text", size, placeholder: f.hint, "aria-label": about,
@@ -69,7 +69,7 @@ export function render({ model }) {
   }
 
   function tools(group) {
-    if (!["element", "limit"].includes(group.path[0]) && group.kind !== "load case") return ""
+    if (!["element", "limit"].includes(group.path[0]) && !["load case", "switched off"].includes(group.kind)) return ""
     const button = (text, about, data, off = false) => element("button",
       { type: "button", title: about, "aria-label": about, disabled: off, onclick: () => say(data) }, text)
     const name = group.title
@@ -105,7 +105,8 @@ export function render({ model }) {
       element("button", { type: "button", onclick: () =>
         say({ do: "add", kind: kind.value, place: +place.value - 1 }) }, "Add element"),
       element("button", { type: "button", onclick: () => say({ do: "limit" }) }, "Add limit"),
-      element("button", { type: "button", onclick: () => say({ do: "load_case" }) }, "Add load case")))
+      element("button", { type: "button", onclick: () => say({ do: "load_case" }) }, "Add load case"),
+      element("button", { type: "button", onclick: () => say({ do: "switch_off" }) }, "Switch a rule off")))
   }
 
   function fill() {

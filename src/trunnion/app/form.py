@@ -11,6 +11,7 @@ from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
+from trunnion.driveline.rules import APPLICATIONS, RULES, SwitchedOff
 from trunnion.errors import InputError
 
 Path = tuple[str | int, ...]
@@ -18,6 +19,7 @@ _PLACE = re.compile(r"\(element ([0-9]+)\)$|^element ([0-9]+)$")
 _WHOLE = {"name": None, "description": None, "damping_ratio": RATIO, "damping_ratio_frequency": SPEED}
 _EXAMPLE_SPEEDS = {"rpm": "1500 rpm", "Hz": "25 Hz", "rad/s": "157 rad/s"}
 LOAD_CASE, LOADS, LOAD_KIND = "load_case", "loads", "load case"
+SWITCHED_OFF, OFF_KIND = "switched_off", "switched off"
 _HIDDEN = ("type", "after", "name")
 
 
@@ -77,6 +79,7 @@ def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Group
     elements, operation = data.get("element", []), data.get("operation", {})
     names, disks = names_of(elements), disks_of(elements)
     groups = [_whole(data, left), _operation(operation, left)]
+    groups += [_switched_off(i, one, left) for i, one in enumerate(operation.get(SWITCHED_OFF, []))]
     groups += [_load_case(i, case, disks, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
     groups += [_element(i, table, names[i], left) for i, table in enumerate(elements)]
     groups += [_limit(i, table, left) for i, table in enumerate(data.get("limit", []))]
@@ -111,7 +114,24 @@ def _operation(table: Mapping[str, Any], left: _Complaints) -> Group:
             fields.append(Field((*path, key, i), name, text_of(ends[i], kind), hint, said[i]))
     said_unit = left.said(owners, "speed_unit")
     fields.append(Field((*path, "speed_unit"), "unit of speeds", unit, "", said_unit, tuple(_EXAMPLE_SPEEDS)))
+    application, known = str(table.get("application", "")), ("", *APPLICATIONS)
+    said_application = left.said(owners, "application")
+    fields.append(Field((*path, "application"), "application", application, "", said_application, known))
     return Group(path, "operation", "", tuple(fields), (), left.rest(owners))
+
+
+def _switched_off(place: int, table: Any, left: _Complaints) -> Group:
+    path: Path = ("operation", SWITCHED_OFF, place)
+    table = table if isinstance(table, dict) else {}
+    rule = str(table.get("rule", ""))
+    owners = (f"{SwitchedOff.what} {rule}", f"{SwitchedOff.what} {place + 1}")
+    known = tuple(name for name, one in RULES.items() if not one.kept)
+    reason, said = str(table.get("reason", "")), left.said(owners, "reason")
+    fields = (
+        Field((*path, "rule"), "rule", rule, "", left.said(owners, "rule"), known),
+        Field((*path, "reason"), "reason", reason, "why it does not fit", said),
+    )
+    return Group(path, f"{OFF_KIND}: {rule}", OFF_KIND, fields, (), left.rest(owners))
 
 
 def _load_case(place: int, table: Any, disks: Sequence[str], left: _Complaints) -> Group:

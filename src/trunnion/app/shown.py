@@ -48,6 +48,8 @@ def assessment(result: Any) -> Plain:
         "course": _course(bind.course) if bind and bind.course else {},
         "rows": result.table(),
         "rules": [_rule(c) for c in result.checks],
+        "rests_on": result.rests_on,
+        "switched_off": [str(one) for one in result.switched_off],
         "margin": [c.margin for c in result.checks],
         "findings": [str(f) for f in result.findings],
     }
@@ -70,8 +72,8 @@ def _course(course: Any) -> Plain:
 
 
 def _rule(check: Any) -> str:
-    """Formula, source and inputs of a check, those that it has."""
-    parts = [check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]
+    """Name, formula, source and inputs of a check, those that it has."""
+    parts = [check.rule.name, check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]
     return "; ".join(part for part in parts if part)
 
 
@@ -312,7 +314,7 @@ def waves(result: Any) -> Plain:
 
 
 def run_up(result: Any) -> Plain:
-    """Largest torque turn by turn, and in the steady motion."""
+    """Largest torque turn by turn, and in the steady motion; how the run ended."""
     steady = result.steady
     return {
         "speed": result.speed,
@@ -320,6 +322,7 @@ def run_up(result: Any) -> Plain:
         "largest": list(result.largest.T),
         "steady_speed": steady.speed if steady else np.zeros(0),
         "steady": list(steady.largest.T) if steady else [np.zeros(0)] * len(result.shafts),
+        "ending": result.outcome.kind,
         "text": str(result),
     }
 

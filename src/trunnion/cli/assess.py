@@ -112,7 +112,13 @@ def print_assessment(result: Assessment) -> None:
         output.say(f"  {row['check']}: {row['because']}")
     output.heading("Rules")
     for rule, inputs in dict.fromkeys((c.rule, c.inputs) for c in result.checks if c.margin == c.margin):
-        output.say(f"  {rule.formula}: {rule.source} ({rule.certainty})" + (f"; {inputs}" if inputs else ""))
+        said = f"  {rule.name}: {rule.formula}: {rule.source} ({rule.certainty})"
+        output.say(said + (f"; {inputs}" if inputs else ""))
+    output.say(f"  {result.rests_on}", wrap=True)
+    if result.switched_off:
+        output.heading("Switched off")
+        for one in result.switched_off:
+            output.say(f"  {one}")
     if result.findings:
         output.findings(result.findings)
 
@@ -159,18 +165,24 @@ def assessment_json(result: Assessment) -> dict[str, Any]:
         "speed_unit": result.unit,
         "speed_range": [result.low * factor, result.high * factor],
         "barred": [[a * factor, b * factor] for a, b in result.barred],
+        "application": result.application,
+        "switched_off": [{"rule": one.rule, "reason": one.reason} for one in result.switched_off],
         "checks": [
             {
                 "name": c.name,
                 "status": str(c.status),
+                "rule": c.rule.name,
+                "decides": c.decides,
                 "margin": c.margin,
                 "required_margin": c.required_margin,
                 "value": c.value,
+                "error": c.error,
                 "limit": c.limit,
                 "unit": c.unit,
                 "speed": c.speed * factor,
                 "because": c.because,
                 "barred": [[a * factor, b * factor] for a, b in c.barred],
+                "covered": [[a * factor, b * factor] for a, b in c.covered],
                 "formula": c.rule.formula,
                 "source": c.rule.source,
                 "certainty": c.rule.certainty,

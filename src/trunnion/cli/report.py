@@ -39,6 +39,8 @@ def print_answer(given: Answer) -> None:
     output.heading(f"Checks from {low} to {high}")
     rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
     output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
+    for one in judged.switched_off:
+        output.say(f"  switched off: {one}")
     output.findings(given.findings)
     output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 

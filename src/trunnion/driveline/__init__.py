@@ -14,6 +14,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import deg, hz, rpm
+from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -41,6 +42,7 @@ __all__ = [
     "Schedule",
     "Shaft",
     "StiffnessVariation",
+    "SwitchedOff",
     "Tolerance",
     "TransmissionError",
     "Clutch",

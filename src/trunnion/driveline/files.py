@@ -38,6 +38,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import SPEED, Kind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
+from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
@@ -279,10 +280,13 @@ def _operation(table: Any) -> Operation:
     data = dict(table)
     wrong: list[InputError] = []
     made: dict[str, Any] = {}
-    kinds: dict[str, type[Record]] = {"load_case": LoadCase, "schedule": Schedule}
-    for key, kind in kinds.items():
-        many = f"{key}s"
-        if many in data:  # the name in Python; a file repeats [[operation.load_case]]
+    kinds: dict[str, tuple[type[Record], str]] = {
+        "load_case": (LoadCase, "load_cases"),
+        "schedule": (Schedule, "schedules"),
+        "switched_off": (SwitchedOff, "switched_off"),
+    }
+    for key, (kind, many) in kinds.items():
+        if many != key and many in data:  # the name in Python; a file repeats [[operation.load_case]]
             raise InputError("unknown key", element="operation", key=many, remedy=f'did you mean "{key}"?')
         try:
             made[many] = _each(data.pop(key, []), key, kind, "operation")
@@ -354,8 +358,9 @@ def _written(value: Any, kind: Kind | None, speed_unit: str | None = None) -> An
 
 def _operation_blocks(operation: Operation) -> list[str]:
     unit = operation.speed_unit
-    table = _table(operation, "load_cases", "schedules", speed_unit=unit)
+    table = _table(operation, "load_cases", "schedules", "switched_off", speed_unit=unit)
     blocks = [_block("[operation]", table)]
+    blocks += [_block("[[operation.switched_off]]", _table(one)) for one in operation.switched_off]
     for case in operation.load_cases:
         blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
         blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))

@@ -22,6 +22,7 @@ from trunnion.driveline.quantities import (
 )
 from trunnion.driveline.record import Name, Named, Record, by_name, one_of
 from trunnion.driveline.refusals import nearest
+from trunnion.driveline.rules import APPLICATIONS, Application, SwitchedOffRules
 from trunnion.driveline.schedules import Schedule
 from trunnion.errors import InputError
 
@@ -83,6 +84,9 @@ class Operation(Record):
     speed_range : lowest and highest input speed [rad/s].
     angle_range : smallest and largest joint angle of interest [rad].
     speed_unit : unit that speeds are printed in: "rpm", "Hz" or "rad/s".
+    application : what the line is, "road", "steering", "pto", "mill", "ship" or "industrial": says which guidelines
+        of ``assess`` decide; without it they are shown only.
+    switched_off : rules that are not to judge this line, each with its reason.
     load_cases : named sets of load torques.
     schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
     """
@@ -96,6 +100,14 @@ class Operation(Record):
         Literal["rpm", "Hz", "rad/s"],
         BeforeValidator(one_of(SPEED_UNITS, "is not a speed unit", 'write "rpm"', near=True)),
     ] = Field(default="rpm", description="unit that speeds are printed in")
+    application: Application | None = Field(
+        default=None,
+        json_schema_extra={"enum": list(APPLICATIONS)},
+        description="what the line is, which says which guidelines decide; without it they are shown only",
+    )
+    switched_off: SwitchedOffRules = Field(
+        default=(), description="rules that are not to judge this line, each with its reason"
+    )
     load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = Field(default=(), description="angles over travel and torques over speed")
 
@@ -114,14 +126,15 @@ class Operation(Record):
         if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
             remedy = 'write ["0 deg", "15 deg"], say'
             wrong.append(InputError("must stay below 90 deg", key="angle_range", remedy=remedy))
-        for key, what, named in (
-            ("load_case", "load cases", self.load_cases),
-            ("schedule", "schedules", self.schedules),
+        for key, what, names, remedy in (
+            ("load_case", "load cases", [one.name for one in self.load_cases], "rename one of them"),
+            ("schedule", "schedules", [one.name for one in self.schedules], "rename one of them"),
+            ("switched_off", "reasons", [one.rule for one in self.switched_off], "keep one of them"),
         ):
-            for name, count in Counter(one.name for one in named).items():
+            for name, count in Counter(names).items():
                 if count > 1:
                     problem = f"names two {what}" if count == 2 else f"names {count} {what}"
-                    wrong.append(InputError(problem, key=key, value=name, remedy="rename one of them"))
+                    wrong.append(InputError(problem, element=self.what, key=key, value=name, remedy=remedy))
         if wrong:
             raise InputError.together(wrong)
         return self

@@ -15,6 +15,7 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, Kind, json_schema_of
+from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
@@ -118,6 +119,7 @@ def json_schema() -> dict[str, Any]:
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),
+            "SwitchedOff": _model(SwitchedOff),
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),

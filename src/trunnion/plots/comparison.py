@@ -9,6 +9,7 @@ from trunnion.analyses.comparison.result import Comparison, Difference
 from trunnion.errors import InputError
 from trunnion.plots.style import ACCENT, INK, VERMILION, key_below, new_axes, rows_of_names
 
+MARGIN = "margin of "
 SHOWN = 12
 """Rows at most."""
 WORST, BEST = -100.0, 100.0
@@ -19,7 +20,7 @@ def draw(found: Comparison, axes: Axes | None = None, *, most: int = SHOWN) -> A
     """Margins of checks that differ, before as rings and after as dots; relative changes where nothing was judged."""
     margins = [one for one in found.of_kind("margin") if one.matters]
     if margins:
-        margins.sort(key=lambda one: np.nanmin([one.before, one.after]))
+        margins.sort(key=lambda one: (_shown(found, one), np.nanmin([one.before, one.after])))
         return _margins(found, margins[:most], axes)
     moved = [one for one in found.differences if one.matters and np.isfinite(one.relative)]
     if not moved:
@@ -41,7 +42,15 @@ def _margins(found: Comparison, rows: list[Difference], axes: Axes | None) -> Ax
     axes.axvline(0.0, color=INK, lw=1.0)
     far = max(abs(100 * end) for one in rows for end in (one.before, one.after)) > BEST
     words = "margin [%]" + ", beyond ±100 at the edge" * far
-    return _finished(axes, [one.name.removeprefix("margin of ") for one in rows], words)
+    names = [one.name.removeprefix(MARGIN) + " (guideline, shown)" * _shown(found, one) for one in rows]
+    return _finished(axes, names, words)
+
+
+def _shown(found: Comparison, margin: Difference) -> bool:
+    """Whether a margin is that of a guideline that decides neither before nor after."""
+    name = margin.name.removeprefix(MARGIN)
+    every = [check for judged in found.assessments if judged for check in judged.checks if check.name == name]
+    return not any(check.decides for check in every)
 
 
 def _changes(found: Comparison, rows: list[Difference], axes: Axes | None) -> Axes:

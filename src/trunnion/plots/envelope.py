@@ -27,7 +27,7 @@ def draw(found: Envelope, axes: Axes | None = None, *, schedule: str = "") -> Ax
         raise InputError("is not judged", key="schedule", value=schedule, remedy=f"choose {named[0]}, say")
     bound = found.places[found.where[0]].schedule if found.where else ""
     chosen = schedule or bound or named[0]
-    here = [k for k, p in enumerate(found.places) if p.schedule == chosen]
+    here = [k for k, p in enumerate(found.places) if p.schedule == chosen and p.along is None]
     over = found.places[here[0]].over
     factor, label = (
         (speed_factor(found.unit), f"input speed [{found.unit}]") if over == "speed" else (1e3, "travel [mm]")

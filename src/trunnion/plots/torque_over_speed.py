@@ -29,10 +29,11 @@ def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "", operati
     x = sweep.speed * speed_factor(unit)
     for i, shaft in enumerate(sweep.shafts):
         axes.plot(x, sweep.torque_amplitude[:, i], label=shaft, lw=1.5, **curve_style(i))
-    largest = float(np.nanmax(sweep.torque_amplitude))
+    known = sweep.torque_amplitude[np.isfinite(sweep.torque_amplitude)]
+    largest = float(known.max(initial=0.0))
     if largest > 0:
         logarithmic(axes, "y")
-        least = max(float(np.nanmin(sweep.torque_amplitude)), largest / 10**DECADES)
+        least = max(float(known.min()), largest / 10**DECADES)
         axes.set_ylim(least / 1.5, 2.0 * largest)
     if not np.all(sweep.linear):
         hatched(axes, x, ~sweep.linear, f"a joint's input swings by more than {LINEAR_RANGE:g} rad: indication only")

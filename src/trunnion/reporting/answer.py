@@ -5,15 +5,19 @@ Nothing here is drawn, and nothing compiled that the answer does not need: chart
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trunnion.analyses.assessment.assess import by_case, checks_of, judgement, subject_of
-from trunnion.analyses.assessment.check import Check, Status, worst
-from trunnion.analyses.assessment.result import Assessment
+from trunnion.analyses.assessment.check import Check, worst
+from trunnion.analyses.assessment.deciding import weighed
+from trunnion.analyses.assessment.result import STATE_APPLICATION, Assessment
+from trunnion.analyses.assessment.separation import LIMITED
 from trunnion.analyses.assessment.separation import NEEDS as MODES_NEED
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject, lossy
+from trunnion.analyses.assessment.separation import ONE as ONE_MODE
+from trunnion.analyses.assessment.subject import NO_RESPONSE, QUICK, Case, Subject, lossy
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong
 from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies, natural_frequencies
@@ -40,7 +44,6 @@ from trunnion.results.finding import Finding, Gravity, by_gravity
 
 NEARLY = 0.1
 """Spare margin below which a check deserves a word though it is satisfied."""
-POINTS_BEYOND = 21
 
 
 @dataclass(frozen=True)
@@ -128,38 +131,42 @@ def _along(case: Case) -> StabilityAlong | None:
 
 
 def check_findings(assessment: Assessment) -> list[Finding]:
-    """What is exceeded, what nearly is, and what could not be judged, by margin; a reason that several share once."""
+    """What is exceeded, what nearly is, what could not be judged, by margin, a reason that several share once; then
+    what the line is beyond though no verdict rests on it."""
     found = []
     unjudged: dict[tuple[Gravity, str], list[str]] = {}
     for check in assessment.checks:
-        if check.status is Status.EXCEEDED:
-            gravity = Gravity.CAUTION if check.guideline else Gravity.DANGER
-            found.append(Finding(gravity, f"{capital(check.name)} is exceeded: {check.because}."))
-        elif check.status is Status.SATISFIED and check.spare < NEARLY:
+        if check.exceeded:
+            found.append(Finding(Gravity.DANGER, f"{capital(check.name)} is exceeded: {check.because}."))
+        elif check.satisfied and check.spare < NEARLY:
             found.append(Finding(Gravity.CAUTION, f"{capital(check.name)} is nearly reached: {check.because}."))
-        elif check.status is Status.NOT_JUDGED:
+        elif check.missing:
             gravity = Gravity.CAUTION if np.isfinite(check.margin) else Gravity.NOTE
             unjudged.setdefault((gravity, check.because.removeprefix(NO_RESPONSE)), []).append(check.name)
-    needs: dict[str, list[tuple[Gravity, str, list[str]]]] = {}
     for (gravity, because), names in unjudged.items():
-        said, _, need = because.partition(MODES_NEED)
-        if need:
-            needs.setdefault(need, []).append((gravity, said, names))
-            continue
-        found.append(
-            Finding(gravity, f"{capital(few(names))} {'is' if len(names) == 1 else 'are'} not judged: {because}.")
-        )
-    return [*found, *(_modes(need, group) for need, group in needs.items())]
+        are = "is" if len(names) == 1 else "are"
+        found.append(Finding(gravity, f"{capital(few(names))} {are} not judged: {because}."))
+    return [*found, *shown_findings(assessment)]
 
 
-def _modes(need: str, group: list[tuple[Gravity, str, list[str]]]) -> Finding:
-    """Modes that need the same checks, in one sentence."""
-    names = [name for _, _, names in group for name in names]
-    numbers = [name.removeprefix("separation of mode ") for name in names]
-    listed = f"separation of {'mode' if len(names) == 1 else 'modes'} {_and(numbers)}"
-    said = "; ".join(said for _, said, _ in group)
-    that = "that needs" if len(names) == 1 else "these need"
-    return Finding(group[0][0], f"{capital(listed)} is not judged: {said}; {that} {need}.")
+def shown_findings(assessment: Assessment) -> Iterator[Finding]:
+    """Modes that orders meet, in one sentence, and guidelines that the line is beyond, where neither decides."""
+    modes = [check for check in assessment.shown_beyond if check.name.startswith(ONE_MODE)]
+    others = [check for check in assessment.shown_beyond if check not in modes]
+    if modes:
+        numbers = [check.name.removeprefix(ONE_MODE) for check in modes]
+        listed = f"separation of {'mode' if len(modes) == 1 else 'modes'} {_and(numbers)}"
+        said = [check.because.partition(MODES_NEED) for check in modes]
+        need = said[0][2]
+        gravity = Gravity.NOTE if need == LIMITED else Gravity.CAUTION
+        met = "; ".join(one[0] for one in said)
+        yield Finding(gravity, f"{capital(listed)} is below 10 %: {met}{MODES_NEED}{need}.")
+    if others:
+        listed = "; ".join(f"{check.name} ({check.because})" for check in others)
+        if assessment.application:
+            yield Finding(Gravity.NOTE, f"Beyond guidelines that do not decide here: {listed}.")
+        else:
+            yield Finding(Gravity.CAUTION, f"Beyond guidelines that are shown only: {listed}; {STATE_APPLICATION}.")
 
 
 def _and(words: list[str]) -> str:
@@ -172,19 +179,22 @@ def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:
     low, high = subject.low, subject.high
     if not low < high:
         return []
-    inside = {check.name for check in assessment.checks if check.status is Status.EXCEEDED}
+    inside = {check.name for check in assessment.checks if check.exceeded}
     found = []
     for ends, side in (((1 - BEYOND) * low, low), "below"), ((high, (1 + BEYOND) * high), "above"):
-        if not 0 < ends[0] < ends[1] or ends[1] <= lowest_speed(subject.cases[0].assembly):
+        if not 0 < ends[0] < ends[1]:
             continue
-        cases = [replace(case, low=ends[0], high=ends[1], points=POINTS_BEYOND) for case in subject.cases]
+        cases = [replace(case, low=ends[0], high=ends[1], effort=QUICK) for case in subject.cases]
         there = replace(subject, low=ends[0], high=ends[1], cases=tuple(cases))
         checks = worst(
             check for k, case in enumerate(cases) for check in by_case(there, case, growth=not (k and case.costly))
         )
-        found += [_beyond(c, side) for c in checks if c.status is Status.EXCEEDED and c.name not in inside]
+        counting = weighed(checks, subject.line.operation)
+        found += [_beyond(c, side) for c in counting if c.exceeded and c.name not in inside]
         untold = [case.answer for known, case in zip(subject.cases, cases, strict=True) if known.response]
-        for why in dict.fromkeys(answer for answer in untold if isinstance(answer, str)):
+        reasons = [answer for answer in untold if isinstance(answer, str)]
+        reasons += [f"{there.ranges([(g.low, g.high)])}, {g.why}" for case in cases for g in case.span.gaps]
+        for why in dict.fromkeys(reasons):
             found.append(Finding(Gravity.NOTE, f"{_just(side)} no torque is judged: {why}."))
     return found
 

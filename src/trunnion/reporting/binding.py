@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check
-from trunnion.analyses.assessment.own_limits import spring_of
+from trunnion.analyses.assessment.measures import spring_of
 from trunnion.analyses.assessment.parametric import NAME as PARAMETRIC
 from trunnion.analyses.assessment.subject import Case
 from trunnion.analyses.orders.result import OrderResponse

@@ -8,7 +8,6 @@ from typing import TypeVar
 
 import numpy as np
 
-from trunnion.analyses.assessment.check import Status
 from trunnion.analyses.assessment.remedies.remedies import remedies_of
 from trunnion.analyses.assessment.remedies.result import Remedies
 from trunnion.analyses.charts.axes import lowest_speed
@@ -16,7 +15,7 @@ from trunnion.analyses.kinetostatics import kinetostatics
 from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.analyses.limits.result import LimitKind, StableLimit
 from trunnion.analyses.limits.stable_limit import limit_of_chart
-from trunnion.analyses.linear.bending import BendingSpeed, bending_findings, bending_speeds
+from trunnion.analyses.linear.bending import BendingSpeed, bending_speeds
 from trunnion.analyses.linear.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
@@ -29,8 +28,6 @@ from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import rounded_speed
 
 Found = TypeVar("Found")
-IRREGULAR = 0.0027
-"""Irregularity of the output that propeller-shaft practice allows: one joint of 3°."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +68,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
     more = [
-        *bending_findings(bending, high, seen.unit),
         *(_torque_findings(sweep, seen) if sweep else []),
-        *(_irregularity_findings(turn) if turn else []),
         *load_findings(loaded, seen.unit),
         *(Finding(Gravity.CAUTION, f"{sentence.rstrip('.')}.") for sentence in without),
     ]
@@ -104,7 +99,7 @@ def with_chart(contents: Contents, seen: Overview) -> Contents:
 def _helped(seen: Overview) -> Remedies | None:
     """What would help, where a check is exceeded or nearly reached."""
     checks = seen.assessment.checks
-    if not any(c.status is Status.EXCEEDED or (c.status is Status.SATISFIED and c.spare < NEARLY) for c in checks):
+    if not any(c.exceeded or (c.satisfied and c.spare < NEARLY) for c in checks):
         return None
     try:
         return remedies_of(seen.subject, checks)
@@ -166,14 +161,4 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> Iterator[Finding]:
             Gravity.CAUTION,
             f"Over {100 * share:.2g} % of the speed range twists are so large that torques and verdicts there are "
             "an indication only.",
-        )
-
-
-def _irregularity_findings(turn: Kinetostatics) -> Iterator[Finding]:
-    if turn.irregularity > IRREGULAR:
-        angle = np.rad2deg(turn.equivalent_angle)
-        yield Finding(
-            Gravity.CAUTION,
-            f"The output runs unevenly by {100 * turn.irregularity:.3g} % of its speed, as behind one joint of "
-            f"{angle:.3g}°; practice for propeller shafts allows {100 * IRREGULAR:.2g} % (3°).",
         )

@@ -108,6 +108,8 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         "verdict": seen.assessment.sentence,
         "status": str(seen.assessment.verdict).replace(" ", "-"),
         "checks": tables.checks(seen.assessment),
+        "rests_on": seen.assessment.rests_on,
+        "switched_off": seen.assessment.switched_off,
         "not_applicable": tables.not_applicable(seen.assessment),
         "helped": contents.helped.sentences if contents.helped else (),
         "verified": contents.helped.verified if contents.helped else "",

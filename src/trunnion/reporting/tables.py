@@ -171,14 +171,16 @@ def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table
 
 
 def checks(judged: Assessment) -> Table:
-    """Every check that applies, the binding one first; reasons with ample margin are left to ``assess``."""
+    """Every check that applies, the binding one first, what decides before what is shown only; reasons with ample
+    margin are left to ``assess``."""
     rows: list[tuple[str, ...]] = []
     for row, check in zip(judged.table(), judged.checks, strict=True):
         if check.status is Status.NOT_APPLICABLE:
             continue
         margin = str(row["margin"]).replace(" ", TIED)
-        shown = percent(check.margin)
-        because = check.because.replace(f", {shown}", "") if shown else check.because
+        because = check.because
+        for words in (percent(check.margin), percent(check.margin, binding=False)):
+            because = because.replace(f", {words}", "") if words else because
         if check.status is Status.NOT_JUDGED:
             because = because.split(";")[0]  # the findings say what to do
         elif check.status is Status.SATISFIED and len(rows) >= REASONS:
@@ -188,8 +190,10 @@ def checks(judged: Assessment) -> Table:
 
 
 def not_applicable(judged: Assessment) -> tuple[str, ...]:
-    """What was not judged because it does not apply, with the reason."""
-    return tuple(f"{c.name}: {c.because}" for c in judged.checks if c.status is Status.NOT_APPLICABLE)
+    """What was not judged because it does not apply, with the reason; what is switched off stands by itself."""
+    off = {one.rule for one in judged.switched_off}
+    aside = [c for c in judged.checks if c.status is Status.NOT_APPLICABLE and c.rule.name not in off]
+    return tuple(f"{c.name}: {c.because}" for c in aside)
 
 
 def resonances(contents: Contents, unit: str) -> Table:

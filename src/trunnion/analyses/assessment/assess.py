@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from trunnion.analyses.assessment.bending import bending
 from trunnion.analyses.assessment.check import Check, in_order, worst
+from trunnion.analyses.assessment.compared import uncovered
 from trunnion.analyses.assessment.couplings import coupling_ratings
+from trunnion.analyses.assessment.deciding import weighed
 from trunnion.analyses.assessment.gear_hammer import gear_hammer
 from trunnion.analyses.assessment.joint_angles import joint_angles, uniformity
 from trunnion.analyses.assessment.own_limits import own_limits
@@ -15,11 +17,12 @@ from trunnion.analyses.assessment.parametric import parametric_stability
 from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.ship_shafts import ship_shafts
-from trunnion.analyses.assessment.subject import POINTS, Case, Subject, cases_of
+from trunnion.analyses.assessment.subject import WHOLE, Case, Effort, Subject, cases_of
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.driveline.arguments import numbers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
+from trunnion.driveline.operation import Operation
 from trunnion.errors import InputError
 from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
@@ -35,6 +38,8 @@ def assess(
     unit: str | None = None,
 ) -> Assessment:
     """Every limit of the description and every rule that applies, over the running range.
+
+    Limits, ratings and physical checks always decide; guidelines where the ``application`` of the description says so.
 
     Parameters
     ----------
@@ -65,24 +70,34 @@ def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
     """What follows from the checks of a line."""
     verdict, barred = verdict_of(checks, subject.speed)
     findings = _findings(subject.cases, subject.unit)
-    return Assessment(verdict, checks, barred, subject.low, subject.high, subject.speed, subject.unit, findings)
+    return Assessment(
+        verdict, checks, barred, subject.low, subject.high, subject.speed, subject.unit, findings,
+        subject.line.operation or Operation(),
+    )  # fmt: skip
 
 
 def subject_of(
-    line: Driveline, speeds: tuple[float, float] | None, load_case: str | None, unit: str | None, points: int = POINTS
+    line: Driveline,
+    speeds: tuple[float, float] | None,
+    load_case: str | None,
+    unit: str | None,
+    effort: Effort = WHOLE,
 ) -> Subject:
-    """What is judged: see ``assess``; ``points`` speeds besides those about the peaks."""
+    """What is judged: see ``assess``; ``effort``: how closely."""
     if load_case is not None:
         line = line.with_load(load_case)
     low, high, speed = _range(line, speeds)
-    every = cases_of(line, low, high, points)
+    every = cases_of(line, low, high, effort)
     return Subject(line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every)
 
 
-def checks_of(subject: Subject) -> tuple[Check, ...]:
-    """All checks in order, of each the load case that binds."""
+def checks_of(subject: Subject, *, geometry: bool = True) -> tuple[Check, ...]:
+    """All checks in order, of each the load case that binds; ``geometry``: those that no load case changes, too."""
     prepare(subject.cases)
-    return in_order([*worst(check for case in subject.cases for check in by_case(subject, case)), *of_line(subject)])
+    found = list(worst(check for case in subject.cases for check in by_case(subject, case)))
+    if geometry:
+        found += of_line(subject)
+    return in_order(weighed(found, subject.line.operation))
 
 
 def prepare(cases: tuple[Case, ...]) -> None:
@@ -112,7 +127,7 @@ def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Ch
 def of_response(subject: Subject, case: Case) -> Iterator[Check]:
     """The checks that look at the linear response by order."""
     for rule in OF_RESPONSE:
-        yield from rule(subject, case)
+        yield from (uncovered(subject, case, check) for check in rule(subject, case))
 
 
 def of_line(subject: Subject) -> Iterator[Check]:

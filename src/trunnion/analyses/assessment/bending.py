@@ -13,7 +13,9 @@ from trunnion.analyses.assessment.subject import Subject
 from trunnion.analyses.linear.bending import SAFE_SHARE, bending_speeds
 from trunnion.equations.coefficients import Assembly
 
-RULE = Rule("Ω ≤ 0.75 (π/L)² √(EI/(ρA))", "practice of propeller shafts; supports taken as joints", "typical")
+RULE = Rule(
+    "Ω ≤ 0.75 (π/L)² √(EI/(ρA))", "practice of propeller shafts; supports taken as joints", "typical", "bending"
+)
 
 
 def bending(subject: Subject, assembly: Assembly) -> Iterator[Check]:

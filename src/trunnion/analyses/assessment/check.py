@@ -12,6 +12,7 @@ from math import inf, isfinite, isnan, nan
 
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.assessment.course import Course
+from trunnion.driveline.rules import RULES
 
 
 class Status(Enum):
@@ -26,13 +27,26 @@ class Status(Enum):
         return self.value
 
 
+ROUNDING = 1e-12
+"""Margin that adding up a handful of numbers may lose."""
+SHOWN = {
+    Status.EXCEEDED: "beyond guideline",
+    Status.SATISFIED: "within guideline",
+    Status.NOT_JUDGED: "guideline not judged",
+    Status.NOT_APPLICABLE: str(Status.NOT_APPLICABLE),
+}
+"""How the status of a check that does not decide is printed."""
+
+
 @dataclass(frozen=True)
 class Rule:
-    """What a check stands on: formula, source, and how certain the rule is ("derived", "known", "typical", "yours")."""
+    """What a check stands on: formula, source, how certain the rule is ("derived", "known", "typical", "yours"), and
+    the name by which a file knows it (of ``driveline.rules.RULES``)."""
 
     formula: str
     source: str
     certainty: str
+    name: str
 
 
 @dataclass(frozen=True)
@@ -41,8 +55,10 @@ class Check:
 
     margin and required_margin [1], NaN where nothing is judged; value and limit in ``unit`` (SI); speed: of the input
     where it binds [rad/s]; because: one sentence; inputs: the numbers that went in; load_case: "" for the line as
-    stated; barred: speed ranges [rad/s] to pass quickly; guideline: a rule of practice, not a limit or rating; cause:
-    the order that leads there and the mode that it is nearest to; course: value and limit at all speeds judged.
+    stated; barred: speed ranges [rad/s] to pass quickly; decides: whether the verdict rests on it, see
+    ``deciding.weighed``; cause: the order that leads there and the mode that it is nearest to; course: value and limit
+    at all speeds judged; error: what the largest value may be low by, in ``unit``, NaN where nothing was searched;
+    covered: the speed ranges [rad/s] that it was judged over.
     """
 
     name: str
@@ -58,15 +74,47 @@ class Check:
     inputs: str = ""
     load_case: str = ""
     barred: tuple[tuple[float, float], ...] = ()
-    guideline: bool = False
+    decides: bool = True
     element: str = ""
     cause: Cause | None = None
     course: Course | None = field(default=None, repr=False, compare=False)
+    error: float = nan
+    covered: tuple[tuple[float, float], ...] = ()
 
     @property
     def judged(self) -> bool:
         """Whether it was: satisfied or exceeded."""
         return self.status in (Status.SATISFIED, Status.EXCEEDED)
+
+    @property
+    def guideline(self) -> bool:
+        """Whether it stands on a rule of practice, not on a limit, a rating or a physical check."""
+        return RULES[self.rule.name].guideline
+
+    @property
+    def exceeded(self) -> bool:
+        """Whether it is, and the verdict rests on it."""
+        return self.decides and self.status is Status.EXCEEDED
+
+    @property
+    def satisfied(self) -> bool:
+        """Whether it is, and the verdict rests on it."""
+        return self.decides and self.status is Status.SATISFIED
+
+    @property
+    def missing(self) -> bool:
+        """Whether the verdict rests on it, and it could not be judged."""
+        return self.decides and self.status is Status.NOT_JUDGED
+
+    @property
+    def word(self) -> str:
+        """The status in print: of a guideline that does not decide other words, so that it does not read as one."""
+        return str(self.status) if self.decides else SHOWN[self.status]
+
+    @property
+    def margin_word(self) -> str:
+        """The margin in print, "" where nothing is judged."""
+        return percent(self.margin, binding=self.decides) if self.judged else ""
 
     @property
     def spare(self) -> float:
@@ -85,28 +133,33 @@ def above(value: float, limit: float) -> float:
 
 
 def judged(margin: float, required: float = 0.0) -> Status:
-    """Satisfied where the margin is the required one at least."""
-    return Status.SATISFIED if margin >= required else Status.EXCEEDED
+    """Satisfied where the margin is the required one at least, or short of it by rounding."""
+    return Status.SATISFIED if margin >= required - ROUNDING else Status.EXCEEDED
 
 
-def percent(margin: float) -> str:
-    """ "12 % free", "exceeded by 50 %"; of what must be reached, "5.5 times the least"."""
+def percent(margin: float, *, binding: bool = True) -> str:
+    """ "12 % free", "exceeded by 50 %", of what need not bind "50 % beyond"; of what must be reached, "5.5 times the
+    least"."""
     if not isfinite(margin):
-        return "exceeded without bound" if margin < 0 else ""
+        return ("exceeded" if binding else "beyond") + " without bound" if margin < 0 else ""
     if margin > 1:
         return f"{1 + margin:.3g} times the least"
+    if abs(margin) < ROUNDING:
+        return "0 % free"
     share = f"{float(f'{abs(100 * margin):.3g}'):.10g} %"
-    return f"{share} free" if margin >= 0 else f"exceeded by {share}"
+    return f"{share} free" if margin >= 0 else f"exceeded by {share}" if binding else f"{share} beyond"
 
 
 def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """What is exceeded first, then what is satisfied, each by spare margin, limits and ratings before guidelines."""
+    """What decides first, then what is shown only, each: what is exceeded, then what is satisfied, by spare margin,
+    limits and ratings before guidelines."""
     return tuple(sorted(checks, key=_place))
 
 
-def _place(check: Check) -> tuple[int, bool, float]:
+def _place(check: Check) -> tuple[bool, bool, int, bool, float]:
     rank = [Status.EXCEEDED, Status.SATISFIED, Status.NOT_JUDGED, Status.NOT_APPLICABLE].index(check.status)
-    return rank, check.status is Status.EXCEEDED and check.guideline, _known(check.spare)
+    aside = check.status is Status.NOT_APPLICABLE
+    return aside, not check.decides, rank, check.status is Status.EXCEEDED and check.guideline, _known(check.spare)
 
 
 def _known(number: float) -> float:

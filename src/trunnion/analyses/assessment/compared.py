@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import nan
 
 import numpy as np
@@ -9,8 +10,14 @@ import numpy as np
 from trunnion.analyses.assessment.cause import Cause
 from trunnion.analyses.assessment.check import Check, Rule, Status, below, judged, percent
 from trunnion.analyses.assessment.course import Course
-from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Subject
-from trunnion.arrays import Array
+from trunnion.analyses.assessment.subject import NO_RESPONSE, Case, Found, Subject
+from trunnion.driveline.quantities import Kind, against, shown
+from trunnion.results.counts import counted
+
+WORTH_SAYING = 1e-3
+"""Share of a value from which its error is said in the sentence."""
+MOST_GAPS = 4
+SEPARATION = "separation of"
 
 
 def unanswered(case: Case, name: str, rule: Rule) -> Check:
@@ -18,22 +25,16 @@ def unanswered(case: Case, name: str, rule: Rule) -> Check:
     return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
 
 
-def worst_of(values: Array) -> tuple[int, float]:
-    """Place and size of the largest over speeds (speed,); infinite where there is no steady state."""
-    at = int(np.argmax(np.where(np.isfinite(values), values, np.inf)))
-    return at, float(values[at]) if np.isfinite(values[at]) else np.inf
-
-
-def at_worst(
+def at_largest(
     subject: Subject,
     case: Case,
     name: str,
     rule: Rule,
-    at: int,
-    compared: tuple[float, float, str],
-    numbers: str,
+    found: Found,
+    kind: Kind,
     *,
     required: float = 0.0,
+    words: str = "",
     inputs: str = "",
     where: str = "",
     more: str = "",
@@ -42,22 +43,53 @@ def at_worst(
     cause: Cause | None = None,
     course: Course | None = None,
 ) -> Check:
-    """The check of a value that must not exceed its limit, at number ``at`` of the speeds of ``case``.
+    """The check of a value that must not exceed its limit, where it comes nearest to it.
 
     Parameters
     ----------
-    compared : value, limit and their unit.
-    numbers : both in words.
+    kind : of value and limit.
+    words : both, where the plain numbers do not do.
+    inputs : what went in besides the speeds.
     where, more : what the sentence says of the speed, and what it ends with.
     """
-    value, limit, unit = compared
-    speed, margin = float(case.speeds[at]), below(value, limit)
+    value, limit, speed = found.value, found.limit, float(case.speeds[found.at])
+    margin = below(value, limit)
+    if not words and np.isfinite(value):
+        words = against(value, limit, kind)
+    elif not np.isfinite(value):
+        words = f"no steady state (undamped resonance) against {shown(limit, kind, digits=4)}"
+    unsure = f" (may be {100 * found.error / value:.2g} % more)" if found.error > WORTH_SAYING * value else ""
     led = f", {cause}" if cause else ""
-    because = f"{numbers} at {subject.shown(speed)}{where}, {percent(margin)}{led}{case.suffix}{more}"
+    because = f"{words}{unsure} at {subject.shown(speed)}{where}, {percent(margin)}{led}{case.suffix}{more}"
+    status = judged(margin, required)
+    if status is Status.SATISFIED and judged(below(value + found.error, limit), required) is Status.EXCEEDED:
+        status, because = Status.NOT_JUDGED, f"{because}; the search did not settle closely enough to tell"
     return Check(
-        name, judged(margin, required), rule, because, margin, required, value, limit, unit, speed, inputs, case.name,
-        barred, element=element, cause=cause, course=course,
+        name, status, rule, because, margin, required, value, limit, kind.unit, speed,
+        "; ".join(one for one in (inputs, looked_at(subject, case)) if one), case.name, barred, element=element,
+        cause=cause, course=course, error=found.error, covered=((case.low, case.high),),
     )  # fmt: skip
+
+
+def looked_at(subject: Subject, case: Case) -> str:
+    """ "searched from 300 rpm to 2400 rpm at 131 speeds"."""
+    if case.low == case.high:
+        return ""
+    count = counted(len(case.speeds), "speed")
+    return f"searched from {subject.shown(case.low)} to {subject.shown(case.high)} at {count}"
+
+
+def uncovered(subject: Subject, case: Case, check: Check) -> Check:
+    """A check of the response that holds wherever it could be judged: not judged where there are speeds at which it
+    could not."""
+    gaps = case.gaps
+    if not gaps or not check.judged or check.name.startswith(SEPARATION):
+        return check
+    said = "; ".join(f"{subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in gaps[:MOST_GAPS])
+    more = f"; and {len(gaps) - MOST_GAPS} more ranges" if len(gaps) > MOST_GAPS else ""
+    status = Status.NOT_JUDGED if check.status is Status.SATISFIED else check.status
+    covered = tuple((piece.low, piece.high) for piece in case.stable_pieces)
+    return replace(check, status=status, because=f"{check.because}; {said}{more}", covered=covered)
 
 
 def guideline(
@@ -74,6 +106,6 @@ def guideline(
     value, limit, unit = compared
     margin = below(value, limit)
     return Check(
-        name, judged(margin), rule, f"{numbers}, {percent(margin)}", margin, 0.0, value, limit, unit, speed, inputs,
-        guideline=True, element=element,
+        name, judged(margin), rule, f"{numbers}, {percent(margin, binding=False)}", margin, 0.0, value, limit, unit,
+        speed, inputs, element=element,
     )  # fmt: skip

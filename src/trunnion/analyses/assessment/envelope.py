@@ -8,17 +8,20 @@ from math import nan
 
 import numpy as np
 
-from trunnion.analyses.assessment.assess import assess
+from trunnion.analyses.assessment.assess import assess, checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Check, Status, in_order, worst
 from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.limits.stable_limit import HIGHEST, stable_limit
+from trunnion.analyses.range_search.span import Span
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
-from trunnion.driveline.schedules import Schedule
-from trunnion.equations.coefficients import assemble
+from trunnion.driveline.schedules import FOLLOWING, KEYS, Schedule
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import moves_by_itself
+from trunnion.results.counts import few
 from trunnion.results.declared import Held, Result, axis, members_over, over, remark, remarks_of
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -33,13 +36,14 @@ LIMIT_SPEEDS = 60
 @dataclass(frozen=True)
 class Place:
     """One point of a schedule ("" for the line as stated), over "travel" [m] or "speed" [rad/s]; what it is called, and
-    the line there."""
+    the line there. ``along``: all of a schedule over speed, searched from end to end [rad/s], value NaN."""
 
     schedule: str
     over: str
     value: float
     label: str
     line: Driveline
+    along: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -72,8 +76,11 @@ class Envelope(Result):
     def sentence(self) -> str:
         """The verdict in one sentence, and where the worst stands."""
         bind = next(iter(self.checks), None)
-        if bind is None or bind.status not in (Status.EXCEEDED, Status.SATISFIED):
+        if bind is None or not (bind.exceeded or bind.satisfied):
             return f"{self.verdict}: nothing could be judged"
+        if self.verdict is Status.NOT_JUDGED:
+            missing = few([check.name for check in self.checks if check.missing])
+            return f"{self.verdict} over {len(self.places)} places: {missing} could not be judged"
         place = self.places[self.where[0]].label
         return f"{self.verdict} over {len(self.places)} places: {bind.name} binds {place}: {bind.because}"
 
@@ -101,7 +108,7 @@ class Envelope(Result):
         for check, k in zip(self.checks, self.where, strict=True):
             judged = check.judged
             where = f" {self.places[k].label}" if judged and len(self.places) > 1 else ""
-            rows.append(f"  {check.status}: {check.name}{where}: {check.because}")
+            rows.append(f"  {check.word}: {check.name}{where}: {check.because}")
         if self.parameter and np.isfinite(self.limit).any():
             k = int(np.nanargmin(self.limit))
             shown = quantity_axis(self.parameter, self.parameter_unit, self.unit)
@@ -125,8 +132,8 @@ def envelope(
     Parameters
     ----------
     line : with ``operation.schedules`` and load cases; with neither it is ``assess``.
-    speeds : lowest and highest input speed [rad/s]; default the description's. A schedule over speed is judged at
-        single speeds within, the ends included.
+    speeds : lowest and highest input speed [rad/s]; default the description's. A schedule over speed is searched
+        over all of it that lies within, its numbers following the speed, and shown at single speeds, ends included.
     points : of each schedule at least, evenly from end to end, beside the points that it states.
     parameter, low, high : also asks for the largest stable value of a parameter (as of ``stable_limit``) at every place
         and under every load case, over the range of speeds.
@@ -144,10 +151,11 @@ def envelope(
     places = [Place("", "", nan, "as stated", stated)]
     for schedule in line.operation.schedules if line.operation else ():
         places += _places(line, schedule, points, (first.low, first.high), shown)
+        places += _whole(line, schedule, (first.low, first.high), shown)
     judged, limits = [first], []
     for k, place in enumerate(places):
         if k:
-            judged.append(assess(place.line, _span(place, first), unit=unit))
+            judged.append(_judged(line, place, first, unit))
         limits.append(_limit(place, parameter, (low, high), _span(place, first)))
         tell((k + 1) / len(places))
     return _together(line, places, judged, limits, parameter, shown)
@@ -170,8 +178,50 @@ def _places(line: Driveline, schedule: Schedule, points: int, span: tuple[float,
         yield Place(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
 
 
+def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], unit: str) -> Iterator[Place]:
+    """All of a schedule over speed; not of a bent line that starts free, which is solved speed by speed."""
+    low, high = max(schedule.points[0], span[0]), min(schedule.points[-1], span[1])
+    if schedule.over != "speed" or not low < high:
+        return
+    # The line at the point where its joints are bent most: what is bent anywhere counts as bent.
+    bend = [sum(abs(angles[k]) for angles in schedule.angles.values()) for k in range(len(schedule.points))]
+    changed = _stripped(line, line.operation, schedule.changes_at(schedule.points[int(np.argmax(bend))]))
+    if not moves_by_itself(assemble(changed)):
+        ends = f"{show_speed(low, unit)} to {show_speed(high, unit)}"
+        yield Place(schedule.name, "speed", nan, f"along {schedule.name}, {ends}", changed, (low, high))
+
+
+def _judged(line: Driveline, place: Place, first: Assessment, unit: str | None) -> Assessment:
+    """What is judged at a place, or along a schedule."""
+    if place.along is None:
+        return assess(place.line, _span(place, first), unit=unit)
+    assert line.operation is not None
+    schedule = next(one for one in line.operation.schedules if one.name == place.schedule)
+    subject = subject_of(place.line, place.along, None, unit)
+    cases = tuple(replace(case, follows=_following(case.assembly, schedule)) for case in subject.cases)
+    subject = replace(subject, cases=cases)
+    return judgement(subject, checks_of(subject, geometry=False))
+
+
+def _following(assembly: Assembly, schedule: Schedule) -> Span:
+    """The line whose numbers follow a schedule over speed."""
+    columns = [
+        (assembly.packed.resolve(f"{name}.{KEYS[key]}"), np.array(numbers))
+        for key in FOLLOWING
+        for name, numbers in getattr(schedule, key).items()
+    ]
+
+    def put(table: Array) -> None:
+        for column, numbers in columns:
+            column.put(table, np.interp(table[:, 0], schedule.points, numbers))
+
+    return Span(assembly, schedule.points[0], schedule.points[-1], put, schedule.points)
+
+
 def _span(place: Place, first: Assessment) -> tuple[float, float]:
     """The speeds that a place is judged at: its own where the schedule goes over speed."""
+    if place.along is not None:
+        return place.along
     return (place.value, place.value) if place.over == "speed" else (first.low, first.high)
 
 
@@ -219,9 +269,12 @@ def _together(
         for finding in one.findings
         if not place.schedule or finding not in judged[0].findings
     ]
-    if len(places) > 1:
-        count = f"{len(places) - 1} points" if len(places) > 2 else "one point"
-        said = f"schedules are judged at {count}; between them nothing is looked at"
+    searched = {place.schedule for place in places if place.along}
+    single = [place for place in places if place.schedule and place.schedule not in searched]
+    if single:
+        count = f"{len(single)} points" if len(single) > 1 else "one point"
+        named = ", ".join(dict.fromkeys(place.schedule for place in single))
+        said = f"{named}: judged at {count}; between them nothing is looked at"
         findings.append(Finding(Gravity.NOTE, said))
     findings += [Finding(Gravity.NOTE, said) for said in _not_reached(line, judged[0])]
     unknown = [place.label for place, value in zip(places, limits, strict=True) if parameter and np.isnan(value)]

@@ -12,14 +12,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
-from trunnion.analyses.assessment.compared import at_worst, unanswered
+from trunnion.analyses.assessment.compared import at_largest, unanswered
 from trunnion.analyses.assessment.course import SWING, course
-from trunnion.analyses.assessment.own_limits import bands, spring_of
+from trunnion.analyses.assessment.measures import of_hammer
+from trunnion.analyses.assessment.own_limits import bands
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import TORQUE
 
-RULE = Rule("half of peak-to-peak ≤ |mean torque|", "loss of contact", "known")
+RULE = Rule("half of peak-to-peak ≤ |mean torque|", "loss of contact", "known", "gear-hammer")
 NOTHING = 1e-3
 """Share of its vibratory torque below which a mesh carries no mean torque: what losses and rounding leave."""
 
@@ -34,21 +35,21 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
         if isinstance(case.answer, str):
             yield unanswered(case, title, RULE)
             continue
-        c = spring_of(case.assembly, name)
-        swing, mean = case.answer.vibratory_torque[:, c], np.abs(case.answer.mean_torque[:, c])
-        swing = np.where(np.isfinite(swing), swing, np.inf)
-        if np.all(mean <= NOTHING * swing):
+        measure = of_hammer(case.assembly, name)
+        found = case.largest(measure)
+        swing = np.where(np.isfinite(found.values), found.values, np.inf)
+        if np.all(found.limits <= NOTHING * swing):
             yield _idle(subject, case, title)
             continue
-        with np.errstate(divide="ignore", invalid="ignore"):
-            at = int(np.argmax(np.where(mean > 0, swing / mean, np.inf)))
-        required = subject.required(name)
-        numbers = f"±{swing[at]:.4g} N*m about a mean of {mean[at]:.4g} N*m"
-        by_order = np.abs(case.answer.torque[:, :, c])
-        yield at_worst(
-            subject, case, title, RULE, at, (float(swing[at]), float(mean[at]), "N*m"), numbers, required=required,
-            element=name, barred=bands(case.speeds, swing, mean * (1 - required)), cause=cause(case, at, by_order[at]),
-            course=course(case.answer, f"torque of {name}", TORQUE, SWING, swing, {"mean torque": mean}, by_order),
+        words = f"±{swing[found.at]:.4g} N*m about a mean of {found.limit:.4g} N*m"
+        by_order = np.abs(measure.parts(case.answer))
+        barred = bands(case.speeds, swing, found.limits * (1 - measure.margin))
+        yield at_largest(
+            subject, case, title, RULE, found, TORQUE, required=measure.margin, words=words, element=name,
+            barred=barred, cause=cause(case, found.at, by_order[found.at]),
+            course=course(
+                case.answer, f"torque of {name}", TORQUE, SWING, swing, {"mean torque": found.limits}, by_order
+            ),
         )  # fmt: skip
 
 

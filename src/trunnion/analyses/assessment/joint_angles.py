@@ -1,13 +1,17 @@
 """Angles of propeller-shaft joints and how evenly the line turns, after the makers' rules of practice.
 
     every working angle at least 0.5°                           so that needle bearings turn
-    up to 3° without concern; at most 3.2° at 5000, 3.7° at 4500, 4.2° at 4000, 5.0° at 3500 rpm
+    at most 3.2° at 5000, 3.7° at 4500, 4.2° at 4000, 5.0° at 3500 rpm
+    at most 5°50′ at 3000, 7° at 2500, 8°40′ at 2000, 11°30′ at 1500, 1000 and 500 rpm; 3° beyond 5000 rpm
     two joints: both angles equal within 1°
     angular acceleration behind the last joint ≤ 300 rad/s², of a shaft between joints ≤ 1000 rad/s²
     U = (largest − smallest output speed)/mean ≤ 0.0027     (Elbe), the irregularity of one joint of 2.98°, sin β tan β
 
-The angles are those of Spicer's operating-angle calculator; below 3500 rpm the acceleration judges instead. The two
-accelerations are usual acceptance values. All are taken at the highest speed of the range.
+The angles from 3500 rpm up are those of Spicer's operating-angle calculator, which allows 3° at any speed; those up to
+3000 rpm are "Spicer universal joint operating angles" as Parker Chelsea prints them for auxiliary shafts (bulletin
+HY25-1890-M1/US, page 5). From 1500 to 3500 rpm all of them hold one acceleration, β²ω² = 1000 rad/s² within 3 %.
+Between rows they are taken on straight lines; below 500 rpm, where the table begins, a larger angle than 11°30′ is not
+judged. The two accelerations are usual acceptance values. All are taken at the highest speed of the range.
 """
 
 from __future__ import annotations
@@ -24,25 +28,29 @@ from trunnion.analyses.kinetostatics.limits import EVEN_RUNNING
 from trunnion.analyses.kinetostatics.measures import ROUNDING, largest
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.quantities import DEGREE, RPM
+from trunnion.driveline.rules import RULES, SPICER
 from trunnion.equations.coefficients import Assembly
 
-SPICER = "Spicer's operating-angle calculator"
 SMALLEST, EASY, APART = 0.5 * DEGREE, 3.0 * DEGREE, 1.0 * DEGREE
-TABLE_SPEED, TABLE_ANGLE = np.array([3500.0, 4000.0, 4500.0, 5000.0]) * RPM, np.array([5.0, 4.2, 3.7, 3.2]) * DEGREE
+TABLE_SPEED = np.array([500.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0, 5000.0]) * RPM
+TABLE_ANGLE = np.array([11.5, 11.5, 11.5, 8 + 2 / 3, 7.0, 5 + 5 / 6, 5.0, 4.2, 3.7, 3.2]) * DEGREE
 TORSIONAL, INERTIAL = 300.0, 1000.0
 """Usual acceptance [rad/s²]."""
-LEAST = Rule("β ≥ 0.5°", SPICER, "typical")
-MOST = Rule("β ≤ 5.0° at 3500, 4.2° at 4000, 3.7° at 4500, 3.2° at 5000 rpm; 3° always", SPICER, "typical")
-EQUAL = Rule("|β₁ − β₂| ≤ 1°", SPICER, "typical")
-SHAKES = Rule("acceleration behind the last joint ≤ 300 rad/s²", "usual acceptance", "typical")
-EVEN = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical")
-TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", "usual acceptance", "typical")
+LEAST = Rule("β ≥ 0.5°", SPICER, "typical", "spicer-angles")
+MOST = Rule(
+    "β ≤ 11.5° up to 1500, 8.67° at 2000, 7° at 2500, 5.83° at 3000, 5° at 3500, 4.2° at 4000, 3.7° at 4500, 3.2° at "
+    "5000 rpm, 3° beyond",
+    RULES["spicer-angles"].source, "typical", "spicer-angles",
+)  # fmt: skip
+EQUAL = Rule("|β₁ − β₂| ≤ 1°", SPICER, "typical", "equal-angles")
+ACCELERATIONS = ("usual acceptance", "typical", "acceptance-accelerations")
+SHAKES = Rule("acceleration behind the last joint ≤ 300 rad/s²", *ACCELERATIONS)
+TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", *ACCELERATIONS)
+EVEN = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical", "elbe-uniformity")
 
 
-def allowed_angle(speed: float) -> float | None:
-    """Largest angle [rad] at a joint's own speed [rad/s]; None below 3500 rpm, where acceleration judges."""
-    if speed < TABLE_SPEED[0]:
-        return None
+def allowed_angle(speed: float) -> float:
+    """Largest angle [rad] at a joint's own speed [rad/s]; below the table that of its first row."""
     return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
 
 
@@ -72,14 +80,13 @@ def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Ch
     said = f"{angle / DEGREE:.4g} deg"
     margin = above(angle, SMALLEST)
     yield Check(f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin, 0.0, angle,
-                SMALLEST, "rad", guideline=True, element=name)  # fmt: skip
+                SMALLEST, "rad", element=name)  # fmt: skip
     limit = allowed_angle(speed)
     title, at = f"angle of {name}", f"at {subject.shown(speed)} of its shaft"
-    if limit is None and angle > EASY:
-        because = f"{said} {at}: below {subject.shown(float(TABLE_SPEED[0]))} the acceleration judges"
+    if angle > limit and speed < TABLE_SPEED[0]:
+        because = f"{said} {at}: the table begins at {subject.shown(float(TABLE_SPEED[0]))}"
         yield Check(title, Status.NOT_APPLICABLE, MOST, because)
         return
-    limit = EASY if limit is None else limit
     numbers = f"{said} against {limit / DEGREE:.3g} deg {at}"
     yield guideline(title, MOST, (angle, limit, "rad"), numbers, speed=subject.high, element=name)
 

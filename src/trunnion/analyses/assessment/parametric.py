@@ -3,9 +3,9 @@
     growth rate σ(Ω) = ln|largest multiplier| / period < 0     at every speed
 
 The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
-slowest disturbance: 100 % where they take nothing, 0 on the border of stability. 201 speeds at least, closer about the
-peaks of the response, and at every named resonance speed; 25 for bent lines with play or stages that start free, where
-each takes its own periodic motion.
+slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
+looked at, and the ends of unstable ranges are located (``range_search.unstable``); bent lines with play or stages that
+start free, where each speed takes its own periodic motion, are looked at at 25 speeds and at named resonances.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -13,104 +13,115 @@ exceeded all the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
-from trunnion.analyses.assessment.own_limits import bands, judged_at
 from trunnion.analyses.assessment.subject import Case, Subject
-from trunnion.analyses.linear.along import NoSharedMotion, straight_decay
-from trunnion.analyses.orders.stable_speeds import verdicts_at
-from trunnion.arrays import Array, Codes, Flags
+from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong, straight_decay
+from trunnion.analyses.linear.resonance_speeds import resonance_speeds
+from trunnion.analyses.range_search.unstable import UnstableRanges, closed_in
+from trunnion.arrays import Array
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
 
-RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived")
+RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived", "stability")
 EACH, COARSE = 25, 1e-8
+ROUGHLY = 1e-3
+"""How closely the ends of unstable ranges are located there, as a share of the speed."""
+MOST_SAID = 4
 NAME = "parametric stability"
+QUIET = "no joint is bent and no mesh varies: nothing excites the line parametrically"
 
 
 def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
     """One check: the speed at which the slowest disturbance dies out slowest."""
-    if not case.parametric:
-        yield _straight(subject, case)
-        return
     try:
-        speeds, growth, verdict = _along(case)
+        found = _ranges_of(case)
     except (InputError, ComputationError) as error:
+        if not case.parametric:
+            yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+            return
         yield Check(NAME, Status.NOT_JUDGED, RULE, str(error).splitlines()[0], load_case=case.name)
         return
-    judgeable = np.isfinite(growth)
-    if not np.any(judgeable):
+    speeds, growth = found.along.speed, found.along.growth_rate
+    if not case.parametric and not found.ranges:
+        yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+        return
+    known = np.isfinite(growth)
+    if not np.any(known):
         yield Check(NAME, Status.NOT_JUDGED, RULE, "the computation failed at every speed" + case.suffix)
         return
-    at = int(np.nanargmax(growth))
-    straight = straight_decay(case.assembly, float(speeds[at]))
-    worst = (float(growth[at]), float(speeds[at]), judged_at(subject, speeds))
+    at = int(np.argmax(np.where(known, growth, -np.inf)))
+    straight = straight_decay(case.assembly, float(speeds[at]), case.span.table(speeds[[at]])[0])
+    worst = (float(growth[at]), float(speeds[at]), _looked_at(subject, found))
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
-    unstable = verdict == Verdict.UNSTABLE
-    if np.any(unstable):
-        resonance = _resonance(case, float(speeds[at])) if subject.naming else ""
-        margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
-        yield _growing(subject, case, speeds, unstable, f"{here}{resonance}", float(margin), worst)
-    elif np.all(verdict[judgeable] == Verdict.STABLE) and np.all(judgeable):
-        share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
-        because = (
-            f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
-            "the straight line's damping"
-        )
-        yield _judged(case, Status.SATISFIED, because, float(share), worst)
-    else:
-        words = sorted({str(Verdict(int(v))) for v in verdict if v != Verdict.STABLE})
+    covered = ((case.low, case.high),)
+    if found.ranges:
+        if not case.parametric:
+            why = f"{here}: negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
+            margin = -np.inf
+        else:
+            why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
+            margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
+        because = f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}"
+        yield _judged(case, Status.EXCEEDED, because, float(margin), worst, found.ranges, covered)
+        return
+    if np.any(found.untold):
+        verdicts = found.along.verdict[found.untold]
+        words = " and ".join(sorted({str(Verdict(int(v))) for v in verdicts}))
         remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
-        because = f"{' and '.join(words)} at some speeds: {remedy}{case.suffix}"
+        because = f"{words} at some speeds: {remedy}{case.suffix}"
         yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=worst[2], load_case=case.name)
-
-
-def _straight(subject: Subject, case: Case) -> Check:
-    """Of a line that nothing varies: only what feeds energy in makes it grow."""
-    unstable = verdicts_at(case.assembly, case.speeds) == Verdict.UNSTABLE
-    if not np.any(unstable):
-        because = "no joint is bent and no mesh varies: nothing excites the line parametrically"
-        return Check(NAME, Status.NOT_APPLICABLE, RULE, because)
-    growth = np.array([-straight_decay(case.assembly, float(speed)) for speed in case.speeds])
-    at = int(np.argmax(growth >= growth.max() * (1 - 1e-9)))
-    fed = (
-        f"at {subject.shown(case.speeds[at])}{case.suffix}: negative damping, or a torque that grows with the speed, "
-        "feeds it, no joint or mesh"
+        return
+    share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
+    because = (
+        f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
+        "the straight line's damping"
     )
-    worst = (float(growth[at]), float(case.speeds[at]), counted(len(case.speeds), "speed"))
-    return _growing(subject, case, case.speeds, unstable, fed, -np.inf, worst)
+    if found.gaps:
+        gaps = "; ".join(f"{subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
+        low = max(gap.high for gap in found.gaps)
+        yield _judged(case, Status.NOT_JUDGED, f"{because}; {gaps}", float(share), worst, (), ((low, case.high),))
+        return
+    yield _judged(case, Status.SATISFIED, because, float(share), worst, (), covered)
 
 
 Worst = tuple[float, float, str]
 """Growth rate [1/s] and speed [rad/s] where it is largest, and how many speeds were looked at."""
 
 
-def _growing(
-    subject: Subject, case: Case, speeds: Array, unstable: Flags, where: str, margin: float, worst: Worst
-) -> Check:
-    ranges = bands(speeds, np.where(unstable, 1.0, -1.0), np.zeros(len(speeds)))
-    because = f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {where}; unstable {_ranges(subject, ranges)}"
-    return _judged(case, Status.EXCEEDED, because, margin, worst, ranges)
-
-
 def _judged(
-    case: Case, status: Status, because: str, margin: float, worst: Worst, barred: tuple[tuple[float, float], ...] = ()
+    case: Case,
+    status: Status,
+    because: str,
+    margin: float,
+    worst: Worst,
+    barred: tuple[tuple[float, float], ...],
+    covered: tuple[tuple[float, float], ...],
 ) -> Check:
     growth, speed, inputs = worst
     return Check(
-        NAME, status, RULE, because, margin, 0.0, growth, 0.0, "1/s", speed, inputs, case.name, barred,
+        NAME, status, RULE, because, margin, 0.0, growth, 0.0, "1/s", speed, inputs, case.name, barred, covered=covered
     )  # fmt: skip
 
 
-def _ranges(subject: Subject, ranges: Sequence[tuple[float, float]]) -> str:
+def _looked_at(subject: Subject, found: UnstableRanges) -> str:
+    speeds = found.along.speed
+    said = f"searched from {subject.shown(speeds[0])} to {subject.shown(speeds[-1])} at {counted(len(speeds), 'speed')}"
+    return f"{said}; stable by a bound up to {subject.shown(found.slow)}" if found.slow else said
+
+
+def _ranges(subject: Subject, found: UnstableRanges) -> str:
     """ "at 300 rpm", "between 300 rpm and 400 rpm, between …"."""
-    if all(a == b for a, b in ranges):
-        return f"at {' and '.join(subject.shown(a) for a, _ in ranges)}"
-    return ", ".join(f"between {subject.shown(a)} and {subject.shown(b)}" for a, b in ranges)
+    if all(subject.shown(a) == subject.shown(b) for a, b in found.ranges):
+        return f"at {' and '.join(subject.shown(a) for a, _ in found.ranges)}"
+    words = [f"between {subject.shown(a)} and {subject.shown(b)}" for a, b in found.ranges[:MOST_SAID]]
+    more = f" and in {len(found.ranges) - MOST_SAID} more ranges" if len(found.ranges) > MOST_SAID else ""
+    return ", ".join(words) + more
 
 
 def _resonance(case: Case, speed: float) -> str:
@@ -124,27 +135,28 @@ def _resonance(case: Case, speed: float) -> str:
     return f" ({found})" if found else ""
 
 
-def _along(case: Case) -> tuple[Array, Array, Codes]:
-    """Speeds, growth rates [1/s] and verdicts."""
+def _ranges_of(case: Case) -> UnstableRanges:
     try:
-        found = case.along
+        return case.unstable
     except NoSharedMotion:
         return _one_by_one(case)
-    return found.speed, found.growth_rate, found.verdict
 
 
-def _one_by_one(case: Case) -> tuple[Array, Array, Codes]:
+def _one_by_one(case: Case) -> UnstableRanges:
     """The same at few speeds, each about its own motion, found by shooting."""
     # Loaded where needed: it brings the compiler with it.
     from trunnion.analyses.linear.stability import stability
 
-    low, high = float(case.speeds[0]), float(case.speeds[-1])
-    speeds = np.linspace(low, high, EACH) if high > low else case.speeds
-    growth, verdict = np.full(len(speeds), np.nan), np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8)
-    for i, speed in enumerate(speeds):
-        try:
-            found = stability(case.assembly, float(speed), tolerance=COARSE)
-        except ComputationError:
-            continue
-        growth[i], verdict[i] = found.growth_rate, int(found.verdict)
-    return speeds, growth, verdict
+    def judge(speeds: Array) -> StabilityAlong:
+        radius, growth = np.full(len(speeds), np.nan), np.full(len(speeds), np.nan)
+        verdict, period = np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8), 1.0
+        for i, speed in enumerate(speeds):
+            with suppress(ComputationError):
+                found = stability(case.assembly, float(speed), tolerance=COARSE)
+                radius[i], growth[i], verdict[i] = found.spectral_radius, found.growth_rate, int(found.verdict)
+        return StabilityAlong(speeds, radius, np.zeros(len(speeds)), radius.astype(complex), verdict, growth, period)
+
+    low, high = case.span.start, case.high
+    named = [r.speed for r in resonance_speeds(case.assembly).within(low, high) if r.opens] if low < high else []
+    every = np.union1d(np.linspace(low, high, EACH if high > low else 1), named)
+    return UnstableRanges(*closed_in(judge(every), judge, ROUGHLY), 0.0, ())

@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from trunnion.analyses.assessment.check import Check, Status, merged, percent
+import numpy as np
+
+from trunnion.analyses.assessment.check import Check, Status, merged
+from trunnion.driveline.operation import Operation
+from trunnion.driveline.rules import APPLICATIONS, RULES, SwitchedOff, Weight
 from trunnion.results.counts import few
 from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
+
+SEPARATION = "separation"
+STATE_APPLICATION = 'state application in [operation], as "road", to let those decide that fit the machine'
 
 
 @dataclass(frozen=True, repr=False)
@@ -18,7 +25,8 @@ class Assessment(Result):
 
     verdict: exceeded, satisfied, or not judged where a limit is missing that alone could judge; checks: the binding
     one first, then by margin; barred: speed ranges [rad/s] that the line may only pass quickly; low, high: the running
-    range, speed: the operating one [rad/s] or None; unit: of speeds in print; findings: what was said on the way.
+    range, speed: the operating one [rad/s] or None; unit: of speeds in print; findings: what was said on the way;
+    operation: of the line, which states its application and the rules that are switched off.
     """
 
     verdict: Status
@@ -29,18 +37,48 @@ class Assessment(Result):
     speed: float | None
     unit: str
     findings: tuple[Finding, ...] = ()
+    operation: Operation = Operation()
+
+    @property
+    def application(self) -> str | None:
+        """What the line is, by its description; None where it does not say."""
+        return self.operation.application
+
+    @property
+    def switched_off(self) -> tuple[SwitchedOff, ...]:
+        """Rules that the description switches off, with their reasons."""
+        return self.operation.switched_off
 
     @property
     def binding(self) -> Check | None:
         """The check that decides: exceeded most, or satisfied with the least margin; None where nothing is judged."""
-        first = next(iter(self.checks), None)
-        return first if first and first.status in (Status.EXCEEDED, Status.SATISFIED) else None
+        return next((check for check in self.checks if check.exceeded or check.satisfied), None)
+
+    @property
+    def shown_beyond(self) -> tuple[Check, ...]:
+        """Guidelines that the line is beyond and that do not decide."""
+        return tuple(check for check in self.checks if check.status is Status.EXCEEDED and not check.decides)
+
+    @property
+    def rests_on(self) -> str:
+        """Which guidelines the verdict rests on, in one sentence."""
+        if self.application is None:
+            return f"No application is stated: guidelines are shown and do not decide; {STATE_APPLICATION}."
+        off = {one.rule for one in self.switched_off}
+        deciding = [one for one in RULES.values() if one.weight(self.application) is Weight.DECIDES]
+        named = [one.name for one in deciding if one.guideline and one.name not in off]
+        guidelines = f"the guidelines {', '.join(named)} decide" if named else "no guideline decides"
+        about = APPLICATIONS[self.application]
+        return f"Application {self.application} ({about}): {guidelines} beside limits, ratings and physical checks."
 
     @property
     def sentence(self) -> str:
-        """The verdict in one sentence."""
-        over_limit = [c for c in self.checks if c.status is Status.EXCEEDED]
-        open_ones = [c for c in self.checks if c.status is Status.NOT_JUDGED]
+        """The verdict in one sentence; of a line without application also which guidelines it is beyond."""
+        return self._of_verdict() + self._beyond_guidelines()
+
+    def _of_verdict(self) -> str:
+        over_limit = [c for c in self.checks if c.exceeded]
+        open_ones = [c for c in self.checks if c.missing]
         bind = self.binding
         if self.verdict is Status.EXCEEDED:
             assert bind is not None
@@ -57,10 +95,17 @@ class Assessment(Result):
         assert bind is not None
         return f"satisfied: {bind.name} binds, {bind.because}"
 
+    def _beyond_guidelines(self) -> str:
+        beyond = dict.fromkeys(check.rule.name for check in self.shown_beyond)
+        beyond.pop(SEPARATION, None)  # limits of torque judge it
+        if not beyond or self.application is not None:
+            return ""
+        return f"; beyond guidelines that are shown only ({', '.join(beyond)}): {STATE_APPLICATION}"
+
     def _runs_where_barred(self) -> str:
         """Where only the operating speed keeps a range from being barred, as no sentence of a check says so."""
         for check in self.checks:
-            if check.status is Status.EXCEEDED and passable(check, self.checks, None):
+            if check.exceeded and passable(check, self.checks, None):
                 for low, high in check.barred:
                     if self.speed is not None and low <= self.speed <= high:
                         ends = f"{show_speed(low, self.unit)} to {show_speed(high, self.unit)}"
@@ -78,17 +123,25 @@ class Assessment(Result):
         """Status, margin, value and limit over the checks."""
         yield axis("check", [c.name for c in self.checks])
         yield over("check", "status", [str(c.status) for c in self.checks])
+        yield over("check", "rule", [c.rule.name for c in self.checks])
+        yield over("check", "decides", np.array([c.decides for c in self.checks], dtype=np.int8))
         yield over("check", "margin", [c.margin for c in self.checks], "1", "distance to the limit over the limit")
         yield from members_over("check", self.checks, required_margin="1")
         yield from members_over("check", self.checks, "in the unit of its check", value="", limit="")
+        about = "what the value may be low by, in the unit of its check"
+        yield from members_over("check", self.checks, about, error="")
         yield over("check", "check_unit", [c.unit for c in self.checks])
         yield from members_over("check", self.checks, "input speed where it binds", speed="rad/s")
         yield from members_over("check", self.checks, because="")
         yield from members_over("check", [c.rule for c in self.checks], formula="", source="", certainty="")
         yield from members_over("check", self.checks, inputs="", load_case="")
+        covered = [", ".join(f"{low:.6g} to {high:.6g}" for low, high in c.covered) for c in self.checks]
+        yield over("check", "covered", covered, about="input speeds [rad/s] that it was judged over")
         yield from remarks(
             verdict=str(self.verdict),
             sentence=self.sentence,
+            application=self.application or "",
+            switched_off=[str(one) for one in self.switched_off],
             findings=[str(f) for f in self.findings],
             barred_rad_per_s=[float(x) for pair in self.barred for x in pair],
         )
@@ -99,8 +152,8 @@ class Assessment(Result):
         return [
             {
                 "check": c.name,
-                "status": str(c.status),
-                "margin": percent(c.margin) if c.judged else "",
+                "status": c.word,
+                "margin": c.margin_word,
                 f"speed [{unit}]": f"{c.speed * speed_factor(unit):.5g}" if c.speed == c.speed else "",
                 "because": c.because,
             }
@@ -111,10 +164,12 @@ class Assessment(Result):
         span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
         rows = [f"assessment from {span}: {self.sentence}"]
         for c in self.checks:
-            rows.append(f"  {c.status}: {c.name}: {c.because}")
+            rows.append(f"  {c.word}: {c.name}: {c.because}")
             if c.judged:
                 details = [c.rule.formula, f"{c.rule.source} ({c.rule.certainty})", c.inputs]
                 rows.append(f"      {'; '.join(d for d in details if d)}")
+        rows.append(f"  {self.rests_on}")
+        rows += [f"  switched off: {one}" for one in self.switched_off]
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
 
 
@@ -127,13 +182,12 @@ def passable(check: Check, checks: tuple[Check, ...], speed: float | None) -> bo
 
 
 def verdict_of(checks: tuple[Check, ...], speed: float | None) -> tuple[Status, tuple[tuple[float, float], ...]]:
-    """The verdict over all checks, and the speed ranges that it bars."""
-    exceeded = [c for c in checks if c.status is Status.EXCEEDED]
+    """The verdict over the checks that decide, and the speed ranges that it bars."""
+    exceeded = [c for c in checks if c.exceeded]
     barring = [c for c in exceeded if passable(c, checks, speed)]
     barred = merged(pair for c in barring for pair in c.barred)
     if len(barring) < len(exceeded):
         return Status.EXCEEDED, barred
-    judged = any(c.status is Status.SATISFIED for c in checks)
-    if any(c.status is Status.NOT_JUDGED for c in checks) or not judged:
+    if any(c.missing for c in checks) or not any(c.satisfied for c in checks):
         return Status.NOT_JUDGED, barred
     return Status.SATISFIED, barred

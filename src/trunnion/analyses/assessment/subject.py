@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trunnion.analyses.assessment.cause import Cause
-from trunnion.analyses.charts.axes import lowest_speed
+from trunnion.analyses.assessment.measures import Measure, measures, torque_measures, torque_name
 from trunnion.analyses.linear.along import StabilityAlong, stability_along
 from trunnion.analyses.linear.loaded_modes import loaded_modes
-from trunnion.analyses.linear.resonance_speeds import resonance_speeds
-from trunnion.analyses.linear.speed_sweep import sweep_speeds
-from trunnion.analyses.orders.response import order_response, own_motions_of, response_about
+from trunnion.analyses.orders.response import own_motions_of, response_of_spectrum
 from trunnion.analyses.orders.result import OrderResponse
+from trunnion.analyses.orders.spectrum import order_spectrum
+from trunnion.analyses.range_search.largest import Largest, first_speeds, search, sharpened, thinned
+from trunnion.analyses.range_search.resonances import resonances, varies
+from trunnion.analyses.range_search.span import Gap, Piece, Span
+from trunnion.analyses.range_search.straight import straight_ranges
+from trunnion.analyses.range_search.unstable import UnstableRanges, unstable_ranges
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import bent, moves_by_itself
+from trunnion.equations.steady_base import moves_by_itself
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
@@ -28,14 +33,24 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
 
-POINTS = 201
-"""Speeds of the even part of the grid; the peaks of the modes get more."""
-NEARLY_LARGEST = 0.9
-"""Share of the largest torque at the speeds of the grid from which a peak between them may be larger."""
-PARTS = 64
-"""Steps of which a peak is located, from one speed of the grid to the next but one."""
 NO_RESPONSE = "no linear response: "
 """How checks that need the response begin to say why there is none."""
+UNSTABLE = "the line is unstable there"
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How closely a range is searched: speeds of the even grid, and the share of a largest value that may be missing;
+    for lines of which every speed takes a motion of its own, ``costly`` speeds of the even grid."""
+
+    points: int
+    tolerance: float
+    costly: int
+
+
+WHOLE = Effort(65, 1e-6, 33)
+QUICK = Effort(25, 1e-2, 9)
+"""To look around."""
 
 
 @dataclass(frozen=True)
@@ -57,56 +72,71 @@ class Subject:
         """A speed in the unit of the description."""
         return show_speed(float(f"{speed * speed_factor(self.unit):.5g}") / speed_factor(self.unit), self.unit)
 
+    def ranges(self, ends: Iterable[tuple[float, float]]) -> str:
+        """ "300 rpm to 400 rpm and 500 rpm"."""
+        words = [(self.shown(a), self.shown(b)) for a, b in ends]
+        return " and ".join(f"{a} to {b}" if a != b else a for a, b in words)
+
     def required(self, element: str) -> float:
         """Largest margin that the description requires of an element."""
         return max((one.margin for one in self.line.limits_by_element if one.element == element), default=0.0)
 
 
 @dataclass(frozen=True)
+class Found:
+    """The largest share of a limit: at which of the speeds, value and limit there, values and limits (speed,), and what
+    the value may be low by."""
+
+    at: int
+    value: float
+    limit: float
+    error: float
+    values: Array
+    limits: Array
+
+
+@dataclass(frozen=True)
 class Case:
-    """The line under one load case ("" as stated), and the speeds that it is judged at; ``known``: its response there,
-    where that is known already; ``rough``: to look around, see ``response_about``."""
+    """The line under one load case ("" as stated), over a range of speeds.
+
+    ``given``: speeds to judge it at instead of searching; ``known``: its response there, where that is known already;
+    ``rough``: to look around, see ``order_spectrum``; ``torques``: springs of which torques are looked for beside what
+    the checks look at, as of ``torque_measures``; ``follows``: what changes with the speed besides, see ``Span``.
+    """
 
     name: str
     assembly: Assembly
     low: float
     high: float
-    points: int = POINTS
+    effort: Effort = WHOLE
     given: tuple[float, ...] = ()
     known: OrderResponse | None = None
     rough: bool = False
+    torques: tuple[tuple[str, int], ...] = ()
+    follows: Span | None = field(default=None, repr=False)
+
+    @cached_property
+    def span(self) -> Span:
+        """The range, and where the line itself changes within it."""
+        cuts = {cut for one in self.measures for cut in one.cuts}
+        if self.follows is not None:
+            points = tuple(sorted({*self.follows.points, *cuts}))
+            return replace(self.follows, low=self.low, high=self.high, points=points)
+        return Span(self.assembly, self.low, self.high, points=tuple(sorted(cuts)))
+
+    @cached_property
+    def measures(self) -> tuple[Measure, ...]:
+        """What is looked for."""
+        return (*measures(self.assembly), *torque_measures(self.assembly, self.torques))
 
     @cached_property
     def speeds(self) -> Array:
-        """Speeds [rad/s] from the lowest to the highest, closer about the peaks; those ``given`` instead, if any."""
+        """Speeds [rad/s] that were looked at, rising."""
+        if self.known is not None:
+            return self.known.speed
         if self.given:
             return np.array(self.given)
-        if self.low == self.high:
-            return np.array([self.low])
-        low = max(self.low, lowest_speed(self.assembly), 1e-3 * self.high)
-        if low >= self.high:
-            return np.array([self.high])
-        grid = sweep_speeds(self.assembly, low, self.high, self.points)
-        return grid if self.points < POINTS else np.union1d(grid, self._peaks(grid))
-
-    def _peaks(self, grid: Array) -> Array:
-        """Speeds between those of ``grid`` at which a torque may be largest, by parabolas through three of them."""
-        try:
-            seen = response_about(self.assembly, grid, rough=True)
-        except (InputError, ComputationError):  # said where it is asked for
-            return np.zeros(0)
-        found = np.concatenate([seen.vibratory_torque, seen.peak_torque, seen.heat], axis=1)
-        left, middle, right = found[:-2], found[1:-1], found[2:]
-        with np.errstate(invalid="ignore"):
-            high = (
-                (middle > left) & (middle >= right) & (middle > NEARLY_LARGEST * np.nanmax(found, axis=0, initial=0.0))
-            )
-        at, which = np.nonzero(high)
-        back, on = grid[at] - grid[at + 1], grid[at + 2] - grid[at + 1]
-        fall, rise = (left - middle)[at, which], (right - middle)[at, which]
-        step = (on - back) / PARTS  # so that what peaks at one speed adds one speed
-        vertex = (fall * on**2 - rise * back**2) / (2 * (fall * on - rise * back))
-        return grid[at + 1] + step * np.round(vertex / step)
+        return self.response.speed if self.response is not None else np.array([self.high])
 
     @cached_property
     def answer(self) -> OrderResponse | str:
@@ -114,24 +144,94 @@ class Case:
         if self.known is not None:
             return self.known
         try:
-            if self.rough:
-                return response_about(self.assembly, self.speeds, rough=True)
-            if not self.parametric:
-                return order_response(self.assembly, self.speeds)
-            found = response_about(self.assembly, self.speeds, self.motions)
+            if self.given:
+                return self._judged(self.respond(np.array(self.given)))
+            return self._judged(self.searched.response)
         except (InputError, ComputationError) as error:
             return str(error).splitlines()[0]
-        return replace(found, judged=self._judged)
 
-    def respond(self) -> None:
-        """Compute the response, so that cases can do it side by side."""
-        _ = self.answer
+    @cached_property
+    def searched(self) -> Largest:
+        """The largest shares of all limits, over all that is stable.
+
+        Raises
+        ------
+        InputError, ComputationError : there is no response.
+        """
+        pieces = self.stable_pieces
+        if not pieces:
+            raise ComputationError(self.gaps[0].why if self.gaps else UNSTABLE)
+        met = resonances(self.span)
+        quantities = [one.quantity for one in self.measures]
+        first = first_speeds(pieces, met, self.effort.points)
+        if self.costly and not self.rough:
+            around = search(self.assembly, replace(self, rough=True).respond, first, quantities, tolerance=0.01)
+            first = thinned(around, pieces, quantities, self.effort.costly)
+        return search(self.assembly, self.respond, first, quantities, tolerance=self.effort.tolerance)
+
+    def respond(self, speeds: Array) -> OrderResponse:
+        """The response at ``speeds`` [rad/s], its verdicts not judged."""
+        table = self.span.table(speeds) if self.span.put else None
+        spectrum = order_spectrum(
+            self.assembly, speeds, table=table, rough=self.rough, motions=None if self.rough else self.motions
+        )
+        return response_of_spectrum(self.assembly, spectrum)
+
+    def largest(self, measure: Measure) -> Found:
+        """Where a measure comes nearest to its limit, or goes farthest beyond it."""
+        response = self.answered
+        values, limits = measure.values(response), measure.limit(response)
+        shares = measure.shares(response)
+        at = int(np.argmax(shares))
+        error = self._error(measure) * limits[at] if not self.given and self.known is None else np.nan
+        value = float(values[at]) if np.isfinite(values[at]) else np.inf
+        return Found(at, value, float(limits[at]), float(error), values, limits)
+
+    def _error(self, measure: Measure) -> float:
+        place = next((i for i, one in enumerate(self.measures) if one.name == measure.name), -1)
+        return float(self.searched.error[place]) if place >= 0 else np.nan
+
+    def largest_torque(self, word: str, spring: int) -> tuple[float, float]:
+        """Largest "peak" or "vibratory" torque [N m] of a spring that is among ``torques``, infinite where there is no
+        steady state, and its speed [rad/s]."""
+        name = torque_name(word, spring)
+        found = self.largest(next(one for one in self.measures if one.name == name))
+        return found.value, float(self.speeds[found.at])
+
+    def largest_growth(self) -> tuple[float, float] | None:
+        """Largest growth rate [1/s] over the range and its speed, NaN where it is the same everywhere; of a line that
+        nothing varies, its slowest decay. None where it cannot be told."""
+        try:
+            along = self.along
+        except (InputError, ComputationError):
+            return None
+        rates = along.growth_rate
+        if not np.any(np.isfinite(rates)):
+            return None
+        at = int(np.nanargmax(rates))
+        everywhere = not self.parametric and np.nanmax(rates) - np.nanmin(rates) <= 1e-9 * abs(rates[at])
+        return float(rates[at]), np.nan if everywhere else float(along.speed[at])
+
+    def peak(self, name: str, speed: float) -> float:
+        """The speed of the top that the measure called ``name`` has about ``speed``, located to differentiate there;
+        ``speed`` where it is no top."""
+        measure = next((one for one in self.measures if one.name == name), None)
+        grid, at = self.speeds, int(np.searchsorted(self.speeds, speed))
+        if measure is None or self.given or not 0 < at < len(grid) - 1 or grid[at] != speed:
+            return speed
+        ends = float(grid[at - 1]), float(grid[at + 1])
+        inside = any(piece.low <= ends[0] and ends[1] <= piece.high for piece in self.stable_pieces)
+        return sharpened(self.respond, measure.quantity, (ends[0], speed, ends[1])) if inside else speed
 
     def prepare(self) -> None:
         """Compute what the checks look at, so that cases can do it side by side."""
-        _ = self.answer, self.modes
+        _ = self.answer
         with suppress(InputError, ComputationError):  # said where it is looked at
-            _ = self.along if self.parametric else None
+            _ = self.modes, self.unstable
+
+    def respond_all(self) -> None:
+        """Compute the response, so that cases can do it side by side."""
+        _ = self.answer
 
     @property
     def costly(self) -> bool:
@@ -141,7 +241,7 @@ class Case:
     @property
     def parametric(self) -> bool:
         """Whether a joint or a mesh makes the line's coefficients vary."""
-        return bent(self.assembly) or any(mesh.stiffness_rates for mesh in self.assembly.topology.meshes)
+        return varies(self.assembly)
 
     @cached_property
     def motions(self) -> MotionsBySpeed | None:
@@ -149,16 +249,63 @@ class Case:
         return own_motions_of(self.assembly)
 
     @cached_property
-    def along(self) -> StabilityAlong:
-        """Stability at ``speeds`` and at the resonance speeds of the joints between them, which may be narrow."""
-        low, high = float(self.speeds[0]), float(self.speeds[-1])
-        named = [r.speed for r in resonance_speeds(self.assembly).within(low, high) if r.opens] if low < high else []
-        return stability_along(self.assembly, np.union1d(self.speeds, named), motions=self.motions)
+    def unstable(self) -> UnstableRanges:
+        """Stability over the range, and the speeds at which a disturbance grows.
 
-    def _judged(self) -> Codes:
-        if lossy(self.assembly):
-            return np.full(len(self.speeds), Verdict.FAILED, dtype=np.int8)  # no equations in time
-        return self.along.verdict[np.searchsorted(self.along.speed, self.speeds)]
+        Raises
+        ------
+        InputError : there are no equations in time, or no motion that all speeds share (NoSharedMotion).
+        """
+        if not self.parametric:
+            return straight_ranges(self.span)
+        points = self.effort.costly if self.costly else self.effort.points
+        if self.given:
+            return UnstableRanges(self._stability(np.unique(self.given)), (), 0.0, ())
+        return unstable_ranges(self.span, self._stability, points=points)
+
+    def _stability(self, speeds: Array) -> StabilityAlong:
+        table = self.span.table(speeds) if self.span.put else None
+        return stability_along(self.assembly, speeds, motions=self.motions, table=table)
+
+    @property
+    def along(self) -> StabilityAlong:
+        """Stability at the speeds at which it was looked at."""
+        return self.unstable.along
+
+    @cached_property
+    def stable_pieces(self) -> tuple[Piece, ...]:
+        """Pieces of the range in which torques mean something."""
+        if self.rough:  # to look around, the motion counts whether it is reached or not
+            return self.span.pieces
+        try:
+            return tuple(self.unstable.stable_part(self.span.pieces))
+        except (InputError, ComputationError):  # it cannot be told; the check of stability says so
+            return self.span.pieces
+
+    @cached_property
+    def gaps(self) -> tuple[Gap, ...]:
+        """Speeds at which no torque is judged, and why."""
+        if self.given or self.known is not None:
+            return ()
+        ranges: tuple[tuple[float, float], ...] = ()
+        with suppress(InputError, ComputationError):
+            ranges = () if self.rough else self.unstable.ranges
+        return (*self.span.gaps, *(Gap(low, high, UNSTABLE) for low, high in ranges))
+
+    def _judged(self, found: OrderResponse) -> OrderResponse:
+        """With its verdicts: those of the nearest speeds at which stability was looked at."""
+
+        def verdicts() -> Codes:
+            try:
+                along = self.along
+            except (InputError, ComputationError):
+                return np.full(len(found.speed), Verdict.FAILED, dtype=np.int8)
+            inside = np.any([(found.speed > a) & (found.speed < b) for a, b in self.unstable.ranges], axis=0)
+            untold = self.unstable.untold[np.abs(found.speed[:, None] - along.speed).argmin(axis=1)]
+            code = np.where(untold & ~inside, Verdict.UNDECIDED, np.where(inside, Verdict.UNSTABLE, Verdict.STABLE))
+            return np.broadcast_to(code, found.speed.shape).astype(np.int8)
+
+        return found if self.rough else replace(found, judged=verdicts)
 
     @property
     def response(self) -> OrderResponse | None:
@@ -174,7 +321,7 @@ class Case:
     @cached_property
     def modes(self) -> Complex:
         """Eigenvalues (speed, mode) [1/s] of the loaded line, joints straight, at ``speeds``."""
-        return loaded_modes(self.assembly, self.speeds)[0]
+        return loaded_modes(self.assembly, self.speeds, self.span.table(self.speeds))[0]
 
     @property
     def first(self) -> int:
@@ -192,12 +339,17 @@ def lossy(assembly: Assembly) -> bool:
     return bool(assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())
 
 
-def cases_of(line: Driveline, low: float, high: float, points: int = POINTS) -> tuple[Case, ...]:
+def cases_of(line: Driveline, low: float, high: float, effort: Effort = WHOLE) -> tuple[Case, ...]:
     """The line as stated and under each of its load cases."""
     named = [case.name for case in line.operation.load_cases] if line.operation else []
     return tuple(
-        Case(name, assemble(line.with_load(name) if name else line), low, high, points) for name in ("", *named)
+        Case(name, assemble(line.with_load(name) if name else line), low, high, effort) for name in ("", *named)
     )
+
+
+def with_torques(cases: Iterable[Case], asked: tuple[tuple[str, int], ...]) -> Iterator[Case]:
+    """Cases that look for torques besides; see ``Case``."""
+    return (replace(case, torques=asked) for case in cases)
 
 
 def cause(case: Case, at: int, size: Array) -> Cause | None:

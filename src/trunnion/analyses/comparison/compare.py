@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
-from trunnion.analyses.assessment.range_extremes import exact_torque, largest_growth, largest_torque
 from trunnion.analyses.assessment.result import Assessment
-from trunnion.analyses.assessment.subject import Subject
+from trunnion.analyses.assessment.subject import Subject, with_torques
 from trunnion.analyses.comparison.result import Comparison, Difference
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
@@ -70,6 +70,7 @@ def compare(
         values = dict(_modes(line if load_case is None else line.with_load(load_case), said))
         if span is not None:
             subject = subject_of(line, span, load_case, unit)
+            subject = replace(subject, cases=tuple(with_torques(subject.cases, _every_torque(subject))))
             judged.append(judgement(subject, checks_of(subject)))
             values |= dict(_over_range(subject)) | dict(_margins(judged[-1]))
         else:
@@ -113,7 +114,7 @@ def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[st
 
 def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
     """The largest growth rate, and the largest torques by all orders, under the load case that binds."""
-    growths = [one for case in subject.cases if (one := largest_growth(case)) is not None]
+    growths = [one for case in subject.cases if (one := case.largest_growth()) is not None]
     if growths:
         rate, speed = max(growths)
         yield "largest growth rate", ("growth rate", rate, "1/s", speed)
@@ -122,9 +123,13 @@ def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, 
         return
     for c, spring in enumerate(shaft_names(cases[0].assembly)):
         for word in ("peak", "vibratory"):
-            largest = [(largest_torque if case.costly else exact_torque)(case, word, c) for case in cases]
-            most = max(largest, key=lambda found: found[0])
+            most = max((case.largest_torque(word, c) for case in cases), key=lambda found: found[0])
             yield f"{word} torque of {spring}", ("torque", most[0], "N*m", most[1])
+
+
+def _every_torque(subject: Subject) -> tuple[tuple[str, int], ...]:
+    springs = shaft_names(subject.cases[0].assembly)
+    return tuple((word, c) for c in range(len(springs)) for word in ("peak", "vibratory"))
 
 
 def _margins(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, str, float]]]:

@@ -14,8 +14,15 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.analyses.assessment.couplings import RATINGS, rated_values
-from trunnion.analyses.assessment.own_limits import JUDGED, limited_values, name_of
+from trunnion.analyses.assessment.measures import (
+    OF_LIMITS,
+    RATINGS,
+    name_of,
+    of_limit,
+    of_rating,
+    rating_name,
+    required_of,
+)
 from trunnion.analyses.limits.result import OtherLimit
 from trunnion.analyses.orders.response import response_of_table
 from trunnion.analyses.orders.result import OrderResponse
@@ -73,7 +80,7 @@ def demands_of(assembly: Assembly) -> list[Demand]:
     """Every limit and rating of the line that its response can be compared with."""
     line, found = assembly.line, []
     for limit in line.limits_by_element:
-        if limit.key in JUDGED:
+        if limit.key in OF_LIMITS:
             allowed, unit = limit.value * (1 - limit.margin), LIMIT_KINDS[limit.key].unit
             found.append(Demand(name_of(limit), allowed, unit, partial(_of_limit, assembly, limit)))
     for name, element in zip(line.names, line.elements, strict=True):
@@ -81,19 +88,18 @@ def demands_of(assembly: Assembly) -> list[Demand]:
             rating = getattr(element, key)
             if rating is None:
                 continue
-            margin = max((one.margin for one in line.limits_by_element if one.element == name), default=0.0)
             unit, look = "W" if key == "heat_rating" else "N*m", partial(_of_rating, assembly, name, key)
-            found.append(Demand(f"rated {key.replace('_', ' ')} of {name}", rating * (1 - margin), unit, look))
+            found.append(Demand(rating_name(name, key), rating * (1 - required_of(assembly, name)), unit, look))
     return found
 
 
 def _of_limit(assembly: Assembly, limit: OneLimit, response: OrderResponse, table: Array) -> Array:
-    values = limited_values(assembly, response, limit, table)
-    return np.full(len(table), -np.inf) if isinstance(values, str) else values[0]
+    measure = of_limit(assembly, limit, table)
+    return np.full(len(table), -np.inf) if measure is None else measure.values(response)
 
 
 def _of_rating(assembly: Assembly, name: str, key: str, response: OrderResponse, table: Array) -> Array:
-    return rated_values(assembly, response, name, key).values
+    return of_rating(assembly, name, key, 1.0).values(response)
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ kernel. Bent lines that start free are taken about their own periodic motions.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Codes, Complex
+from trunnion.arrays import Array, Codes, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import (
     LARGEST_DENSE,
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-7
 UNDAMPED = 1e-12
+OVER_SPEED = ("speed", "radius", "error", "critical", "verdict", "growth_rate")
 
 
 class NoSharedMotion(InputError):
@@ -45,21 +46,37 @@ class NoSharedMotion(InputError):
 
 @dataclass(frozen=True)
 class StabilityAlong:
-    """speed [rad/s], radius, error (its estimate), critical (the largest multiplier), verdict (code), each (speed,);
-    period [rad of input angle]."""
+    """speed [rad/s], radius, error (its estimate), critical (the largest multiplier), verdict (code), growth_rate of
+    the fastest disturbance [1/s], negative where it decays, each (speed,); period [rad of input angle]."""
 
     speed: Array
     radius: Array
     error: Array
     critical: Complex
     verdict: Codes
+    growth_rate: Array
     period: float
 
-    @property
-    def growth_rate(self) -> Array:
-        """Growth of the fastest disturbance [1/s] (speed,); negative where it decays."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.log(self.radius) * self.speed / self.period)
+    def of(self, which: Flags | Places) -> StabilityAlong:
+        """At some of the speeds, in the order named."""
+        return _of_parts({key: getattr(self, key)[which] for key in OVER_SPEED}, self.period)
+
+    def beside(self, other: StabilityAlong) -> StabilityAlong:
+        """Both, by rising speed."""
+        both = {key: np.concatenate([getattr(self, key), getattr(other, key)]) for key in OVER_SPEED}
+        return _of_parts(both, self.period).of(np.argsort(both["speed"], kind="stable"))
+
+
+def _of_parts(parts: dict[str, Any], period: float) -> StabilityAlong:
+    return StabilityAlong(**parts, period=period)
+
+
+def _along(
+    speed: Array, radius: Array, error: Array, critical: Complex, verdict: Codes, period: float
+) -> StabilityAlong:
+    with np.errstate(divide="ignore"):
+        growth = np.log(radius) * speed / period
+    return StabilityAlong(speed, radius, error, critical, verdict, np.asarray(growth), period)
 
 
 def stability_along(
@@ -68,10 +85,12 @@ def stability_along(
     *,
     statically_twisted: bool = True,
     motions: MotionsBySpeed | None = None,
+    table: Array | None = None,
 ) -> StabilityAlong:
     """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with bent joints or varying meshes.
 
-    ``motions`` : own motions that are known already.
+    ``motions`` : own motions that are known already; ``table`` (speed, column): packed numbers at every speed, where
+    they follow it.
 
     Raises
     ------
@@ -80,19 +99,20 @@ def stability_along(
     speed = np.asarray(speeds, dtype=float)
     if moves_by_itself(assembly):
         return _about_own_motions(assembly, speed, motions)
-    table = assembly.table(len(speed), speed)
+    table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     small = assembly.topology.size <= LARGEST_DENSE
     return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
 
 
-def straight_decay(assembly: Assembly, speed: float) -> float:
-    """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even.
+def straight_decay(assembly: Assembly, speed: float, row: Array | None = None) -> float:
+    """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even;
+    ``row`` (column,): its packed numbers there, where they follow the speed.
 
     What is no disturbance is left out: a turn of the whole line that starts free, its speed where no torque depends on
     it. What rounding cannot tell from no decay is 0.
     """
-    topo, table = assembly.topology, assembly.table(1, speed)
+    topo, table = assembly.topology, assembly.table(1, speed) if row is None else row[None]
     co = replace(assembly.coefficients(table, any_frequency=True).straight, waves=())
     m = line_matrices(topo, co, np.zeros(1))
     root, unit = scales(m, co.speed)
@@ -113,7 +133,7 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
         rates, len(table), 2 * size, rates.period, least_steps=rates.steps, aside=judged
     )  # fmt: skip
     code = verdicts(found.radius, found.error, np.abs(rates.trace) < UNDAMPED * size)
-    return StabilityAlong(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
+    return _along(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
 
 
 def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed | None) -> StabilityAlong:
@@ -142,7 +162,7 @@ def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed 
         )
         radius[there], error[there], critical[there] = found.radius, found.error, found.critical
     code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
-    return StabilityAlong(speed, radius, error, critical, code.astype(np.int8), motions.period)
+    return _along(speed, radius, error, critical, code.astype(np.int8), motions.period)
 
 
 def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
@@ -162,4 +182,4 @@ def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
         found = judge(values.T.copy(), bounds.T.copy(), topo.size, rigid_motions(topo, co).shape[1])
     else:
         found = judge_matrices(matrix, error, trace)
-    return StabilityAlong(co.speed, found.radius, found.error, found.critical, found.verdict, period)
+    return _along(co.speed, found.radius, found.error, found.critical, found.verdict, period)

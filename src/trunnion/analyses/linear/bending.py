@@ -10,15 +10,12 @@ whirls at its first bending frequency
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import speed_factor
 
 SAFE_SHARE = 0.75
 """Highest operating speed over critical speed that propeller-shaft practice allows."""
@@ -61,16 +58,3 @@ def bending_speeds(line: Driveline | Assembly) -> tuple[BendingSpeed, ...]:
         at_input = critical / ratio.get(place, 1.0)
         found.append(BendingSpeed(name, critical, at_input, modulus, shaft.young_modulus is None))
     return tuple(found)
-
-
-def bending_findings(found: tuple[BendingSpeed, ...], highest: float, unit: str) -> Iterator[Finding]:
-    """A caution for every tube whose critical speed is too near the ``highest`` input speed [rad/s]."""
-    for row in found:
-        share = highest / row.input_speed
-        if share > SAFE_SHARE:
-            yield Finding(
-                Gravity.CAUTION,
-                f"The range goes up to {100 * share:.0f} % of the bending critical speed of {row.shaft} "
-                f"({row.input_speed * speed_factor(unit):.4g} {unit} of the input); practice keeps below "
-                f"{100 * SAFE_SHARE:.0f} %. Lateral vibration is outside this model.",
-            )

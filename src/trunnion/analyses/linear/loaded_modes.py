@@ -20,14 +20,15 @@ RIGID = 1e-6
 """Share of the highest frequency below which a mode counts as rigid rotation."""
 
 
-def loaded_modes(assembly: Assembly, speeds: Array) -> tuple[Complex, Complex]:
+def loaded_modes(assembly: Assembly, speeds: Array, table: Array | None = None) -> tuple[Complex, Complex]:
     """Eigenvalues (speed, mode) [1/s] with positive imaginary part, and shapes (speed, rotation, mode).
 
     Modes are numbered by the undamped frequency of the line, the rigid rotation of a free line left out. NaN where a
-    mode does not oscillate.
+    mode does not oscillate. ``table`` (speed, column): packed numbers at every speed, where they follow it.
     """
     topo = assembly.topology
-    coefficients = assembly.coefficients(assembly.table(len(speeds), speeds), any_frequency=True)
+    numbers = assembly.table(len(speeds), speeds) if table is None else table
+    coefficients = assembly.coefficients(numbers, any_frequency=True)
     matrices = aligned_matrices(topo, coefficients)
     slope = load_slope(topo, coefficients.viscous, coefficients.quadratic, np.asarray(speeds))
     damping = matrices.damping + topo.on_unknowns(slope)[:, :, None] * np.eye(topo.size)

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.orders.response import order_response
+from trunnion.analyses.orders.response import order_response, response_about
 from trunnion.analyses.orders.where_unstable import where_unstable
+from trunnion.analyses.range_search.largest import Quantity, first_speeds, search
+from trunnion.analyses.range_search.resonances import resonances
+from trunnion.analyses.range_search.span import Span
 from trunnion.arrays import Array, Codes, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.exciters import exciters
+from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.results.counts import counted
 from trunnion.results.declared import Described, Held, axis, fields_over, over, remark
@@ -29,7 +31,9 @@ if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
 
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
-"""Extra speeds about each resonance of the forced response, in half-widths of its peak."""
+"""Extra speeds about each resonance of the forced response, in half-widths of its peak: what draws it."""
+FEW = 65
+"""Speeds of the even grid from which the largest torques are looked for."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,8 +71,10 @@ class SpeedSweep(Described):
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
 
     def peak(self, shaft: str) -> tuple[float, float]:
-        """Largest torque amplitude of a shaft [N m] and the speed it stands at [rad/s]."""
+        """Largest torque amplitude of a shaft [N m] and the speed it stands at [rad/s]; NaN without a steady state."""
         column = self.torque_amplitude[:, self.shafts.index(shaft)]
+        if not np.any(np.isfinite(column)):
+            return np.nan, np.nan
         at = int(np.nanargmax(column))
         return float(column[at]), float(self.speed[at])
 
@@ -96,6 +102,9 @@ class SpeedSweep(Described):
         rows = [f"linear forced response at {counted(len(self.speed), 'speed')}"]
         for shaft in self.shafts:
             torque, at = self.peak(shaft)
+            if np.isnan(torque):
+                rows.append(f"  {shaft}: no steady state at any speed")
+                continue
             rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {show_speed(at, unit)}")
         beyond = int(np.count_nonzero(~self.linear))
         if beyond:
@@ -136,20 +145,36 @@ def speed_sweep(
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:
-    """Speeds [rad/s] from ``low`` to ``high``, closer together about the peaks ω_i/(2m|R|) and ω_i/K of the response.
+    """Speeds [rad/s] from ``low`` to ``high``: ``points`` evenly, closer together about every resonance, and those at
+    which a torque of any spring is largest.
 
-    An even grid alone would step over the peaks of lightly damped modes.
+    An even grid alone would step over the peaks of lightly damped modes. The largest torques over the range are those
+    at these speeds, to 0.1 % (``range_search.largest``).
     """
     assembly = assemble(line)
     require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")
-    modes = natural_frequencies(assembly)
-    topo = assembly.topology
-    orders = {m * float(rate) for j in topo.joints for rate in topo.joint_rates(j) for m in (1, 2, 3)}
-    orders |= {float(e.order) for e in exciters(assembly) if not e.in_time and not e.held}
-    found = [np.linspace(low, high, points)]
-    for frequency, damping in zip(modes.frequency, modes.damping_ratio, strict=True):
-        width = max(float(abs(damping)), 1e-4)
-        for order in sorted(orders):
-            found.append(frequency / order * (1 + width * CLUSTER))
-    every = np.unique(np.concatenate(found))
+    even = np.linspace(low, high, points)
+    span = Span(assembly, low, high)
+    try:
+        met = resonances(span)
+        about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
+        first = [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
+        found = search(assembly, partial(response_about, assembly), first, _torques(assembly)).response.speed
+    except (InputError, ComputationError):  # said where the response is asked for
+        found = np.zeros(0)
+    every = np.union1d(even, found)
     return every[(every >= low) & (every <= high)]
+
+
+def _between(speeds: Array, part: Array) -> Array:
+    return speeds[(speeds > part[0]) & (speeds < part[-1])]
+
+
+def _torques(assembly: Assembly) -> list[Quantity]:
+    """What is largest somewhere: torques of all springs, with their means and without."""
+
+    def of(c: int, word: str) -> Quantity:
+        return Quantity(lambda found: getattr(found, word)[:, c], lambda found: found.torque[:, :, c])
+
+    springs = range(len(assembly.topology.compliances))
+    return [of(c, word) for c in springs for word in ("peak_torque", "vibratory_torque")]

@@ -11,8 +11,7 @@ import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
-from trunnion.analyses.assessment.range_extremes import NEAR, exact_torque, largest_growth, largest_torque
-from trunnion.analyses.assessment.subject import POINTS, Case, Subject
+from trunnion.analyses.assessment.subject import QUICK, WHOLE, Case, Effort, Subject, with_torques
 from trunnion.analyses.kinetostatics.chain import chain
 from trunnion.analyses.kinetostatics.phasing import irregularity_of
 from trunnion.analyses.linear.forced_response import shaft_names
@@ -26,6 +25,8 @@ IRREGULARITY, GROWTH, SPARE = "irregularity", "growth rate", "least spare margin
 MARGIN = "margin of "
 WORST = 10.0
 """The largest violation that one check can count, in margins."""
+NEAR = 0.8
+"""Share of the largest torque from which that of another load case may turn out to be the largest."""
 OwnAim = Callable[[Driveline], float]
 
 
@@ -54,8 +55,8 @@ class Aim:
 
 @dataclass(frozen=True)
 class Question:
-    """What every design is asked: aims, the range of speeds [rad/s] or None, the checks that must hold (None: every
-    limit and rating; empty: none), and the names of the load cases that aims look at (None: all)."""
+    """What every design is asked: aims, the range of speeds [rad/s] or None, the checks that must hold (None: all
+    that decide; empty: none), and the names of the load cases that aims look at (None: all)."""
 
     aims: tuple[Aim, ...]
     speeds: tuple[float, float] | None
@@ -69,10 +70,10 @@ class Question:
         """Whether checks are computed."""
         return self.speeds is not None and (self.held is None or bool(self.held) or any(a.judged for a in self.aims))
 
-    def answer(self, line: Driveline, points: int = POINTS) -> Answer:
+    def answer(self, line: Driveline, effort: Effort = WHOLE) -> Answer:
         """The aims of one line, and by how much it violates checks; NaN where it cannot be computed."""
         try:
-            return self._answer(line, points)
+            return self._answer(line, effort)
         except (InputError, ComputationError):
             return Answer(tuple(nan for _ in self.aims), inf, ())
 
@@ -83,12 +84,12 @@ class Question:
         ------
         InputError, ComputationError : as the analyses behind the aims.
         """
-        self._answer(line, POINTS)
+        self._answer(line, WHOLE)
 
-    def _answer(self, line: Driveline, points: int) -> Answer:
+    def _answer(self, line: Driveline, effort: Effort) -> Answer:
         subject = None
         if self.checking or any(aim.over_range for aim in self.aims):
-            subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
+            subject = self._subject(line, effort)
             if self.cases is not None:
                 subject = replace(subject, cases=tuple(c for c in subject.cases if c.name in self.cases))
         checks = checks_of(subject) if subject is not None and self.checking else ()
@@ -103,18 +104,25 @@ class Question:
         """Whether nothing but torques is asked for, of which the load cases' largest counts."""
         return not self.checking and all(aim.word or not aim.over_range for aim in self.aims)
 
-    def near_cases(self, line: Driveline, points: int = POINTS) -> frozenset[str]:
-        """Names of the load cases whose torques come near the largest, by speeds of the grid; none where nothing can
-        be computed."""
+    def _subject(self, line: Driveline, effort: Effort) -> Subject:
+        subject = subject_of(line, self.speeds, self.load_case, self.unit, effort)
+        springs = shaft_names(subject.cases[0].assembly)
+        asked = tuple((aim.word, springs.index(aim.spring)) for aim in self.aims if aim.word)
+        return replace(subject, cases=tuple(with_torques(subject.cases, asked))) if asked else subject
+
+    def near_cases(self, line: Driveline) -> frozenset[str]:
+        """Names of the load cases whose torques come near the largest; none where nothing can be computed."""
         try:
-            subject = subject_of(line, self.speeds, self.load_case, self.unit, points)
-            torques = [_coarse(aim, subject) for aim in self.aims if aim.word]
+            subject = self._subject(line, QUICK)
+            torques = [_torques(aim, subject) for aim in self.aims if aim.word]
         except (InputError, ComputationError):
             return frozenset()
-        return frozenset(case.name for found in torques for case, _, value in found if value >= NEAR * _largest(found))
+        return frozenset(
+            name for found in torques for name, value in found.items() if value >= NEAR * max(found.values())
+        )
 
     def _must_hold(self, check: Check) -> bool:
-        return not check.guideline if self.held is None else check.name in self.held
+        return check.decides if self.held is None else check.name in self.held
 
 
 @dataclass(frozen=True)
@@ -174,35 +182,27 @@ def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[
         return float(irregularity_of(chain(line), (), np.zeros((1, 0)))[0])
     assert subject is not None
     if aim.name == GROWTH:
-        found = [one for case in subject.cases if (one := largest_growth(case)) is not None]
+        found = [one for case in subject.cases if (one := case.largest_growth()) is not None]
         return max(found)[0] if found else nan
     if aim.judged:
         return min(_margins(aim, checks), default=nan)
-    torques = _coarse(aim, subject)
-    # Another case's peaks between two speeds of the grid are no larger than those that already show.
-    near = [one for one in torques if one[2] >= NEAR * _largest(torques)]
-    return max((exact_torque(case, aim.word, place)[0] for case, place, _ in near), default=nan)
+    return max(_torques(aim, subject).values(), default=nan)
 
 
-def _coarse(aim: Aim, subject: Subject) -> list[tuple[Case, int, float]]:
-    """Load cases that have a response, the place of the aim's spring, and its largest torque on the grid [N m]."""
-    on_threads(Case.respond, subject.cases, os.cpu_count() or 1)
+def _torques(aim: Aim, subject: Subject) -> dict[str, float]:
+    """The largest torque of the aim's spring [N m] by load case that has a response."""
+    on_threads(Case.respond_all, subject.cases, os.cpu_count() or 1)
     cases = [case for case in subject.cases if case.response is not None]
     if not cases:
-        order_response(subject.cases[0].assembly, subject.cases[0].speeds)  # raises what refuses it
-    places = [(case, shaft_names(case.assembly).index(aim.spring)) for case in cases]
-    return [(case, place, largest_torque(case, aim.word, place)[0]) for case, place in places]
-
-
-def _largest(torques: Iterable[tuple[Case, int, float]]) -> float:
-    return max((value for _, _, value in torques), default=nan)
+        order_response(subject.cases[0].assembly, [subject.high])  # raises what refuses it
+    return {case.name: case.largest_torque(aim.word, shaft_names(case.assembly).index(aim.spring))[0] for case in cases}
 
 
 def _margins(aim: Aim, checks: Iterable[Check]) -> Iterator[float]:
     for check in checks:
         if not check.judged:
             continue
-        if aim.name == SPARE and not check.guideline:
+        if aim.name == SPARE and check.decides:
             yield check.spare
         elif aim.name == f"{MARGIN}{check.name}":
             yield check.margin

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.analyses.assessment.assess import assess, subject_of
-from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
 from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, aims_of
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
@@ -56,11 +55,11 @@ def optimise(
         ranges over more than a factor of ten is searched by its logarithm.
     aims : one of these, or two: "irregularity" of the output, shafts rigid; "growth rate", the largest over the range;
         "peak torque of SPRING", "vibratory torque of SPRING", the largest over the range and all load cases, all to be
-        smallest; "margin of CHECK", "least spare margin" of all limits and ratings, to be largest; or a function of a
+        smallest; "margin of CHECK", "least spare margin" of all checks that decide, to be largest; or a function of a
         ``Driveline`` to be smallest.
     speeds : lowest and highest input speed [rad/s]; default the range of the description. "irregularity" needs none.
-    checks : True: every limit and rating of ``assess`` is to be satisfied (guidelines are not); names: those; False or
-        (): none. Without speeds nothing is judged.
+    checks : True: every check of ``assess`` that decides is to be satisfied; names: those; False or (): none. Without
+        speeds nothing is judged.
     load_case : name of one of the line's load cases; by default all count.
     designs : computed in the search from everywhere, about; of two aims for each of them.
     seed : of the search; the same seed gives the same design.
@@ -167,7 +166,7 @@ def _near_cases(space: Space, question: Question, seed: int) -> frozenset[str]:
     shares = np.random.default_rng(seed).random((LOOKS, len(space.free)))
     shares[0] = space.start
     lines = [line for one in shares if (line := space.line(one)) is not None]
-    return frozenset[str]().union(*(question.near_cases(line, QUICK_POINTS) for line in lines))
+    return frozenset[str]().union(*(question.near_cases(line) for line in lines))
 
 
 def _there(space: Space, one: Tried) -> Driveline:

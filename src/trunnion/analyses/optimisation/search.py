@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import differential_evolution, minimize
 
-from trunnion.analyses.assessment.remedies.trials import QUICK_POINTS
+from trunnion.analyses.assessment.subject import QUICK
 from trunnion.analyses.optimisation.aims import Answer, Question
 from trunnion.analyses.optimisation.space import Space
 from trunnion.arrays import Array
@@ -87,7 +87,7 @@ class Search:
         if line is None:
             answer = Answer(tuple(float("nan") for _ in self.signs), np.inf, ())
         else:
-            answer = self.question.answer(line, QUICK_POINTS) if quick else self.question.answer(line)
+            answer = self.question.answer(line, QUICK) if quick else self.question.answer(line)
             if quick and abs(answer.spare) < NEAR:
                 answer = self.question.answer(line)
         return Tried(shares.copy(), answer, self.signs * np.array(answer.values))

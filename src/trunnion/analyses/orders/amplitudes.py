@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.analyses.orders.channels import Channels
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Places
 from trunnion.equations.topology import LONGEST_PERIOD, common_rate
 from trunnion.numerics.cycle_extremes import cycle_extremes
 
@@ -85,6 +86,11 @@ class OrderSpectrum:
         )  # fmt: skip
 
     @property
+    def keys(self) -> list[Key]:
+        """Order and frequency of every column."""
+        return list(zip(self.order, self.frequency.tolist(), strict=True))
+
+    @property
     def order_numbers(self) -> Array:
         """``order`` as plain numbers."""
         return np.array([float(order) for order in self.order])
@@ -136,6 +142,44 @@ class OrderSpectrum:
         """
         turning = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
         return np.asarray(mean + (turning @ amplitude).real)
+
+
+def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
+    """Spectra of one line as one, by rising speed, and where its speeds stood, one spectrum after the other."""
+    first = parts[0]
+    keys = sorted({key for part in parts for key in part.keys}, key=lambda key: (key[1], key[0]))
+    place = {key: j for j, key in enumerate(keys)}
+    speed = np.concatenate([part.speed for part in parts])
+    amplitude = np.zeros((len(speed), len(keys), first.channels.count), dtype=complex)
+    base = np.zeros((len(speed), len(keys), first.channels.points), dtype=complex)
+    begin = 0
+    for part in parts:
+        rows, columns = slice(begin, begin + len(part.speed)), [place[key] for key in part.keys]
+        amplitude[rows, columns], base[rows, columns] = part.amplitude, part.base
+        begin += len(part.speed)
+
+    def together(name: str) -> Array:
+        """Numbers of springs: one row for all speeds, or a row each."""
+        every = [getattr(part, name) for part in parts]
+        if all(np.array_equal(one, every[0][:1]) for one in every):
+            return np.asarray(every[0][:1])
+        rows = [np.broadcast_to(one, (len(part.speed), one.shape[1])) for one, part in zip(every, parts, strict=True)]
+        return np.concatenate(rows)[order]
+
+    order = np.argsort(speed, kind="stable")
+    found = OrderSpectrum(
+        speed=speed[order],
+        order=tuple(key[0] for key in keys),
+        frequency=np.array([key[1] for key in keys]),
+        amplitude=amplitude[order],
+        base=base[order],
+        mean=np.concatenate([part.mean for part in parts])[order],
+        cut_off=np.concatenate([part.cut_off for part in parts])[order],
+        channels=first.channels,
+        damping=together("damping"),
+        loss=together("loss"),
+    )
+    return found, order
 
 
 def _common_base(orders: tuple[Fraction, ...]) -> Fraction | None:

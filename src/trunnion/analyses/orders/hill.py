@@ -99,13 +99,7 @@ class HillBlocks:
         Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
-        count, n = right.shape[1:]
-        frequency = carrier[:, None] + harmonics * self.step[:, None]
-        parts = (self.stiffness, self.damping, self.mass)
-        matrix = fourier.hill_blocks(1j * frequency, harmonics, parts, np.flatnonzero(self.kept))
-        if self.loss.any():
-            apart = (harmonics[:, None] - harmonics[None, :]) % self.times
-            self._add_loss(matrix, apart, np.sign(frequency))
+        matrix = self.dynamic(np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None])), harmonics)
         if self.topo.free and not carrier.any():
             self._hold(matrix, np.flatnonzero(harmonics == 0))
         if not self.linearised:
@@ -116,6 +110,15 @@ class HillBlocks:
         rest[np.abs(rest).max(axis=(1, 2)) <= RESIDUAL * size] = 0.0
         change = _with_rim(np.broadcast_to(matrix[:1], matrix.shape), rim, rest, bounded=False)
         return np.asarray(first + change)
+
+    def dynamic(self, s: Complex, harmonics: Integers) -> Complex:
+        """The matrix (node, h, n, h, n) at s (node, h) [1/s] of the ``harmonics`` (h,)."""
+        parts = (self.stiffness, self.damping, self.mass)
+        matrix = fourier.hill_blocks(s, harmonics, parts, np.flatnonzero(self.kept))
+        if self.loss.any():
+            apart = (harmonics[:, None] - harmonics[None, :]) % self.times
+            self._add_loss(matrix, apart, np.sign(s.imag))
+        return matrix
 
     def _hold(self, matrix: Complex, steady: Integers) -> None:
         """Take what a free line turns as a whole, which nothing resists at rest, to be zero."""

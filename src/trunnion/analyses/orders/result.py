@@ -23,6 +23,8 @@ from trunnion.results.verdict import Verdict
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
 
+FREE_FREQUENCY = 10.0
+"""Frequency [Hz] up to which S_f is 1."""
 WAVE_POINTS = 64
 """Points of a wave form per cycle of its highest order."""
 WORTH_SHOWING = 1e-6
@@ -134,6 +136,29 @@ class OrderResponse(Judged):
         damping, loss = spectrum.damping[:, None], spectrum.loss[:, None]
         return np.asarray(((damping * v**2 + loss * v) * q).sum(axis=1) / 2)
 
+    def heat_parts(self, spring: int) -> Array:
+        """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
+        spectrum = self.spectrum
+        v = np.abs(self.order * self.speed[:, None] + self.frequency)
+        damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
+        return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
+
+    @property
+    def frequency_factor(self) -> Array:
+        """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
+        return frequency_factor(self.order * self.speed[:, None] + self.frequency)
+
+    @cached_property
+    def rated_torque(self) -> Array:
+        """Σ S_f(f_k) |T_k| over all orders (speed, spring) [N m], S_f = √(f/10 Hz), at least 1.
+
+        What DIN 740-2 compares with a coupling's T_KW, service factors of its own left out; the amplitudes' sum, an
+        upper bound of what they make with their phases.
+        """
+        spectrum = self.spectrum
+        size = np.abs(spectrum.amplitude[..., spectrum.channels.torque])
+        return np.asarray((frequency_factor(spectrum.angular_frequency)[..., None] * size).sum(axis=1))
+
     @cached_property
     def rotation_amplitude(self) -> Array:
         """Half of the peak-to-peak rotation (speed, inertia) [rad]."""
@@ -186,8 +211,11 @@ class OrderResponse(Judged):
         return self.spectrum.cut_off
 
     def peak(self, spring: str) -> tuple[float, float]:
-        """Largest |torque| of a spring [N m] over all speeds, and the speed it stands at [rad/s]."""
+        """Largest |torque| of a spring [N m] over all speeds, and the speed it stands at [rad/s]; NaN without a steady
+        state at any of them."""
         column = self.peak_torque[:, self.springs.index(spring)]
+        if not np.any(np.isfinite(column)):
+            return np.nan, np.nan
         at = int(np.nanargmax(column))
         return float(column[at]), float(self.speed[at])
 
@@ -236,8 +264,8 @@ class OrderResponse(Judged):
         yield from fields_over("speed order_number spring", self, torque="N*m", twist="rad")
         yield over("speed order_number inertia", "rotation", self.rotation, "rad")
         yield from fields_over(
-            "speed spring", self, mean_torque="N*m", peak_torque="N*m", vibratory_torque="N*m", vibratory_twist="rad",
-            vibratory_stress="Pa", peak_stress="Pa", heat="W",
+            "speed spring", self, mean_torque="N*m", peak_torque="N*m", vibratory_torque="N*m", rated_torque="N*m",
+            vibratory_twist="rad", vibratory_stress="Pa", peak_stress="Pa", heat="W",
         )  # fmt: skip
         yield from fields_over(
             "speed inertia", self, rotation_amplitude="rad", speed_fluctuation="rad/s", acceleration="rad/s^2"
@@ -315,6 +343,11 @@ class OrderResponse(Judged):
         k = int(np.flatnonzero(self.order == order)[0])
         name = order_name(order, self.frequency[k])
         return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
+
+
+def frequency_factor(frequency: Array) -> Array:
+    """S_f of frequencies [rad/s], after DIN 740-2."""
+    return np.sqrt(np.maximum(np.abs(frequency) / (2 * np.pi), FREE_FREQUENCY) / FREE_FREQUENCY)
 
 
 def order_name(order: float, frequency: float) -> str:

@@ -28,18 +28,20 @@ def verdicts_at(
     *,
     statically_twisted: bool = True,
     motions: MotionsBySpeed | None = None,
+    table: Array | None = None,
 ) -> Codes:
     """Codes of ``Verdict`` (speed,) at every ``speed`` [rad/s]; FAILED where a loss factor holds at all frequencies,
     which has no equations in time, so that no multipliers exist, and where the computation failed.
-    ``motions``: own motions that are known already.
+    ``motions``: own motions that are known already; ``table`` as of ``stability_along``.
     """
-    table = assembly.table(len(speed), speed)
+    table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted, any_frequency=True)
     varies = bent(assembly) or bool(co.waves)
     if co.loss.any() and varies:
         return np.full(len(speed), Verdict.FAILED, dtype=np.int8)
     if varies:
-        return stability_along(assembly, speed, statically_twisted=statically_twisted, motions=motions).verdict
+        along = stability_along(assembly, speed, statically_twisted=statically_twisted, motions=motions, table=table)
+        return along.verdict
     return _straight(assembly, co)
 
 

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.analyses.assessment.assess import OF_RESPONSE, by_case, of_line, of_response
+from trunnion.analyses.assessment.assess import OF_RESPONSE, of_line, of_response
 from trunnion.analyses.assessment.check import Check
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.assessment.parametric import parametric_stability
@@ -29,9 +29,6 @@ from trunnion.analyses.sensitivity.responses import SpectrumSlope, spectrum_slop
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import ComputationError, InputError
-
-ROUNDS, AROUND = 4, 17
-"""Rounds of so many speeds each that close in on a peak."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +60,7 @@ def check_slopes(
     exact, refused = [False] * len(checks), [""] * len(checks)
     cases = [next((one for one in subject.cases if one.name == c.load_case), subject.cases[0]) for c in checks]
     for c, check in enumerate(checks):
-        speeds[c] = _peak(subject, cases[c], check)
+        speeds[c] = cases[c].peak(check.name, check.speed)
     values = _Values(subject, near, directions, checks, cases, speeds)
     for c, (check, case) in enumerate(zip(checks, cases, strict=True)):
         if check.name == GROWTH and not case.costly:
@@ -219,22 +216,3 @@ def at_speed(subject: Subject, case: Case, speed: float) -> Subject:
     """The same question at one speed, of one load case."""
     one = replace(case, low=speed, high=speed, given=(speed,))
     return replace(subject, cases=(one,))
-
-
-def _peak(subject: Subject, case: Case, check: Check) -> float:
-    """The speed where a check binds, made exact where that is a peak between two speeds of the grid."""
-    grid, speed = case.speeds, check.speed
-    if check.name == GROWTH or not np.any(grid == speed) or not np.isfinite(check.value):
-        return speed
-    at = int(np.argmax(grid == speed))
-    low, high = grid[max(at - 1, 0)], grid[min(at + 1, len(grid) - 1)]
-    for _ in range(ROUNDS):
-        points = np.linspace(low, high, AROUND)
-        one = replace(case, given=tuple(float(p) for p in points))
-        here = replace(subject, cases=(one,))
-        found = next((c for c in by_case(here, one, growth=False) if c.name == check.name), None)
-        if found is None or not np.any(points == found.speed):
-            return speed
-        speed = found.speed
-        low, high = max(low, speed - (high - low) / 16), min(high, speed + (high - low) / 16)
-    return float(speed)

@@ -25,8 +25,6 @@ from trunnion.results.declared import Held, Result, axis, over, remarks
 SECONDS = 30.0
 FEWEST, MOST = 4, 256
 """Lines in each of the scrambles."""
-POINTS = 41
-"""Speeds of the even part of the grid, besides those about the peaks."""
 PARTS = (1.0, 0.5)
 """How far towards the corner that the gradient points to lines are judged."""
 
@@ -46,17 +44,17 @@ class CheckStudy(Result):
     """Probability that the checks of ``assess`` hold within tolerances.
 
     check: names; probability (check,) and interval (check, 2) of ``confidence`` that each is not exceeded; judged
-    (check,): share of lines in which it could be judged; together and together_interval: that none is exceeded,
-    ``guideline`` (check,) ones left aside; lines: how many were judged, each at ``points`` speeds and about the peaks,
-    in ``seconds`` each; failed: how many could not be computed, which count as exceeding; worst: see ``WorstLine``;
-    ranking: parameters by the share of the scatter of the worst check's margin that a linear fit gives to each.
+    (check,): share of lines in which it could be judged; decides (check,): whether the verdict rests on it; together
+    and together_interval: that none of these is exceeded; lines: how many were judged, in ``seconds`` each;
+    failed: how many could not be computed, which count as exceeding; worst: see ``WorstLine``; ranking: parameters by
+    the share of the scatter of the worst check's margin that a linear fit gives to each.
     """
 
     check: tuple[str, ...]
     probability: Array
     interval: Array
     judged: Array
-    guideline: Flags
+    decides: Flags
     together: float
     together_interval: tuple[float, float]
     confidence: float
@@ -64,7 +62,6 @@ class CheckStudy(Result):
     failed: int
     chosen_by_cost: bool
     seconds: float
-    points: int
     worst: WorstLine | None
     ranking: tuple[tuple[str, float], ...]
 
@@ -75,7 +72,7 @@ class CheckStudy(Result):
         yield over("check", "probability_low", self.interval[:, 0], "1")
         yield over("check", "probability_high", self.interval[:, 1], "1")
         yield over("check", "judged", self.judged, "1", "share of lines in which the check could be judged")
-        yield over("check", "guideline", self.guideline.astype(np.int8))
+        yield over("check", "decides", self.decides.astype(np.int8))
         yield axis("check_parameter", [name for name, _ in self.ranking])
         yield over("check_parameter", "explained_of_check", np.array([share for _, share in self.ranking]), "1")
         yield from remarks(
@@ -92,11 +89,11 @@ class CheckStudy(Result):
         why = f", as many as {SECONDS:g} s allow at {self.seconds:.2g} s each" if self.chosen_by_cost else ""
         rows = [
             f"every check holds with probability {self.together:.4g}, {100 * self.confidence:g} % interval "
-            f"[{low:.4g}, {high:.4g}], from {self.lines} lines judged at {self.points} speeds and about the peaks{why}"
+            f"[{low:.4g}, {high:.4g}], from {self.lines} lines judged over the whole range{why}"
         ]
         for k in np.argsort(self.probability, kind="stable").tolist():
             if self.probability[k] < 1:
-                aside = " (a guideline, left aside)" if self.guideline[k] else ""
+                aside = "" if self.decides[k] else " (a guideline shown only, left aside)"
                 rows.append(
                     f"  {self.check[k]}: {self.probability[k]:.4g} [{self.interval[k, 0]:.4g}, "
                     f"{self.interval[k, 1]:.4g}]{aside}"
@@ -147,16 +144,16 @@ def study_checks(
     judged = matrix(lambda check: 1.0, 0.0) > 0
     holds = matrix(lambda check: check.status is not Status.EXCEEDED, 1.0) > 0
     spare = matrix(lambda check: check.spare, np.nan)
-    guideline = np.array([any(own[n].guideline for own in every if n in own) for n in names], dtype=bool)
-    together = holds[:, ~guideline].all(axis=1) & computed
-    worst, ranking = _worst(judge, shares, spare[:, ~guideline], np.array(names)[~guideline].tolist())
+    decides = np.array([any(own[n].decides for own in every if n in own) for n in names], dtype=bool)
+    together = holds[:, decides].all(axis=1) & computed
+    worst, ranking = _worst(judge, shares, spare[:, decides], np.array(names)[decides].tolist())
     grid = (SCRAMBLES, each)
     return CheckStudy(
         names,
         holds.mean(axis=0),
         np.array([interval(column.reshape(grid), confidence) for column in holds.T]).reshape(-1, 2),
         judged.mean(axis=0),
-        guideline,
+        decides,
         float(together.mean()),
         interval(together.reshape(grid), confidence),
         confidence,
@@ -164,7 +161,6 @@ def study_checks(
         int(np.count_nonzero(~computed)),
         lines is None,
         seconds,
-        POINTS,
         worst,
         ranking,
     )
@@ -181,7 +177,7 @@ class _Judge:
         row = tables(self.assembly, self.spreads, shares[None], float("nan"))[0]
         try:
             line = self.assembly.packed.line_at(row)
-            return {check.name: check for check in checks_of(subject_of(line, self.speeds, None, None, POINTS))}
+            return {check.name: check for check in checks_of(subject_of(line, self.speeds, None, None))}
         except (InputError, ComputationError):
             return None
 

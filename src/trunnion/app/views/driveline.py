@@ -83,6 +83,8 @@ class DrivelineView(View):
                     document.add_limit("Shaft *")
                 case {"do": "load_case"}:
                     document.add_load_case()
+                case {"do": "switch_off"}:
+                    document.switch_off()
 
         self.session.edit(change)
         self.adapt(self.session.document.line)

@@ -120,6 +120,8 @@ class _Side(Side["MotionView"]):
             for one, steady in zip(tuple(curves), data["steady"], strict=True):
                 curves.append(Curve(f"{one.name}, steady", speed, steady, one.colour, "dashed"))
         title = "largest torque in each turn of the run-up"
+        if data["ending"] != "reached":
+            title += f" ({data['ending']})"
         self.curves.set(curves, x=f"input speed [{unit}]", y="torque [N·m]", title=title)
         self.text.object = pre(data["text"])
 

@@ -24,7 +24,14 @@ FAR = 2.0
 """Margin at which a bar ends, either way."""
 PLACE = 0.04
 """Share of the bars' range that a letter behind the longest bar takes, in the narrowest picture."""
-COLOURS = {"exceeded": figures.ORANGE, "satisfied": figures.BLUE}
+COLOURS = {
+    "exceeded": figures.ORANGE,
+    "satisfied": figures.BLUE,
+    "beyond guideline": figures.FAINT,
+    "within guideline": figures.FAINT,
+}
+"""By the words of a status that has a margin; faint what does not decide."""
+UNJUDGED = ("not judged", "guideline not judged")
 
 
 class _Side(Side["VerdictView"]):
@@ -62,9 +69,9 @@ class _Side(Side["VerdictView"]):
         self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{plain(data['sentence'])}</p>"
         judged = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True)
                   if np.isfinite(m) and r["status"] in COLOURS]  # fmt: skip
-        rows = judged[:MOST] + [(r, 0.0) for r in data["rows"] if r["status"] == "not judged"][:MOST]
+        rows = judged[:MOST] + [(r, 0.0) for r in data["rows"] if r["status"] in UNJUDGED][:MOST]
         names = [f"{i + 1}. {r['check']}" for i, (r, _) in enumerate(rows)]
-        bad = [r["status"] == "exceeded" for r, _ in rows]
+        bad = [r["status"] in ("exceeded", "beyond guideline") for r, _ in rows]
         self.margins.y_range.factors = names[::-1]
         self.margins.height = 70 + 26 * len(rows)
         self.margins.visible = bool(rows)
@@ -124,9 +131,8 @@ class _Side(Side["VerdictView"]):
 
 def _words(status: str, margin: float) -> str:
     """What stands at the end of a bar."""
-    if status == "not judged":
-        return status
-    return "exceeded" if status == "exceeded" else f"> {100 * FAR:g} %" if margin > FAR else ""
+    far = f"> {100 * FAR:g} %" if margin > FAR else ""
+    return {"satisfied": far, "within guideline": f"{far} (guideline)".strip()}.get(status, status)
 
 
 def _table(data: Any) -> str:
@@ -140,7 +146,8 @@ def _table(data: Any) -> str:
             f"{v} {unit}" if v and key.startswith("speed") else str(v) for key, v in (row | {"rule": rule}).items()
         )
         body += "<tr>" + "".join(f"<td>{plain(cell)}</td>" for cell in cells) + "</tr>"
-    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div>{items(data['findings'])}"
+    said = [data["rests_on"], *(f"Switched off: {one}" for one in data["switched_off"]), *data["findings"]]
+    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div>{items(said)}"
 
 
 class VerdictView(View):

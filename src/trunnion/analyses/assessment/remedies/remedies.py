@@ -54,8 +54,7 @@ def remedies(
     Parameters
     ----------
     line, speeds, load_case, unit : as of ``assess``.
-    checks : names of the checks to help; default all that are exceeded or have less than ``near`` to spare
-        (guidelines only where exceeded).
+    checks : names of the checks to help; default all that decide and are exceeded or have less than ``near`` to spare.
     near : spare margin that a nearly binding check is to reach.
     most : changes to find for each check.
     progress : called as progress(share done).
@@ -137,7 +136,7 @@ def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) ->
         raise InputError("must be at least 0 and below 1", key="near", value=near, remedy="near=0.1, say")
     if asked is None:
         return goals_of(base, near)
-    known = goals_of(base, np.inf)
+    known = goals_of(base, np.inf, shown=True)
     found = {}
     for name in asked:
         if name not in known:

@@ -191,13 +191,15 @@ class Search:
         return check.status is Status.SATISFIED and bool(check.spare >= self.goals[name])
 
 
-def goals_of(checks: tuple[Check, ...], near: float) -> dict[str, float]:
-    """By check, the spare margin that a remedy has to reach: none for what is exceeded, ``near`` for what has less."""
+def goals_of(checks: tuple[Check, ...], near: float, *, shown: bool = False) -> dict[str, float]:
+    """By check, the spare margin that a remedy has to reach: none for what is exceeded, ``near`` for what has less;
+    with those that are ``shown`` only, or without."""
     found: dict[str, float] = {}
     for check in checks:
+        if not (check.decides or shown):
+            continue
         if check.status is Status.EXCEEDED:
             found[check.name] = 0.0
-        elif check.status is Status.SATISFIED and not check.guideline and np.isfinite(check.spare):
-            if check.spare < near:
-                found[check.name] = near
+        elif check.status is Status.SATISFIED and np.isfinite(check.spare) and check.spare < near:
+            found[check.name] = near
     return found

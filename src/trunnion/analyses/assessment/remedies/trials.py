@@ -3,7 +3,7 @@
 Checks are judged in groups, that of the check in question first: what does not satisfy it, or breaks another, costs no
 more. Of a bent line that starts free every speed takes a motion of its own. There the search looks at the response
 about the motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's
-own motions, over the whole range on a coarser grid.
+own motions, as ``assess`` does.
 """
 
 from __future__ import annotations
@@ -13,18 +13,17 @@ from dataclasses import replace
 
 from trunnion.analyses.assessment.assess import OF_RESPONSE, of_line, prepare
 from trunnion.analyses.assessment.check import Check, Status, in_order, worst
+from trunnion.analyses.assessment.deciding import weighed
 from trunnion.analyses.assessment.parametric import NAME as GROWTH
 from trunnion.analyses.assessment.parametric import parametric_stability
 from trunnion.analyses.assessment.remedies.variables import Design, DesignVariable
 from trunnion.analyses.assessment.result import verdict_of
+from trunnion.analyses.assessment.separation import ALL as SEPARATED
+from trunnion.analyses.assessment.separation import ONE as SEPARATION_OF_ONE
 from trunnion.analyses.assessment.separation import separation
-from trunnion.analyses.assessment.subject import Case, Subject, cases_of, lossy
+from trunnion.analyses.assessment.subject import QUICK, WHOLE, Case, Effort, Subject, cases_of
 from trunnion.driveline.driveline import Driveline
 
-QUICK_POINTS = 41
-"""Speeds of the even part of the grid while searching; the peaks of the modes get more, as ever."""
-THINNED = 4
-"""Every so many of them where every line costs seconds."""
 WORSE = 1e-3
 """Share of a limit by which what is exceeded already may be exceeded more."""
 
@@ -52,7 +51,8 @@ class Trial:
         if number not in self._found:
             if self.whole and number and not any(self._found):
                 prepare(self.subject.cases)
-            self._found[number] = {check.name: check for check in GROUPS[number](self.subject)}
+            found = weighed(GROUPS[number](self.subject), self.subject.line.operation)
+            self._found[number] = {check.name: check for check in found}
         return self._found[number]
 
     def in_turn(self, first: int) -> Iterator[Checks]:
@@ -73,8 +73,7 @@ Known = dict[tuple[str, float], Trial | None]
 class Trials:
     """Changed lines, each judged once.
 
-    quick: the checks of the load cases that bind, on a coarser grid of speeds; whole: all of them as ``assess`` does,
-    of lines that have motions of their own on the coarser grid.
+    quick: the checks of the load cases that bind, largest values to a hundredth; whole: all of them as ``assess`` does.
     """
 
     def __init__(self, subject: Subject, base: tuple[Check, ...], design: Design, targets: Iterable[Check]) -> None:
@@ -82,7 +81,6 @@ class Trials:
         self.base: Checks = {check.name: check for check in base}
         self.verdict = verdict_of(base, subject.speed)[0]
         self.costly = subject.cases[0].costly
-        self.points = QUICK_POINTS if self.costly and not lossy(subject.cases[0].assembly) else None
         targets = tuple(targets)
         of_line = Trial(subject, 1).checks
         # What the response says to a change that helps a check of the line is left to the whole judgement where costly.
@@ -101,11 +99,10 @@ class Trials:
     def verified(self) -> str:
         """At which speeds ``whole`` judges."""
         subject = self.subject
-        even = self.points or subject.cases[0].points
         if subject.low == subject.high or subject.cases[0].given:
             return f"all checks at {subject.shown(subject.high)}"
         span = f"{subject.shown(subject.low)} to {subject.shown(subject.high)}"
-        return f"all checks from {span}, at {even} speeds evenly and those about the peaks"
+        return f"all checks from {span}, as assess does"
 
     @property
     def count(self) -> int:
@@ -130,24 +127,26 @@ class Trials:
         return known[key]
 
     def _judged_wholly(self, line: Driveline) -> Trial:
-        return Trial(self._asked(line, self.points), len(GROUPS), whole=True)
+        return Trial(self._asked(line, WHOLE), len(GROUPS), whole=True)
 
-    def _asked(self, line: Driveline, points: int | None) -> Subject:
+    def _asked(self, line: Driveline, effort: Effort) -> Subject:
         """The same question about another line."""
         subject = self.subject
-        cases = cases_of(line, subject.low, subject.high, *((points,) if points else ()))[: len(subject.cases)]
+        cases = cases_of(line, subject.low, subject.high, effort)[: len(subject.cases)]
         return replace(subject, line=line, cases=cases, naming=False)
 
     def _looked_at(self, line: Driveline) -> Trial:
-        subject = self._asked(line, QUICK_POINTS)
+        subject = self._asked(line, QUICK)
         cases = tuple(case for case in subject.cases if case.name in self.cases) or subject.cases[:1]
         if self.costly:
-            cases = tuple(map(_thinned, cases))
+            cases = tuple(replace(case, rough=True) for case in cases)
         return Trial(replace(subject, cases=cases), self.groups)
 
     def check(self, name: str, trial: Trial) -> Check | None:
-        """One check of a changed line, others judged with it only where they belong to its group."""
-        return (trial.group(self.of[name]) if name in self.of else trial.checks).get(name)
+        """One check of a changed line, others judged with it only where they belong to its group; of a mode that no
+        order meets any more, that of all such modes."""
+        found = trial.group(self.of[name]) if name in self.of else trial.checks
+        return found.get(name) or (found.get(SEPARATED) if name.startswith(SEPARATION_OF_ONE) else None)
 
     def broken(self, name: str, trial: Trial) -> list[Check]:
         """What a change made for the check called ``name`` breaks, or makes worse where it is exceeded already: of the
@@ -161,17 +160,13 @@ class Trials:
         if trial.whole and self.verdict is not Status.EXCEEDED:
             after = tuple(trial.checks.values())
             if verdict_of(after, self.subject.speed)[0] is Status.EXCEEDED:
-                return [check for check in after if check.status is Status.EXCEEDED]
+                return [check for check in after if check.exceeded]
         return []
 
 
-def _thinned(case: Case) -> Case:
-    return replace(case, rough=True, given=(*case.speeds[:-1:THINNED].tolist(), case.speeds[-1]))
-
-
 def _broken(before: Check | None, after: Check) -> bool:
-    if after.status is Status.EXCEEDED:
-        if before is None or before.status is not Status.EXCEEDED:
+    if after.exceeded:
+        if before is None or not before.exceeded:
             return True
         return after.margin < before.margin - WORSE * (1 + abs(before.margin))
-    return after.status is Status.NOT_JUDGED and before is not None and before.status is Status.SATISFIED
+    return after.missing and before is not None and before.satisfied

@@ -1,0 +1,181 @@
+"""A line over a range of speeds: its numbers at every speed, and the pieces within which it stays the same line.
+
+A spring enters another stage, the mean torque turns round, a table of excitations has a point: there responses jump or
+have a kink. Between two such speeds they are smooth but near resonances.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.driveline.elements import Disk
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.exciters import exciters
+from trunnion.equations.harmonic_torques import BEYOND
+from trunnion.equations.loads import mean_loads, static_torque
+from trunnion.equations.mean_clutch import states_a_motion
+from trunnion.equations.stage_laws import has_stages, stage_law
+
+PROBES = 129
+"""Speeds at which one looks whether the line is the same."""
+EXACT = 1e-12
+"""How closely a change is located, as a share of the range."""
+NARROW = 1e-9
+"""Share of the range below which a piece is a point."""
+NOTHING = 1e-9
+"""Share of the largest mean torque of any spring below which it is none."""
+STANDSTILL = 1e-6
+"""Share of the highest speed that stands for none."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Speeds [rad/s] within which nothing of the line changes but smoothly."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Speeds [rad/s] that cannot be looked at, and why, in words."""
+
+    low: float
+    high: float
+    why: str
+
+
+@dataclass(frozen=True)
+class Span:
+    """``assembly`` from ``low`` to ``high`` [rad/s]; ``put`` changes rows of packed numbers (case, column) in place
+    that follow the speed in column 0, for a line whose numbers do."""
+
+    assembly: Assembly
+    low: float
+    high: float
+    put: Callable[[Array], None] | None = None
+    points: tuple[float, ...] = field(default=())
+    """Speeds at which what ``put`` does has a kink."""
+
+    def table(self, speed: Array) -> Array:
+        """Packed numbers (case, column) at ``speed`` (case,) [rad/s]."""
+        table = self.assembly.table(len(speed), speed)
+        if self.put:
+            self.put(table)
+        return table
+
+    @property
+    def start(self) -> float:
+        """The lowest speed looked at: standstill counts as next to none."""
+        return max(self.low, STANDSTILL * self.high)
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The range in pieces, what cannot be looked at left out."""
+        return tuple(
+            piece
+            for piece in self._same
+            if not self._uncovered((piece.low + piece.high) / 2)
+            and (piece.high - piece.low > NARROW * self.high or self.low == self.high)
+        )
+
+    @cached_property
+    def gaps(self) -> tuple[Gap, ...]:
+        """What cannot be looked at."""
+        found: list[Gap] = []
+        for piece in self._same:
+            why = self._uncovered((piece.low + piece.high) / 2)
+            if why and found and found[-1].why == why and np.isclose(found[-1].high, piece.low, rtol=1e-9):
+                found[-1] = Gap(found[-1].low, piece.high, why)
+            elif why:
+                found.append(Gap(piece.low, piece.high, why))
+        return tuple(found)
+
+    @cached_property
+    def _same(self) -> tuple[Piece, ...]:
+        if self.start >= self.high:
+            return (Piece(self.high, self.high),)
+        inner = [p for p in self.points if self.start < p < self.high]
+        probes = np.unique(np.concatenate([np.linspace(self.start, self.high, PROBES), self._turning, inner]))
+        cuts = {*inner, *self._changes(probes)}
+        ends = [self.start, *sorted(cuts), self.high]
+        return tuple(Piece(a, b) for a, b in pairwise(ends) if b > a)
+
+    @property
+    def _turning(self) -> Array:
+        """Where a mean torque is largest or smallest: of second degree in the speed, it may turn round twice nearby."""
+        if self.put:
+            return np.zeros(0)
+        nodes = np.linspace(self.start, self.high, 3)
+        a, b, c = self._torque(nodes)
+        bend, slope = a - 2 * b + c, (c - a) / 2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            top = nodes[1] - slope / bend * (nodes[1] - nodes[0])
+        return np.asarray(top[np.isfinite(top) & (top > self.start) & (top < self.high)])
+
+    def _torque(self, speed: Array) -> Array:
+        """Mean torques (case, spring)."""
+        topo, table = self.assembly.topology, self.table(speed)
+        return static_torque(topo, mean_loads(topo, self.assembly.packed.column, table))
+
+    def _changes(self, probes: Array) -> Iterator[float]:
+        """Speeds at which the line changes, each as a pair just below and above."""
+        largest = float(np.abs(self._torque(probes)).max(initial=0.0))
+        known = {float(s): tuple(row) for s, row in zip(probes, self._signs(probes, largest), strict=True)}
+
+        def sign(speed: float) -> tuple[float, ...]:
+            if speed not in known:
+                known[speed] = tuple(self._signs(np.array([speed]), largest)[0])
+            return known[speed]
+
+        open_ones = [pair for pair in pairwise(probes.tolist()) if sign(pair[0]) != sign(pair[1])]
+        while open_ones:
+            low, high = open_ones.pop()
+            middle = (low + high) / 2
+            if high - low <= EXACT * self.high:
+                yield from (low, high)
+                continue
+            open_ones += [pair for pair in ((low, middle), (middle, high)) if sign(pair[0]) != sign(pair[1])]
+
+    def _signs(self, speed: Array, largest: float) -> Array:
+        """Numbers (case, …) that stay the same within a piece; ``largest`` mean torque of any spring [N m]."""
+        line, topo, column = self.assembly.line, self.assembly.topology, self.assembly.packed.column
+        table, torque = self.table(speed), self._torque(speed)
+        parts = [np.zeros((len(speed), 0))]
+        for e, compliance in enumerate(topo.compliances):
+            place, own = compliance.shafts[0], torque[:, e]
+            if has_stages(line.elements[place]):  # a mesh without load knows no margin against hammer
+                parts.append(np.where(np.abs(own) <= NOTHING * largest, 0.0, np.sign(own))[:, None])
+            if has_stages(line.elements[place]) and not states_a_motion(line.elements[place]):
+                law = stage_law(line, place, column, table)
+                stage = np.where(own == 0, law.stage(np.zeros(len(speed))), law.stage_under(own))
+                parts.append(stage[:, None].astype(float))
+        parts += [np.searchsorted(points, where)[:, None].astype(float) for points, where, _ in self._tables(table)]
+        return np.concatenate(parts, axis=1)
+
+    def _tables(self, table: Array) -> Iterator[tuple[Array, Array, str]]:
+        """Points of every table of excitations that acts, where on it the rows of ``table`` are, and its name."""
+        topo, packed = self.assembly.topology, self.assembly.packed
+        for exciter in exciters(self.assembly):
+            disk = packed.line.elements[exciter.place] if exciter.place >= 0 else None
+            if not isinstance(disk, Disk) or exciter.held or not disk.excitation[exciter.number - 1].points:
+                continue
+            harmonic = disk.excitation[exciter.number - 1]
+            where = table[:, 0] * abs(float(topo.speed_ratio[exciter.station]))
+            if harmonic.torques:
+                where = -mean_loads(topo, packed.column, table)[:, exciter.station]
+            yield np.array(harmonic.points), where, f"the table of {exciter.element} covers {harmonic.covers}"
+
+    def _uncovered(self, speed: float) -> str:
+        """Why nothing can be computed at a speed; empty where it can."""
+        for points, where, says in self._tables(self.table(np.array([speed]))):
+            slack = BEYOND * np.abs(points).max()
+            if not points[0] - slack <= where[0] <= points[-1] + slack:
+                return says
+        return ""
