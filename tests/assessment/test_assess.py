@@ -488,7 +488,7 @@ def test_beyond_the_range_every_load_case_is_looked_at_and_what_no_table_covers_
     said = [str(f) for f in overview(tn.Driveline(parts, limits=limits, operation=operation)).findings]
     beyond, uncovered = [one for one in said if "Just above" in one]
     assert "max torque of shaft would be exceeded" in beyond  # up to 120 rad/s it can be told
-    ends = "1145.9 rpm to 1317.8 rpm, the table of engine covers 572.958 rpm to 1145.92 rpm"
+    ends = "1145.9 rpm to 1317.8 rpm, the table of engine covers 572.958 rpm to 1145.92 rpm; extend it"
     assert f"no torque is judged: {ends}" in uncovered
     assert not any("Just below" in one for one in said if "no torque" not in one)
 

@@ -1126,7 +1126,7 @@ ENGINEER = [
     (
         '[[limit]]\nof = "spindle"\nmax_torque = "400 N*m"\n' + MILL.format(motor=TORQUES),
         "not judged",
-        "is a table from 600 rpm to 900 rpm, which does not cover 1500 rpm of its disk; extend the table",
+        "900 rpm to 1500 rpm not judged: the table of motor covers 600 rpm to 900 rpm; extend it",
     ),
     (MILL.format(motor=""), "said", "Nothing excites this line."),
     (HELD.replace("excitation", "# excitation"), "said", "Nothing excites this line but its joints."),

@@ -243,7 +243,8 @@ def test_cell(analysis: str, key: str) -> None:
         assert differ(before.numbers, after.numbers, 1e-7), "nothing changes: count it, or write why it cannot matter"
         return
     if cell.treatment is Treatment.NOT_JUDGED:
-        assert "not judged: max torque of front: no linear response" in after.text, "it is judged: count it"
+        words = cell.quote or "not judged: max torque of front: no linear response"
+        assert words in after.text, "it is judged: count it"
         return
     changed = differ(before.numbers, after.numbers, 1e-6)
     assert not changed, f"changes {changed}: it is counted"

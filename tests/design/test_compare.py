@@ -62,10 +62,11 @@ def test_what_it_did_is_what_the_analyses_say():
         assert got == pytest.approx(modes.frequency, rel=1e-12)
         assert [getattr(d, side) for d in found.of_kind("damping ratio")] == pytest.approx(modes.damping_ratio)
         binding = found.binding[side == "after"]
-        assert binding.name == judged.binding.name and binding.margin == judged.binding.margin
-        assert (
-            getattr(found.difference("margin of max torque of rear"), side) == judged.check("max torque of rear").margin
-        )
+        assert binding.name == judged.binding.name
+        check = judged.check("max torque of rear")
+        margin = getattr(found.difference("margin of max torque of rear"), side)
+        for each in (binding.margin, margin):  # compare looks for torques of all springs: other speeds, the same peak
+            assert each == pytest.approx(check.margin, abs=1e-6) and check.error < 1e-4 * check.value
         peak = found.difference("peak torque of rear")
         at = getattr(peak, f"speed_{side}")
         hill = tn.order_response(one, at, load_case="hill")

@@ -48,7 +48,7 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     where they concern it."""
     said = {key for key, cell in TABLE[analysis].items() if cell.treatment is Treatment.SAID}
     own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in remarks(line) if key in said)
-    if TABLE[analysis]["dry friction"].treatment is Treatment.REFUSED:
+    if TABLE[analysis]["dry friction"].treatment in (Treatment.REFUSED, Treatment.NOT_JUDGED):
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
@@ -115,6 +115,7 @@ _NOT_FOLLOWED = dict.fromkeys(
     ("dry friction", ONE_MOTION), "sliders change between sticking and slipping, which is not followed"
 )
 _FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
+_UNANSWERED = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"}
 _BASE = {
     **_RUBBING,
     "free start": "bent, it is judged about its own periodic motion",
@@ -247,19 +248,13 @@ TABLE: dict[str, Row] = {
             "load torque": _MODES_INERT["load torque"],
         },
     ),
-    "assess": _row(
-        refused=_RUBBING,
+    "assess": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
+    "envelope": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
+    "compare": _row(
         said=_BY_PLACE,
-        not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
+        not_judged={key: (reason, "not compared: frequency, growth rate, torque") for key, reason in _RUBBING.items()},
         inert=_EVEN,
     ),
-    "envelope": _row(
-        refused=_RUBBING,
-        said=_BY_PLACE,
-        not_judged={"prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"},
-        inert=_EVEN,
-    ),
-    "compare": _row(refused=_RUBBING, said=_BY_PLACE, inert=_EVEN),
     "sensitivity": _row(refused=_RUBBING, said=_BY_PLACE, inert=_PASSIVE),
     "optimise": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
     "certify_stability": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),

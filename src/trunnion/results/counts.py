@@ -15,3 +15,8 @@ def few(names: Sequence[str], most: int = 3) -> str:
 def counted(number: int, noun: str) -> str:
     """ "1 speed", "2 speeds", "0 speeds"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def any_of(words: Sequence[str]) -> str:
+    """ "a", "a or b", "a, b or c"."""
+    return " or ".join(one for one in (", ".join(words[:-1]), *words[-1:]) if one)

@@ -7,6 +7,9 @@ from math import nan, pi
 
 from trunnion.results.speeds import show_speed
 
+CLOSE, FAR = 5e-4, 0.5
+"""Distance from a mode, as a share of its frequency, within which one is on it, and beyond which it says nothing."""
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -35,6 +38,12 @@ class Cause:
     def __str__(self) -> str:
         if not self.mode:
             return f"led by {self.name}"
-        side = f"{abs(100 * self.off):.2g} % {'above' if self.off > 0 else 'below'}" if abs(self.off) >= 5e-4 else "on"
-        side = "far above" if self.off > 3 else side
-        return f"led by {self.name}, {side} mode {self.mode} ({self.natural / (2 * pi):.4g} Hz)"
+        return f"led by {self.name}, {self._side} mode {self.mode} ({self.natural / (2 * pi):.4g} Hz)"
+
+    @property
+    def _side(self) -> str:
+        if self.off > FAR or self.off < 1 / (1 + FAR) - 1:
+            return "far above" if self.off > 0 else "far below"
+        if abs(self.off) < CLOSE:
+            return "on"
+        return f"{abs(100 * self.off):.2g} % {'above' if self.off > 0 else 'below'}"

@@ -9,6 +9,7 @@ from math import isfinite, isnan, nan
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.driveline.changes import Change
+from trunnion.results.counts import any_of
 from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
@@ -148,14 +149,19 @@ class Comparison(Result):
         if len(told) > len(shown):
             rows.append(f"  {len(told) - len(shown)} more move by less than {100 * LITTLE:g} %")
         if self.changes and not told:
-            judged = None not in self.verdicts
-            rest = (
-                "a growth rate, a torque or a margin"
-                if judged
-                else "which is all that could be compared without speeds"
-            )
-            rows.append(f"  none of these moves a frequency, {rest}")
+            rows.append(f"  {self._unmoved}")
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+
+    @property
+    def _unmoved(self) -> str:
+        """What none of the changes moves, and what could not be compared."""
+        found = {one.kind for one in self.differences}
+        kinds = ("frequency", "growth rate", "torque", "margin")
+        same = any_of([f"a {kind}" for kind in kinds if kind in found])
+        rest = ", ".join(kind for kind in kinds if kind not in found)
+        without = " without speeds" if None in self.verdicts else ""
+        said = (f"none of these moves {same}" if same else "", f"not compared{without}: {rest}" if rest else "")
+        return "; ".join(one for one in said if one)
 
     def _bound(self, check: Check | None) -> str:
         return "" if check is None else f" ({check.name}, {percent(check.margin)})"

@@ -18,6 +18,7 @@ from trunnion.results.declared import Held, Judged, along, axis, fields_over, ov
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.stretches import ranges_in_words, stretches_above
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -374,11 +375,11 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
             "The excitations have no common period, so peak and vibratory torque are bounds: amplitudes added up.",
         )
     if not np.all(result.linear[~lost]):
-        beyond = result.speed[~lost & ~result.linear]
-        factor = speed_factor(unit)
+        beyond = stretches_above(result.speed[~lost], result.joint_rotation[~lost], LINEAR_RANGE)
+        where = ranges_in_words(beyond, unit, digits=3)
         yield Finding(
             Gravity.CAUTION,
             f"A joint's input swings by up to {np.nanmax(result.joint_rotation):.3g} rad, beyond the linear range of "
-            f"{LINEAR_RANGE} rad, between {beyond.min() * factor:.6g} and {beyond.max() * factor:.6g} {unit}: read "
-            "it as resonance, not as an amplitude; tn.periodic_response gives the true motion.",
+            f"{LINEAR_RANGE} rad, at {where}: read it as resonance, not as an amplitude; tn.periodic_response gives "
+            "the true motion.",
         )

@@ -8,10 +8,8 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.stretches import ranges_in_words, stretches_above
 from trunnion.results.verdict import Verdict
-
-MOST_STRETCHES = 4
 
 
 def where_unstable(speeds: Array, verdict: Codes, unit: str, *, lossy: bool = False) -> Iterator[Finding]:
@@ -29,16 +27,9 @@ def where_unstable(speeds: Array, verdict: Codes, unit: str, *, lossy: bool = Fa
     speed, unstable = speeds[order], verdict[order] == Verdict.UNSTABLE
     if not unstable.any():
         return
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], unstable, [False]]).astype(int)))
-    stretches = [
-        show_speed(speed[a], unit)
-        if b == a + 1
-        else f"{speed[a] * speed_factor(unit):.6g} to {show_speed(speed[b - 1], unit)}"
-        for a, b in zip(edges[::2], edges[1::2], strict=True)
-    ]
-    more = f" and {len(stretches) - MOST_STRETCHES} more stretches" if len(stretches) > MOST_STRETCHES else ""
+    where = ranges_in_words(stretches_above(speed, unstable.astype(float), 0.5, between=False), unit)
     yield Finding(
         Gravity.DANGER,
-        f"The steady motion is unstable at {', '.join(stretches[:MOST_STRETCHES])}{more}: a small disturbance grows, "
+        f"The steady motion is unstable at {where}: a small disturbance grows, "
         "and the amplitudes given there are not reached; ask stability() why, or tn.periodic_branch where it goes.",
     )

@@ -170,7 +170,11 @@ class Span:
             where = table[:, 0] * abs(float(topo.speed_ratio[exciter.station]))
             if harmonic.torques:
                 where = -mean_loads(topo, packed.column, table)[:, exciter.station]
-            yield np.array(harmonic.points), where, f"the table of {exciter.element} covers {harmonic.covers}"
+            yield (
+                np.array(harmonic.points),
+                where,
+                f"the table of {exciter.element} covers {harmonic.covers}; extend it",
+            )
 
     def _uncovered(self, speed: float) -> str:
         """Why nothing can be computed at a speed; empty where it can."""
