@@ -93,6 +93,15 @@ def exciters(assembly: Assembly) -> tuple[Exciter, ...]:
     return tuple(found)
 
 
+def tabled_by_speed(line: Driveline, exciter: Exciter) -> bool:
+    """Whether an amplitude stands in a table over the speed, and so is no polynomial in it."""
+    if exciter.station < 0:
+        return False
+    disk = line.elements[exciter.place]
+    assert isinstance(disk, Disk)
+    return bool(disk.excitation[exciter.number - 1].speeds)
+
+
 def quiet(line: Driveline) -> Driveline:
     """``line`` without its ``exciters``: excitations of disks and transmission errors."""
     for name, element in zip(line.names, line.elements, strict=True):

@@ -28,6 +28,7 @@ from trunnion.equations.exciters import (
     base_of_excitation,
     exciters,
     size,
+    tabled_by_speed,
     torque_on_unknowns,
     twist_on_unknowns,
 )
@@ -190,7 +191,8 @@ class _Case:
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.few: Array | None = None
         self.written: dict[int, _Written] = {}
-        if self.varies and self.alike and not self.loss_in_time and self.own is None:
+        smooth = self.alike and not self.loss_in_time and not any(tabled_by_speed(assembly.line, e) for e in shaken)
+        if self.varies and smooth and self.own is None:
             self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
             self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
