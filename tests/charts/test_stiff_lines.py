@@ -59,7 +59,7 @@ def stiff_line(seed: int, angle: float | None = None) -> tn.Driveline:
 
 def charted(seed: int) -> StabilityChart:
     line = stiff_line(seed, 1.0)
-    frequency = tn.natural_frequencies(line).frequency
+    frequency = tn.natural_frequencies(line).undamped_frequency
     slow = max(frequency[1] / 2, frequency[-1] / 150)
     return tn.stability_chart(line, (SPEED, slow, 3 * slow, 20), (ANGLE, 0.0, STEEPEST, 12))
 

@@ -50,7 +50,7 @@ def linear_change(load: float, beta: float, speed: float, damping: float = 1.0) 
     return tn.stability(chain(load, beta, speed, damping).line(), speed).spectral_radius - bare
 
 
-FREQUENCIES = tn.natural_frequencies(chain(0.0, 0.1, 1.0).line()).frequency
+FREQUENCIES = tn.natural_frequencies(chain(0.0, 0.1, 1.0).line()).undamped_frequency
 
 
 @pytest.mark.parametrize("modes", [(0, 1), pytest.param((1, 2), marks=pytest.mark.slow)])

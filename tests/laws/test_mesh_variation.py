@@ -82,7 +82,7 @@ def test_one_mesh_and_one_disk_are_a_mathieu_oscillator(q: float, a: float, trac
                      stiffness_variation=[{"share": 2 * q / a, "phase": np.pi}]),
          tn.Disk(inertia=inertia)]
     )  # fmt: skip
-    (frequency,) = tn.natural_frequencies(line).frequency
+    (frequency,) = tn.natural_frequencies(line).undamped_frequency
     found = tn.stability(line, 2 * frequency / (teeth * np.sqrt(a)))
     assert found.multipliers.sum() == pytest.approx(trace, abs=2e-5)
 
@@ -117,13 +117,13 @@ def test_charts_and_limits_count_meshes() -> None:
 def test_mesh_orders_are_named() -> None:
     """Teeth per turn of the input excite: 25 in front of the mesh, 25/2 for a mesh behind a ratio of 2."""
     line = geared(0.2)
-    modes = tn.natural_frequencies(line).frequency
+    modes = tn.natural_frequencies(line).undamped_frequency
     named = {str(r): r.speed for r in tn.resonance_speeds(line)}
     assert named["subharmonic 2ω₃/25 (mesh of GearPair 1)"] == pytest.approx(2 * modes[2] / 25)
     assert named["sum (ω₁+ω₂)/25 (mesh of GearPair 1)"] == pytest.approx((modes[0] + modes[1]) / 25)
     behind = [line.elements[0], tn.Shaft(stiffness=1e5), tn.Disk(inertia=1.0), tn.Ratio(ratio=2.0), *line.elements[1:]]
     slow = tn.Driveline(behind)
-    first = tn.natural_frequencies(slow).frequency[0]
+    first = tn.natural_frequencies(slow).undamped_frequency[0]
     named = {str(r): r.speed for r in tn.resonance_speeds(slow)}
     assert named["subharmonic 4ω₁/25 (mesh of GearPair 1)"] == pytest.approx(4 * first / 25)
     both = geared(0.2, tn.HookeJoint(angle=0.2))

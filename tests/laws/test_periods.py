@@ -149,7 +149,7 @@ def test_what_dies_out_belongs_to_no_resonance(angle: float) -> None:
         [tn.ConstantSpeed(), tn.Shaft(stiffness=1, damping=0.1), tn.Disk(inertia=1), tn.HookeJoint(angle=angle),
          tn.Shaft(stiffness=1, damping=0.1), tn.Disk(inertia=1)]
     )  # fmt: skip
-    first, second = tn.natural_frequencies(line).frequency
+    first, second = tn.natural_frequencies(line).undamped_frequency
     found = tn.stability(line, speed=float(first + second) / 2 * 1.02)
     assert found.verdict.name == "STABLE" and found.resonance is None and "belongs" not in str(found)
 

@@ -35,7 +35,7 @@ def test_with_the_sign_alone_nothing_is_unstable(gamma: float) -> None:
 @pytest.mark.parametrize(("gamma", "speed"), [(100.0, 0.336), (1.0, 0.5)])
 def test_single_slope_opens_a_false_difference_tongue(gamma: float, speed: float) -> None:
     """At (ω₂ − ω₁)/4 for γ = 100, where S1's Table 2 has 0.338, and at (ω₂ − ω₁)/2 for γ = 1."""
-    low, high = tn.natural_frequencies(tn.catalogue("two-shaft-cardan", inertia_of_disk_2=gamma)).frequency
+    low, high = tn.natural_frequencies(tn.catalogue("two-shaft-cardan", inertia_of_disk_2=gamma)).undamped_frequency
     assert (high - low) / (4 if gamma > 1 else 2) == pytest.approx(speed, abs=1e-3)
     wrong = tn.stability(system(two_shafts, speed, 0.5, ZETA, gamma, version="single"))
     assert wrong.verdict.name == "UNSTABLE" and abs(wrong.multipliers[0].imag) > 1e-3
@@ -67,7 +67,7 @@ def test_three_shafts_as_printed_are_unstable_everywhere(gammas: tuple[float, fl
 def test_printed_frequencies_of_two_shafts() -> None:
     """Equation 26 prints 0.072 and 1.422; the paper's own equation 25, signs and brackets mended, gives
     0.070622 and 1.415985. Table 1 mixes both: 1.422/2 = 0.711 (printed 0.712), 1.422/3 = 0.474."""
-    found = tn.natural_frequencies(tn.catalogue("two-shaft-cardan", inertia_of_disk_2=100.0)).frequency
+    found = tn.natural_frequencies(tn.catalogue("two-shaft-cardan", inertia_of_disk_2=100.0)).undamped_frequency
     total = 1 + 1 * (1 / 100 + 1)
     root = np.sqrt(total**2 - 4 / 100)
     assert found == pytest.approx(np.sqrt([(total - root) / 2, (total + root) / 2]), rel=1e-12)

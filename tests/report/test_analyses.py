@@ -28,7 +28,7 @@ def test_sweep_is_the_response_of_stability(changes: dict[str, float]) -> None:
 
 
 def test_sweep_speeds_hold_the_peaks() -> None:
-    first = tn.natural_frequencies(LINE).frequency[0]
+    first = tn.natural_frequencies(LINE).undamped_frequency[0]
     speeds = tn.sweep_speeds(LINE, 0.1, 1.5, 11)
     assert np.all(np.diff(speeds) > 0)
     peak, at = tn.speed_sweep(LINE, speeds).peak("Shaft 1")

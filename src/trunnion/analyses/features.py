@@ -143,8 +143,7 @@ _MODES_SAID: dict[str, Words] = {
     **_SERIES,
     **dict.fromkeys(_UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
-    "viscous load": "damping ratios are those of the shafts alone",
-    "quadratic load": "damping ratios are those of the shafts alone",
+    "quadratic load": "damping ratios are those without it, for it rises with the speed; campbell_diagram has it",
 }
 _MODES_INERT = {
     **_TORSION,

@@ -175,17 +175,19 @@ def _error_json(chart: StabilityChart) -> dict[str, float] | None:
 
 
 def modes_json(modes: NaturalFrequencies, unit: str) -> dict[str, Any]:
-    """Frequencies in ``unit`` and mode shapes by the names of the inertias."""
+    """Frequencies in ``unit``, null where a mode is overdamped; decay in 1/s; shapes by the names of the inertias."""
     return {
         "frequency_unit": unit,
         "rigid_body": modes.rigid_body,
         "modes": [
             {
-                "frequency": float(w) * speed_factor(unit),
-                "damping_ratio": float(z),
-                "shape": dict(zip(modes.names, shape.tolist(), strict=True)),
+                "frequency": float(modes.frequency[i]) * speed_factor(unit),
+                "damping_ratio": float(modes.damping_ratio[i]),
+                "undamped_frequency": float(modes.undamped_frequency[i]) * speed_factor(unit),
+                "decay_rates": modes.decay_rate[i].tolist(),
+                "shape": dict(zip(modes.names, modes.shape[:, i].tolist(), strict=True)),
             }
-            for w, z, shape in zip(modes.frequency, modes.damping_ratio, modes.shape.T, strict=True)
+            for i in range(len(modes.names))
         ],
     }
 

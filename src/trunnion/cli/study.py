@@ -172,7 +172,7 @@ def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) ->
     modes = tn.natural_frequencies(line)
     answer(
         "natural-frequencies", None, as_json, lambda: modes_json(modes, unit),
-        lambda: f"{len(modes.frequency)} natural frequencies, all joints straight",
+        lambda: f"{len(modes.names)} natural frequencies, all joints straight",
         lambda: output.table(modes.table(unit)), wrap=True,
     )  # fmt: skip
 

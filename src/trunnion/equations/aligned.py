@@ -5,12 +5,13 @@ Its natural frequencies name the resonances of the jointed line. Ratios keep the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.loads import load_slope
 from trunnion.equations.topology import Topology
 
 
@@ -36,6 +37,16 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
         for part in (coefficients.damping, coefficients.stiffness, coefficients.loss)
     )
     return AlignedMatrices(topo.on_unknowns(coefficients.inertia), damping, stiffness, loss)
+
+
+def loaded_matrices(topo: Topology, coefficients: LineCoefficients, speeds: Array) -> AlignedMatrices:
+    """The same with the slopes of loads by speed, each at its station's own speed; input ``speeds`` (case,) [rad/s].
+
+    At the speed 0 viscous loads brake and quadratic ones do not.
+    """
+    straight = aligned_matrices(topo, coefficients)
+    slope = load_slope(topo, coefficients.viscous, coefficients.quadratic, np.asarray(speeds))
+    return replace(straight, damping=straight.damping + topo.on_unknowns(slope)[:, :, None] * np.eye(topo.size))
 
 
 def rigid_rotation(topo: Topology) -> Array:

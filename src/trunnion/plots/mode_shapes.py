@@ -19,7 +19,7 @@ WIDTH = 7.2
 
 
 def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = None) -> Figure:
-    """Rotation of every inertia in every mode, the largest drawn to full width.
+    """Rotation of every inertia in every undamped mode, the largest drawn to full width; titles are damped frequencies.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
     drive : name of the prescribed rotation in front of the line, drawn at rest; None leaves it out.
     """
     names = [*([drive] if drive else []), *modes.names]
-    count, columns = len(modes.frequency), min(PER_ROW, len(modes.frequency))
+    count, columns = len(modes.names), min(PER_ROW, len(modes.names))
     rows = -(-count // columns)
     height = rows * (ROW_HEIGHT * len(names) + 0.65) + 0.35
     figure = new_figure(WIDTH, height)
@@ -42,7 +42,7 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
         axes.axvline(0.0, color=FAINT, lw=0.8)
         axes.hlines(place, 0.0, shape, color=ACCENT, lw=1.2)
         axes.plot(shape, place, "o-", color=ACCENT, ms=4.5, lw=0.9, mfc=ACCENT, mec="white", mew=0.6)
-        frequency = "rigid body" if modes.rigid_body and i == 0 else _shown(float(modes.frequency[i]), unit)
+        frequency = _shown(modes, i, unit)
         axes.set_title(f"mode {i + 1}\n{frequency}", fontsize=SMALL, color=INK)
         axes.set_yticks(place, names, fontsize=SMALL)
         axes.set_xticks([-1, 0, 1], ["−1", "0", "1"], fontsize=SMALL - 1)
@@ -57,7 +57,12 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
     return figure
 
 
-def _shown(frequency: float, unit: str) -> str:
+def _shown(modes: NaturalFrequencies, mode: int, unit: str) -> str:
+    if modes.rigid_body and mode == 0:
+        return "rigid body"
+    if modes.overdamped[mode]:
+        return "overdamped"
+    frequency = float(modes.frequency[mode])
     if unit == "rad/s":
         return show_speed(float(f"{frequency:.4g}"), unit)
     return f"{frequency * speed_factor(unit):.4g} {unit}"

@@ -41,7 +41,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         yield Check(ALL, Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
         return
     clear: list[tuple[float, str, float]] = []
-    frequency = np.abs(case.modes.imag)
+    frequency = case.modes.imag
     for m in range(frequency.shape[1]):
         near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
         if not np.isfinite(near):

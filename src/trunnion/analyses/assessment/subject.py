@@ -361,7 +361,7 @@ def cause(case: Case, at: int, size: Array) -> Cause | None:
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])
     frequency = order * case.speeds[at] + extra
-    modes = np.abs(case.modes[at])
+    modes = case.modes[at].imag
     if not np.any(np.isfinite(modes)):
         return Cause(order, extra)
     m = int(np.nanargmin(np.abs(np.log(modes / frequency))))

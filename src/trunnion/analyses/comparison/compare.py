@@ -105,9 +105,10 @@ def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[st
     except InputError as error:
         said.append(Finding(Gravity.CAUTION, str(error).splitlines()[0]))
         return
-    for m in range(int(found.rigid_body), len(found.frequency)):
+    modes = range(int(found.rigid_body), len(found.undamped_frequency))
+    for m in modes:
         yield f"natural frequency of mode {m + 1}", ("frequency", float(found.frequency[m]), "rad/s", np.nan)
-    for m in range(int(found.rigid_body), len(found.frequency)):
+    for m in modes:
         if found.damping_ratio[m]:
             yield f"damping ratio of mode {m + 1}", ("damping ratio", float(found.damping_ratio[m]), "1", np.nan)
 

@@ -169,7 +169,8 @@ class Comparison(Result):
     def _value(self, one: Difference, side: int) -> str:
         value, speed = ((one.before, one.speed_before), (one.after, one.speed_after))[side]
         if not isfinite(value):
-            return "none" if isnan(value) else "without bound"
+            still = one.kind in ("frequency", "damping ratio")
+            return ("no oscillation" if still else "none") if isnan(value) else "without bound"
         at = f" at {show_speed(float(f'{speed:.6g}'), self.unit)}" if isfinite(speed) else ""
         return f"{value_words(value, one)}{at}"
 

@@ -178,7 +178,7 @@ class CampbellDiagram(Judged):
             hertz = self.frequency[:, m] / (2 * np.pi)
             low, high = np.nanmin(hertz, initial=np.inf), np.nanmax(hertz, initial=-np.inf)
             if not low <= high:
-                rows.append(f"  mode {number}: does not oscillate")
+                rows.append(f"  mode {number}: overdamped, does not oscillate")
                 continue
             size = f"{low:.4g} Hz" if high - low <= 5e-4 * high else f"{low:.4g} to {high:.4g} Hz"
             rows.append(f"  mode {number}: {size}, {self.named(int(number))}")

@@ -1,4 +1,4 @@
-"""Natural frequencies, mode shapes and damping ratios of the aligned line (all joint angles zero)."""
+"""Natural frequencies, damping and mode shapes of the aligned line (all joint angles zero)."""
 
 from __future__ import annotations
 
@@ -9,113 +9,159 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.analyses.features import left_out
-from trunnion.arrays import Array, Complex
+from trunnion.analyses.linear.damped_modes import LineModes, line_modes
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import AlignedMatrices, frequencies
+from trunnion.equations.aligned import frequencies, loaded_matrices, rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.results.declared import Held, Result, axis, fields_over, over
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed, speed_factor
-
-NO_OSCILLATION = 1e-3
-"""Share of the lowest elastic frequency below which an eigenvalue does not oscillate."""
+from trunnion.results.speeds import four_figures, show_speed, speed_factor
 
 
 @dataclass(frozen=True, repr=False)
 class NaturalFrequencies(Result):
-    """Modes of the aligned line, by ascending frequency.
+    """Modes of the aligned line as it is damped, beside the undamped ones, by whose frequency they are numbered.
 
-    frequency (mode,) undamped [rad/s]; damping_ratio (mode,) [1], from the damped eigenvalues where the mode
-    oscillates; shape (rotation, mode): rotation of each inertia, largest entry 1; names (rotation,).
-    ``rigid_body`` tells that mode 1 is the free rotation of the whole line. ``findings`` say what of the line is
-    left out. Damping ratios, shapes and findings are computed when they are asked for.
+    undamped_frequency (mode,) [rad/s], ascending, 0 of the rigid body; names (rotation,); ``rigid_body`` tells that
+    mode 1 is the free rotation of the whole line. Everything else follows when it is asked for: ``eigenvalue``,
+    ``frequency``, ``damping_ratio``, ``decay_rate``, ``shape``, and ``findings``, which say what of the line is left
+    out. Eigenvalues hold to rounding, 1e-12 of the highest frequency or damping rate.
     """
 
-    frequency: Array
+    undamped_frequency: Array
     names: tuple[str, ...]
     rigid_body: bool
     assembly: Assembly
 
     @cached_property
-    def shape(self) -> Array:
-        """Rotation of each inertia (rotation, mode), the largest entry 1."""
-        shape = self._vectors / np.sqrt(self.assembly.aligned.mass[0])[:, None]
-        return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
+    def eigenvalue(self) -> Complex:
+        """Both eigenvalues λ (mode, root) [1/s]: −ζ|λ| ± iω_d, or two real ones of an overdamped mode."""
+        return self.modes.eigenvalue
+
+    @property
+    def frequency(self) -> Array:
+        """Damped frequency ω_d = Im λ of each mode (mode,) [rad/s]; NaN of an overdamped mode, 0 of the rigid body."""
+        return np.where(self.overdamped, np.nan, self.eigenvalue[:, 0].imag)
+
+    @property
+    def damping_ratio(self) -> Array:
+        """ζ = −Re λ/|λ| of each mode (mode,) [1]; NaN of an overdamped mode, 0 of the rigid body."""
+        first, size = self.eigenvalue[:, 0], np.abs(self.eigenvalue[:, 0])
+        ratio = np.divide(-first.real, size, out=np.zeros(len(size)), where=first.imag > 0)
+        return np.where(self.overdamped, np.nan, ratio + 0.0)
+
+    @property
+    def decay_rate(self) -> Array:
+        """−Re λ (mode, root) [1/s]: motion dies out with e^(−rate · t); twice the same for a mode that oscillates."""
+        return np.asarray(0.0 - self.eigenvalue.real)
+
+    @property
+    def overdamped(self) -> Flags:
+        """Which modes do not oscillate (mode,), the rigid body aside."""
+        still = self.eigenvalue[:, 0].imag == 0
+        still[: int(self.rigid_body)] = False
+        return np.asarray(still)
 
     @cached_property
-    def damping_ratio(self) -> Array:
-        """Damping ratio of each mode (mode,)."""
-        matrices = self.assembly.aligned
-        damping, stiffness, loss = (
-            _over_masses(part[0], matrices) for part in (matrices.damping, matrices.stiffness, matrices.loss)
-        )
-        return _damping_ratios(damping, stiffness, loss, self._vectors, self.frequency)
+    def modes(self) -> LineModes:
+        """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
+        return line_modes(*_matrices(self.assembly), _rigid(self.assembly) if self.rigid_body else None)
+
+    @cached_property
+    def shape(self) -> Array:
+        """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
+        mass = self.assembly.aligned.mass[0]
+        root = np.sqrt(mass)
+        shape = np.linalg.eigh(self.assembly.aligned.stiffness[0] / np.outer(root, root))[1] / root[:, None]
+        return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What of the line is left out."""
         return left_out("natural_frequencies", self.assembly.line)
 
-    @cached_property
-    def _vectors(self) -> Array:
-        matrices = self.assembly.aligned
-        return np.linalg.eigh(_over_masses(matrices.stiffness[0], matrices))[1]
-
     @property
     def hertz(self) -> Array:
-        """Frequencies in Hz."""
+        """Damped frequencies in Hz."""
         return self.frequency / (2 * np.pi)
 
     @property
     def elastic(self) -> Array:
-        """Frequencies without the rigid-body mode [rad/s]."""
-        return self.frequency[1:] if self.rigid_body else self.frequency
+        """Undamped frequencies without the rigid-body mode [rad/s]."""
+        return self.undamped_frequency[int(self.rigid_body) :]
 
     def declared(self) -> Iterator[Held]:
-        """Frequency and damping ratio over the modes, mode shapes over (rotation, mode)."""
-        yield axis("mode", np.arange(1, len(self.frequency) + 1))
+        """Frequencies, damping ratio and decay over the modes, mode shapes over (rotation, mode)."""
+        yield axis("mode", np.arange(1, len(self.undamped_frequency) + 1))
         yield axis("rotation", self.names)
-        yield from fields_over("mode", self, frequency="rad/s", damping_ratio="1")
-        yield over("rotation mode", "shape", self.shape, "1", "mode shape")
+        yield over("mode", "frequency", self.frequency, "rad/s", "damped")
+        yield from fields_over("mode", self, undamped_frequency="rad/s", damping_ratio="1")
+        yield over("mode root", "decay_rate", self.decay_rate, "1/s", "of both eigenvalues")
+        yield over("rotation mode", "shape", self.shape, "1", "undamped mode shape")
 
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:
-        """One row per mode, frequencies in ``unit``; the mode's largest motion named."""
+        """One row per mode, frequencies in ``unit``; what dies out without oscillating and what moves most named."""
         factor = speed_factor(unit)
+        still = any(self.overdamped)
         return [
             {
                 "mode": i + 1,
-                f"frequency [{unit}]": float(w * factor),
-                "damping ratio": float(z),
-                "moves most": "whole line" if self.rigid_body and i == 0 else self.names[np.argmax(np.abs(v))],
+                f"frequency [{unit}]": float(self.frequency[i] * factor),
+                "damping ratio": float(self.damping_ratio[i]),
+                f"undamped [{unit}]": float(self.undamped_frequency[i] * factor),
+                **({"overdamped": self._decay(i)} if still else {}),
+                "moves most": "whole line" if self._rigid(i) else self.names[np.argmax(np.abs(self.shape[:, i]))],
             }
-            for i, (w, z, v) in enumerate(zip(self.frequency, self.damping_ratio, self.shape.T, strict=True))
+            for i in range(len(self.undamped_frequency))
         ]
+
+    def _rigid(self, mode: int) -> bool:
+        return self.rigid_body and mode == 0
+
+    def _decay(self, mode: int) -> str:
+        """How an overdamped mode dies out; "" of others."""
+        if not self.overdamped[mode]:
+            return ""
+        slow, fast = (four_figures(rate) for rate in self.decay_rate[mode])
+        return f"decays at {slow} and {fast} 1/s"
 
     def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
         """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
         return drawing(self, "plot")(self, unit=unit, drive=drive)
 
     def __str__(self) -> str:
-        unit = speed_unit(self.assembly.line)
-        lines = [f"{len(self.frequency)} natural frequencies of the aligned line (joint angles zero)"]
-        for i, (w, z) in enumerate(zip(self.frequency, self.damping_ratio, strict=True), start=1):
-            if self.rigid_body and i == 1:
-                lines.append(f"  mode {i}: 0, rigid body (the line turns as a whole)")
-            else:
-                first = "" if unit == "Hz" else f"{show_speed(w, unit)} = "
-                lines.append(f"  mode {i}: {first}{show_speed(w, 'Hz')}, damping ratio {z:.3g}")
+        many = len(self.undamped_frequency)
+        lines = [f"{many} natural frequencies of the aligned line (joint angles zero)"]
+        lines += [f"  mode {i + 1}: {self._said(i)}" for i in range(many)]
         return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+
+    def _said(self, mode: int) -> str:
+        if self._rigid(mode):
+            return "0, rigid body (the line turns as a whole)"
+        undamped = self._shown(self.undamped_frequency[mode])
+        if self.overdamped[mode]:
+            return f"overdamped, {self._decay(mode)}; undamped {undamped}"
+        ratio, frequency = self.damping_ratio[mode], self._shown(self.frequency[mode])
+        beside = "" if frequency == undamped else f"; undamped {undamped}"
+        return f"{frequency}, damping ratio {ratio:.3g}{beside}"
+
+    def _shown(self, frequency: float) -> str:
+        unit = speed_unit(self.assembly.line)
+        first = "" if unit == "Hz" else f"{show_speed(frequency, unit)} = "
+        return f"{first}{show_speed(frequency, 'Hz')}"
 
 
 def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
-    """Natural frequencies of ``line`` with all joint angles zero.
+    """Natural frequencies and damping of ``line`` as it stands, with all joint angles zero.
 
-    M q̈ + C q̇ + (K + iH) q = 0 in absolute rotations, H from loss factors that hold at all frequencies: a mode whose
-    energy is all in such springs has the damping ratio sin(½ arctan η), nearly η/2. Ratios turn at their constant speed
-    ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order; resonance
-    speeds are named after them.
+    M q̈ + C q̇ + (K + iH) q = 0 in absolute rotations; C holds viscous loads too, H loss factors that hold at all
+    frequencies: a mode whose energy is all in such springs has the damping ratio sin(½ arctan η), nearly η/2. The
+    frequencies are those of the damped line, from the complex eigenvalues λ: ω_d = Im λ = √(1 − ζ²)|λ|. Undamped ones,
+    with C and H left out, stand beside them; resonance speeds are named after those. Ratios turn at their constant
+    speed ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order.
     """
     assembly = assemble(line)
     topo = assembly.topology
@@ -123,36 +169,15 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     return NaturalFrequencies(found, topo.names, topo.free, assembly)
 
 
-def _over_masses(part: Array, matrices: AlignedMatrices) -> Array:
+def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
+    """Damping, stiffness and loss of unit masses, viscous loads among the damping."""
+    coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
+    matrices = loaded_matrices(assembly.topology, coefficients, np.zeros(1))
     root = np.sqrt(matrices.mass[0])
-    return np.asarray(part / np.outer(root, root))
+    scale = np.outer(root, root)
+    return matrices.damping[0] / scale, matrices.stiffness[0] / scale, matrices.loss[0] / scale
 
 
-def _damping_ratios(damping: Array, stiffness: Array, loss: Array, vectors: Array, frequency: Array) -> Array:
-    """−Re λ/|λ| of the damped modes; by modal projection where a mode does not oscillate."""
-    n = len(frequency)
-    if not damping.any() and not loss.any():
-        return np.zeros(n)
-    modal, lost = (np.einsum("im,ij,jm->m", vectors, part, vectors) for part in (damping, loss))
-    ratio = np.divide(modal * frequency + lost, 2 * frequency**2, out=np.zeros(n), where=frequency > 0)
-    if np.any(np.abs(ratio) >= 0.9):
-        return ratio
-    whole = stiffness + 1j * loss if loss.any() else stiffness
-    oscillating = frequency > 0
-    values, _ = damped_modes(damping, whole, NO_OSCILLATION * float(frequency[oscillating].min(initial=np.inf)))
-    if len(values) == oscillating.sum():
-        ratio[oscillating] = -values.real / np.abs(values)
-    return ratio
-
-
-def damped_modes(damping: Array, stiffness: Array | Complex, least: float) -> tuple[Complex, Complex]:
-    """Eigenvalues of λ² + λC + K with an imaginary part above ``least`` [rad/s], by modulus; their shapes (n, values).
-
-    C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
-    own size, is no oscillation: ``least`` keeps it out.
-    """
-    n = len(damping)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
-    above = np.flatnonzero(values.imag > least)
-    above = above[np.argsort(np.abs(values[above]))]
-    return values[above], vectors[:n, above]
+def _rigid(assembly: Assembly) -> Array:
+    """How the whole line turns, in coordinates scaled with the roots of the inertias."""
+    return np.asarray(rigid_rotation(assembly.topology) * np.sqrt(assembly.aligned.mass[0]))

@@ -152,7 +152,7 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     if isinstance(orders, bool) or not isinstance(orders, int) or orders < 1:
         raise InputError("must be a whole number, 1 or more", key="orders", value=orders)
     assembly = assemble(line)
-    modes = natural_frequencies(assembly).frequency
+    modes = natural_frequencies(assembly).undamped_frequency
     found = [r for source in sources(assembly) for r in _excited(modes, orders, source)]
     said = left_out("resonance_speeds", assembly.line)
     return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said, speed_unit(assembly.line))

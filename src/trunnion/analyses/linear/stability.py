@@ -268,7 +268,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
     named = None
     if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
         moving = motion.mode_motion(complex(values[critical]))
-        frequency = natural_frequencies(assembly).frequency / speed
+        frequency = natural_frequencies(assembly).undamped_frequency / speed
         named = _named(moving, orbit.verdict, speed, frequency, sources(assembly), turns)
     shapes = vectors[:, by_modulus] * scale[:, None]
     return Stability(

@@ -85,7 +85,7 @@ def schedule(assembly: Assembly, first: float, last: float, acceleration: float,
     check(first, last, acceleration)
     longest = abs(last - first) / acceleration
     if ramp is None:
-        slow = [w for w in natural_frequencies(assembly).frequency if w > 0]
+        slow = [w for w in natural_frequencies(assembly).undamped_frequency if w > 0]
         ramp = min(RAMP_PERIODS * 2 * np.pi / float(min(slow)), longest) if slow else 0.0
     elif not 0 <= one_number(ramp, "ramp", "2.0 seconds, say") < 2 * longest:
         raise InputError(

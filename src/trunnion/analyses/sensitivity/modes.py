@@ -2,8 +2,9 @@
 
     (λ²M + λC + K ± iH) x = 0:    λ′ = −yᵀ(λ²M′ + λC′ + K′ ± iH′)x / yᵀ(2λM + C)x
 
-The matrices are symmetric, so y = x. Undamped, 2ω ω′ = xᵀ(K′ − ω²M′)x/(xᵀMx). The coefficients are low polynomials or
-smooth functions of the description's numbers: their own derivatives by differences of fourth order hold to rounding.
+The matrices are symmetric, so y = x. Frequencies are those of the damped line, ω_d = Im λ. The coefficients are low
+polynomials or smooth functions of the description's numbers: their own derivatives by differences of fourth order hold
+to rounding.
 (R. L. Fox and M. P. Kapoor, Rates of change of eigenvalues and eigenvectors, AIAA Journal 6 (1968) 2426.)
 """
 
@@ -13,12 +14,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from trunnion.analyses.linear.natural_frequencies import NO_OSCILLATION, damped_modes, natural_frequencies
+from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.analyses.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.analyses.sensitivity.directions import Direction, Neighbourhood
 from trunnion.analyses.sensitivity.result import EXACT, Quantity, Rows
 from trunnion.arrays import Array, Complex
-from trunnion.equations.aligned import AlignedMatrices, aligned_matrices
+from trunnion.equations.aligned import AlignedMatrices, loaded_matrices
 
 ROUNDING = 1e-11
 """Share of a slope that rounding may change."""
@@ -32,62 +33,43 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
     topo = assembly.topology
     found = natural_frequencies(assembly)
     first = int(found.rigid_body)
-    omega, shape = found.frequency[first:], found.shape[:, first:]
+    values = found.eigenvalue[first:, 0]
 
     def matrices(table: Array) -> AlignedMatrices:
-        return aligned_matrices(topo, assembly.coefficients(table, any_frequency=True))
+        return loaded_matrices(topo, assembly.coefficients(table, any_frequency=True), np.zeros(len(table)))
 
     here = matrices(near.row())
-    mass, damping, complex_stiffness = here.mass[0], here.damping[0], here.stiffness[0] + 1j * here.loss[0]
-    weight = np.einsum("im,i,im->m", shape, mass, shape)
-    root = np.sqrt(mass)
-    over = 1 / np.outer(root, root)
-    values, scaled = damped_modes(
-        damping * over, complex_stiffness * over, NO_OSCILLATION * float(omega.min(initial=np.inf))
-    )
-    vectors = scaled / root[:, None]
-    matched = _matched(values, found.damping_ratio[first:])
-    frequency_slope, ratio_slope = np.zeros((2, len(omega), len(directions)))
+    mass, damping = here.mass[0], here.damping[0]
+    vectors = found.modes.shape[:, first:] / np.sqrt(mass)[:, None]
+    oscillating = np.flatnonzero(~found.overdamped[first:])
+    frequency_slope, ratio_slope = np.full((2, len(values), len(directions)), np.nan)
     for d, one in enumerate(directions):
         step = SMOOTH_STEP
         beside = matrices(near.rows(near.row(), one, step * CENTRAL))
         dm, dc, dk, dh = (
             central(part, step * one.size) for part in (beside.mass, beside.damping, beside.stiffness, beside.loss)
         )
-        change = np.einsum("im,ij,jm->m", shape, dk, shape) - omega**2 * np.einsum("im,i,im->m", shape, dm, shape)
-        frequency_slope[:, d] = change / (2 * omega * weight)
-        for m, place in enumerate(matched):
-            if place < 0:
-                continue
-            value, x = values[place], vectors[:, place]
+        for m in oscillating:
+            value, x = values[m], vectors[:, m]
             top = value**2 * (x * dm) @ x + value * (x @ dc @ x) + x @ (dk + 1j * dh) @ x
-            bottom = 2 * value * (x * mass) @ x + x @ damping @ x
-            ratio_slope[m, d] = _ratio_slope(value, -top / bottom)
-    names = [f"mode {m}" for m in range(first + 1, first + 1 + len(omega))]
-    refused = [_coincides(omega, m, first) for m in range(len(omega))]
-    words = "it does not oscillate: a damping ratio near 1 has no derivative here"
-    unmatched = [why or ("" if place >= 0 else words) for why, place in zip(refused, matched, strict=True)]
+            change = -top / (2 * value * (x * mass) @ x + x @ damping @ x)
+            frequency_slope[m, d], ratio_slope[m, d] = change.imag, _ratio_slope(value, change)
+    names = [f"mode {m}" for m in range(first + 1, first + 1 + len(values))]
+    refused = [_refused(values, m, first) for m in range(len(values))]
     frequency_slope[np.array(refused) != ""] = np.nan
-    ratio_slope[np.array(unmatched) != ""] = np.nan
+    ratio_slope[np.array(refused) != ""] = np.nan
     frequencies = [
         Quantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
-        for name, w, why in zip(names, omega, refused, strict=True)
+        for name, w, why in zip(names, found.frequency[first:], refused, strict=True)
     ]
     yield Rows(frequencies, frequency_slope, ROUNDING * np.abs(frequency_slope))
     ratio = found.damping_ratio[first:]
     damped = np.flatnonzero(ratio != 0) if np.any(ratio_slope) else np.zeros(0, dtype=int)
     ratios = [
-        Quantity(f"damping ratio of {names[m]}", "damping ratio", float(ratio[m]), "1", EXACT, refused=unmatched[m])
+        Quantity(f"damping ratio of {names[m]}", "damping ratio", float(ratio[m]), "1", EXACT, refused=refused[m])
         for m in damped
     ]
     yield Rows(ratios, ratio_slope[damped], ROUNDING * np.abs(ratio_slope[damped]))
-
-
-def _matched(values: Complex, ratio: Array) -> list[int]:
-    """Which damped eigenvalue has the damping ratio of each mode: by modulus, where all modes oscillate; else −1."""
-    if len(values) == len(ratio) and np.allclose(-values.real / np.abs(values), ratio, rtol=1e-9, atol=1e-12):
-        return list(range(len(ratio)))
-    return [-1] * len(ratio)
 
 
 def _ratio_slope(value: complex, change: complex) -> float:
@@ -96,8 +78,11 @@ def _ratio_slope(value: complex, change: complex) -> float:
     return float(-change.real / size + value.real * (value.conjugate() * change).real / size**3)
 
 
-def _coincides(omega: Array, m: int, first: int) -> str:
-    for j in range(len(omega)):
-        if j != m and abs(omega[j] - omega[m]) <= COINCIDE * omega[m]:
+def _refused(values: Complex, m: int, first: int) -> str:
+    """Why a mode has no derivative of its own; "" where it has."""
+    if values[m].imag == 0:
+        return "it is overdamped and does not oscillate"
+    for j in range(len(values)):
+        if j != m and abs(values[j] - values[m]) <= COINCIDE * abs(values[m]):
             return f"modes {min(m, j) + first + 1} and {max(m, j) + first + 1} have one frequency"
     return ""

@@ -87,7 +87,7 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
             panel(inline[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, forks in line", two, limits),
         )
         figures.append(charts_figure(n, f"{CAPTIONS[n]}, γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
-    modes = natural_frequencies(catalogue(NAME)).frequency
+    modes = natural_frequencies(catalogue(NAME)).undamped_frequency
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."
     tables = (
         Comparison("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),

@@ -68,7 +68,7 @@ def _stiffness(soft: StabilityChart, stiff: StabilityChart) -> Conclusion:
 
 def _highest(chart: StabilityChart) -> float:
     assert chart.line is not None
-    return float(natural_frequencies(chart.line).frequency[-1])
+    return float(natural_frequencies(chart.line).undamped_frequency[-1])
 
 
 def _damping(base: StabilityChart, damped: StabilityChart) -> Conclusion:

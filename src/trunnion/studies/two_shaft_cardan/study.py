@@ -89,7 +89,7 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
                 f"β = {BETA} rad (29°) and μ up to {MOST:g}: the text states neither.",
                 panel(stiffness, f"β = {BETA} rad", "stiffness of shaft 2 over shaft 1, μ [1]", whole, name=False)),
     )  # fmt: skip
-    modes = natural_frequencies(catalogue(NAME, **heavy)).frequency
+    modes = natural_frequencies(catalogue(NAME, **heavy)).undamped_frequency
     note = "γ = 100, α = μ = 1. Tongues are followed at a hundredth of the damping down to β = 0."
     tables = (
         Comparison(

@@ -1,0 +1,124 @@
+"""Complex modes of an aligned line, and which of them belongs to which undamped mode.
+
+    (λ²M + λC + K + iH) v = 0        λ = −ζ|λ| + iω_d
+
+H, the damping that all frequencies share alike, acts with the sign of the frequency: on motion that does not oscillate
+it does not act at all. All matrices here are those of unit masses, M^(−½) C M^(−½) and so on. Modes belong together by
+the modal assurance criterion MAC(u, v) = |u*v|²/((u*u)(v*v)), which weighs rotations with the inertias.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Places
+
+RIGID = 1e-6
+"""Share of the highest frequency below which a mode counts as rigid rotation, or an eigenvalue as real."""
+UNTOUCHED = 1e-12
+"""Share of the damping below which it does not brake the rotation of the whole line."""
+
+
+@dataclass(frozen=True)
+class LineModes:
+    """Both eigenvalues (mode, 2) [1/s] of every undamped mode and the complex shapes (n, mode) of those that oscillate.
+
+    Modes stand in the order of ``undamped`` (mode,) [rad/s], the rigid rotation of a free line first. A mode that
+    oscillates has λ and its conjugate, an overdamped one two real eigenvalues, the slower first. Shapes, in
+    coordinates scaled with √M, are NaN where a mode does not oscillate.
+    """
+
+    undamped: Array
+    eigenvalue: Complex
+    shape: Complex
+
+
+def line_modes(damping: Array, stiffness: Array, loss: Array, rigid: Array | None = None) -> LineModes:
+    """Modes of a line of unit masses; ``rigid`` (n,): how it turns as a whole, where it can."""
+    if rigid is None:
+        squares, basis = np.linalg.eigh(stiffness)
+    else:  # taken out of the matrices, whose double eigenvalue 0 rounding would part
+        first, *others = np.linalg.qr(rigid[:, None], mode="complete")[0].T
+        rest = np.array(others).reshape(-1, len(rigid)).T
+        squares, own = np.linalg.eigh(rest.T @ stiffness @ rest)
+        squares, basis = np.append(0.0, squares), np.column_stack([first, rest @ own])
+    undamped = np.sqrt(np.maximum(squares, 0.0))
+    pairs = 1j * undamped[:, None] * np.array([1.0, -1.0])
+    shapes = basis.astype(complex)
+    if damping.any() or loss.any():
+        start = int(rigid is not None and not _brakes(damping, basis[:, 0]))
+        kept = basis[:, start:]
+        pairs[start:], own = _pairs(
+            kept.T @ damping @ kept, np.diag(squares[start:]), kept.T @ loss @ kept, RIGID * float(undamped.max())
+        )
+        shapes[:, start:] = kept @ own
+    shapes[:, pairs[:, 0].imag == 0] = np.nan
+    return LineModes(undamped, pairs, shapes)
+
+
+def _brakes(damping: Array, rotation: Array) -> bool:
+    """Whether the rotation of the whole line dies out, for it is braked against the ground."""
+    return bool(np.abs(damping @ rotation).max() > UNTOUCHED * np.abs(damping).max())
+
+
+def _pairs(damping: Array, stiffness: Array, loss: Array, least: float) -> tuple[Complex, Complex]:
+    """Eigenvalues (mode, 2) and shapes (n, mode) in coordinates of the undamped modes."""
+    n = len(damping)
+    pairs, shapes = np.full((n, 2), complex(np.nan)), np.full((n, n), complex(np.nan))
+    values, vectors = damped_modes(damping, stiffness + 1j * loss if loss.any() else stiffness, least)
+    here, there = matched(np.eye(n, dtype=complex), vectors)
+    pairs[here, 0], pairs[here, 1] = values[there], values[there].conj()
+    shapes[:, here] = vectors[:, there]
+    still = np.setdiff1d(np.arange(n), here)
+    if len(still):
+        values, vectors = _eigenvalues(damping, stiffness)
+        real = np.flatnonzero(np.abs(values.imag) <= least)
+        twice = np.repeat(still, 2)
+        rows, columns = _by_largest_sum(_shared(np.eye(n, dtype=complex)[:, twice], vectors[:, real]))
+        pairs[twice[rows], rows % 2] = values[real[columns]].real
+        pairs[still] = np.take_along_axis(pairs[still], np.abs(pairs[still]).argsort(axis=1), axis=1)
+    return pairs, shapes
+
+
+def damped_modes(damping: Array, stiffness: Array | Complex, least: float) -> tuple[Complex, Complex]:
+    """Eigenvalues of λ² + λC + K with an imaginary part above ``least`` [rad/s], by modulus; their shapes (n, values).
+
+    C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
+    own size, is no oscillation: ``least`` keeps it out.
+    """
+    values, vectors = _eigenvalues(damping, stiffness)
+    above = np.flatnonzero(values.imag > least)
+    above = above[np.argsort(np.abs(values[above]))]
+    return values[above], vectors[:, above]
+
+
+def _eigenvalues(damping: Array, stiffness: Array | Complex) -> tuple[Complex, Complex]:
+    n = len(damping)
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
+    return values.astype(complex), vectors[:n].astype(complex)
+
+
+def matched(before: Complex, after: Complex) -> tuple[Places, Places]:
+    """Which columns belong together, by the largest sum of MAC; vectors in coordinates scaled with √M."""
+    share = _shared(before, after)
+    if not share.size:  # nothing oscillates
+        return np.arange(0), np.arange(0)
+    best = share.argmax(axis=1)
+    if share.shape[0] <= share.shape[1] and len(set(best.tolist())) == len(best):
+        return np.arange(len(best)), best  # each its own: no sum is larger
+    return _by_largest_sum(share)
+
+
+def _shared(before: Complex, after: Complex) -> Array:
+    """MAC of every column with every other."""
+    share = np.abs(before.conj().T @ after) ** 2
+    norms = (np.abs(before) ** 2).sum(axis=0)[:, None] * (np.abs(after) ** 2).sum(axis=0)
+    return np.asarray(share / np.maximum(norms, 1e-300))
+
+
+def _by_largest_sum(share: Array) -> tuple[Places, Places]:
+    from scipy.optimize import linear_sum_assignment
+
+    return linear_sum_assignment(-share)  # type: ignore[no-any-return]
