@@ -130,7 +130,7 @@ REFUSED = [
     (("order-response", "line.toml", "-o", "r.xls"), "has no ending that names a format"),
     (("stable-limit", "line.toml", "--speed", "1500"), "is no rising range"),
     (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness"), "needs a range"),
-    (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness:1000:2000:20:log"), "is scanned evenly; leave out :log"),
+    (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness:1000:2000:20:log"), "is searched evenly; leave out :log"),
     (("speed-sweep", "duffing"), "is neither a file nor a name of the catalogue"),
 ]
 

@@ -61,7 +61,7 @@ CASES = [
     ((*CHART, "--x", "speed:300rpm:300rpm:4"), ("is a range of zero size", "low < high")),
     ((*CHART, "--x", "speed:-300rpm:0rpm:4"), ("speed.range", "must reach above zero")),
     ((*CHART, "--x", "speed:nan:300rpm:4"), ("must be finite",)),
-    ((*CHART, "--x", "speed:1:300"), ("--x = 'speed:1:300': needs a range", "speed:300rpm:2400rpm:400")),
+    ((*CHART, "--x", "speed:300"), ("--x = 'speed:300': needs a range", "speed:300rpm:2400rpm:400")),
     ((*CHART, "--x", "Shaft 1.stiffness"), ("needs a range",)),
     ((*CHART, "--x", "Shaft 1.stiffness:0:1e4:4"), ("Shaft 1.stiffness 0, which must be positive", "let the axis end")),
     ((*CHART, "--x", "Shaft 1.stiffness:1 N*m:9 N*m:4"), ("N*m is not the unit", "N*m/rad")),

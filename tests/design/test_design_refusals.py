@@ -40,8 +40,8 @@ REFUSED = [
     (lambda: tn.optimise(LINE, {ANGLE: ("1 m", "2 m")}, "irregularity"), f"{ANGLE} = '1 m': ", ""),
     (lambda: tn.optimise(LINE, {ANGLE: (0, 2)}, "irregularity"), "would reach 2, which no line", "move the bound"),
     (
-        lambda: tn.optimise(LINE, {ANGLE: (0, 1), "HookeJoint *.angle": (0, 1)}, "irregularity"),
-        "HookeJoint *.angle: moves HookeJoint 1.angle, as HookeJoint 1.angle does", "free once",
+        lambda: tn.optimise(LINE, {ANGLE: (0, 1), "factor of HookeJoint *.angle": (0, 1)}, "irregularity"),
+        "factor of HookeJoint *.angle: moves HookeJoint 1.angle, as HookeJoint 1.angle does", "free once",
     ),
     (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, "evenness"), "aims = 'evenness': is no aim", "irregularity"),
     (lambda: tn.optimise(LINE, {ANGLE: (0, 1)}, []), "aims = 0: must be one aim or two", "irregularity"),

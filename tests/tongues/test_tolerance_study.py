@@ -175,8 +175,8 @@ BAD = [
     (lambda: tn.tolerance_study(LINE, {"speed": 0.1}, 1.0), "speed: is no parameter of the line"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stifness": 0.1}, 1.0), "Shaft 1.stifness: is not a parameter"),
     (
-        lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1, "Shaft *.stiffness": 0.1}, 1.0),
-        "Shaft *.stiffness: moves Shaft 1.stiffness, as",
+        lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1, "factor of Shaft *.stiffness": 0.1}, 1.0),
+        "factor of Shaft *.stiffness: moves Shaft 1.stiffness, as",
     ),
     (
         lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", -1.0, 1.0)}, 1.0),

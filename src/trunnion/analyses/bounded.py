@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.parameters import Columns
+from trunnion.driveline.patterns import closeness
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,16 @@ def columns_of(assembly: Assembly, path: str) -> Columns:
     if 0 in columns.index:
         raise InputError("is no parameter of the line but its speed", key=path, remedy="give speeds instead")
     return columns
+
+
+def each_named(assembly: Assembly, given: Mapping[str, Value]) -> dict[str, Value]:
+    """What is given by path, by every number's own path; what is said of one element goes before a pattern."""
+    found: dict[str, Value] = {}
+    for path in sorted(given, key=lambda path: closeness(path.rpartition(".")[0])):
+        for one in assembly.packed.each(path):
+            found[one] = given[path]
+    order = [one for path in given for one in assembly.packed.each(path)]
+    return {one: found[one] for one in dict.fromkeys(order)}
 
 
 def table_at(assembly: Assembly, parameters: Sequence[Bounded], values: Array, speed: float = np.nan) -> Array:

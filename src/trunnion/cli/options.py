@@ -14,6 +14,7 @@ from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
+    from trunnion.driveline.parameters import PackedLine
     from trunnion.driveline.quantities import Kind
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of the catalogue.")]
@@ -164,25 +165,27 @@ def is_number(text: str) -> bool:
 
 
 def read_axis(text: str, line: tn.Driveline, unit: str, points: int, key: str) -> tuple[str, float, float, int, str]:
-    """``PARAMETER:LOW:HIGH:POINTS[:log]``, or PARAMETER alone for the range of the file, as an axis request.
+    """``PARAMETER[:LOW:HIGH[:POINTS]][:log]`` as an axis request, of every command that varies something.
 
-    Read from the right, so that names with colons remain possible.
+    PARAMETER alone takes the range of the file, and without POINTS there are ``points``. Ends that are multiples,
+    ``Shaft *.stiffness:0.5x:2x``, are of the factor of what each element states. Read from the right, so that names
+    with colons remain possible.
     """
     from trunnion.driveline.quantities import KINDS, SPEED
-    from trunnion.reporting.ranges import angle_range, speed_range
 
-    packed, parts = tn.pack(line), text.split(":")
-    scale = "log" if len(parts) > 4 and parts[-1].strip() == "log" else "linear"
+    packed, parts = tn.pack(line), [part.strip() for part in text.split(":")]
+    scale = "log" if len(parts) > 1 and parts[-1] == "log" else "linear"
     if scale == "log":
         parts.pop()
-    if len(parts) < 4:
-        columns = packed.resolve(text.strip()) if len(parts) == 1 else None
-        if columns is None or not (columns.label == "speed" or columns.label.endswith(".angle")):
-            raise InputError("needs a range", key=key, value=text, remedy=AXIS_EXAMPLE)
-        low, high = speed_range(line) if columns.label == "speed" else angle_range(line)
-        return columns.label, low, high, points, scale
+    if len(parts) < 3:
+        return _whole_axis(":".join(parts), text, line, points, key, scale)
+    if len(parts) == 3 or not parts[-1].isdecimal() and _is_parameter(packed, ":".join(parts[:-2])):
+        parts.append(str(points))
     *name, low_text, high_text, count = parts
-    columns = packed.resolve(":".join(name).strip())
+    path = ":".join(name)
+    if low_text.endswith("x") and high_text.endswith("x"):
+        path, low_text, high_text = f"factor of {path}", low_text[:-1], high_text[:-1]
+    columns = packed.resolve_axis(path)
     kind = SPEED
     if columns.label != SPEED.name:
         kind = next(k for k in KINDS if k.unit == columns.unit and k is not SPEED)
@@ -194,14 +197,37 @@ def read_axis(text: str, line: tn.Driveline, unit: str, points: int, key: str) -
     return columns.label, low, high, _count(count, key), scale
 
 
+def _whole_axis(
+    path: str, text: str, line: tn.Driveline, points: int, key: str, scale: str
+) -> tuple[str, float, float, int, str]:
+    """A parameter that has a range in the file: the speed, joint angles."""
+    from trunnion.reporting.ranges import angle_range, speed_range
+
+    columns = tn.pack(line).resolve(path) if ":" not in path else None
+    if columns is None or not (columns.label == "speed" or columns.label.endswith(".angle")):
+        raise InputError("needs a range", key=key, value=text, remedy=AXIS_EXAMPLE)
+    low, high = speed_range(line) if columns.label == "speed" else angle_range(line)
+    return columns.label, low, high, points, scale
+
+
+def _is_parameter(packed: PackedLine, path: str) -> bool:
+    try:
+        return bool(len(packed.resolve(path).index))
+    except InputError:
+        return False
+
+
+def read_even_axis(text: str, line: tn.Driveline, unit: str, points: int, key: str) -> tuple[str, float, float, int]:
+    """The same where steps are even: a box that is searched, a parameter that is raised."""
+    label, low, high, count, scale = read_axis(text, line, unit, points, key)
+    if scale == "log":
+        raise InputError("is searched evenly", key=key, value=text, remedy="leave out :log")
+    return label, low, high, count
+
+
 def read_box_range(text: str, line: tn.Driveline, unit: str, key: str) -> tuple[tuple[str, float, float], int]:
     """``PARAMETER:LOW:HIGH[:ROWS]`` as a range and a number of rows."""
-    parts = text.split(":")
-    if parts[-1].strip() == "log":
-        raise InputError("is searched evenly", key=key, value=text, remedy="leave out :log")
-    counted = len(parts) > 3 and parts[-1].strip().isdecimal()
-    whole = text if counted or len(parts) < 3 else f"{text}:{ROWS}"
-    label, low, high, rows, _ = read_axis(whole, line, unit, ROWS, key)
+    label, low, high, rows = read_even_axis(text, line, unit, ROWS, key)
     return (label, low, high), rows
 
 

@@ -16,8 +16,8 @@ from trunnion.cli.options import (
     Output,
     Unit,
     is_number,
-    read_axis,
     read_case,
+    read_even_axis,
     read_stated_speed,
 )
 from trunnion.cli.places import check_places, deliver
@@ -118,7 +118,7 @@ def stable_limit(
         typer.Option(
             "--parameter",
             "-p",
-            metavar="PARAMETER:LOW:HIGH:STEPS",
+            metavar="PARAMETER:LOW:HIGH[:STEPS]",
             help="What is raised until the line is unstable, or PARAMETER alone for angles: 0 to the file's range. "
             "STEPS are those at which the file's limits are compared.",
         ),
@@ -140,9 +140,7 @@ def stable_limit(
     from trunnion.analyses.limits.other_limits import SCAN
 
     line, unit = read_case(file, unit, load_case)
-    label, low, high, points, scale = read_axis(parameter, line, unit, SCAN + 1, "--parameter")
-    if scale == "log":
-        raise InputError("is scanned evenly", key="--parameter", value=parameter, remedy="leave out :log")
+    label, low, high, points = read_even_axis(parameter, line, unit, SCAN + 1, "--parameter")
     at = _speeds(line, speeds, unit, points=FEW, even=True)
     check_places(to)
     with output.progress("stable limit") as advance:

@@ -130,9 +130,11 @@ def stability_chart(
     file: File,
     x: Annotated[
         str,
-        typer.Option("--x", metavar="PARAMETER:LOW:HIGH:POINTS[:log]", help="Or PARAMETER alone for the file's range."),
+        typer.Option(
+            "--x", metavar="PARAMETER:LOW:HIGH[:POINTS][:log]", help="Or PARAMETER alone for the file's range."
+        ),
     ] = "speed",
-    y: Annotated[str, typer.Option("--y", metavar="PARAMETER:LOW:HIGH:POINTS[:log]")] = "HookeJoint *.angle",
+    y: Annotated[str, typer.Option("--y", metavar="PARAMETER:LOW:HIGH[:POINTS][:log]")] = "HookeJoint *.angle",
     speed: Speed = None,
     unit: Unit = None,
     load_case: LoadCase = None,

@@ -1,4 +1,4 @@
-"""What is stated of one element by its name, or of all elements of a kind: limits, tolerances."""
+"""What is stated of one element by its name, of all of a kind or of a pattern of names: limits, tolerances."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import Field
 
 from trunnion.driveline.elements import Element
-from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.patterns import closeness, kind_in, names
 from trunnion.driveline.record import Record
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
@@ -20,23 +20,18 @@ Where = dict[str, Any]
 
 
 class Addressed(Record):
-    """Base of what is stated ``of`` one element or of all of a kind."""
+    """Base of what is stated ``of`` one element, of all of a kind or of all whose names fit a pattern."""
 
-    of: str = Field(description='name of the element, or "Shaft *" for all of a kind')
+    of: str = Field(description='name of the element, "Shaft *" for each of a kind, "half shaft *" for names')
 
     @classmethod
     def called(cls, data: dict[str, Any]) -> str:
         """What it is, and of what."""
         return f"{cls.what} of {data['of']}" if isinstance(data.get("of"), str) else cls.what
 
-    @property
-    def kind(self) -> str | None:
-        """The kind of element it holds for; None where ``of`` names one element."""
-        return self.of[:-2] if self.of.endswith(" *") else None
-
     def concerns(self, name: str, element: Element) -> bool:
-        """Whether it is stated of an element or its kind."""
-        return self.of == name or self.kind == element.kind
+        """Whether it is stated of an element, its kind or a pattern that its name fits."""
+        return names(self.of, name, element.kind)
 
     @property
     def shown(self) -> dict[str, object]:
@@ -52,8 +47,8 @@ Stated = TypeVar("Stated", bound=Addressed)
 
 
 def in_turn(stated: Sequence[Stated], parts: Elements) -> Iterator[tuple[Stated, str, Element]]:
-    """Each with every element that it concerns; what is stated of a single element last, so that it stays."""
-    for one in sorted(stated, key=lambda one: one.kind is None):
+    """Each with every element that it concerns; what is stated most closely last, so that it stays."""
+    for one in sorted(stated, key=lambda one: closeness(one.of)):
         for name, element in parts:
             if one.concerns(name, element):
                 yield one, name, element
@@ -66,7 +61,7 @@ def wrong_addresses(stated: Sequence[Addressed], parts: Elements) -> Iterator[In
         concerned = [(name, element) for name, element in parts if one.concerns(name, element)]
         if not concerned:
             known = [*(name for name, _ in parts), *(f"{kind} *" for kind in dict.fromkeys(e.kind for _, e in parts))]
-            problem = "has no element in this driveline" if one.kind in KINDS else "is not an element"
+            problem = "has no element in this driveline" if kind_in(one.of) else "is not an element"
             yield InputError(problem, element=one.what, key="of", value=one.of, remedy=nearest(one.of, known))
             continue
         for key, value in one.shown.items():

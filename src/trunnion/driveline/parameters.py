@@ -10,7 +10,12 @@ Paths
     "Disk 1.excitation 2 amplitude"   of its second harmonic torque (also frequency, phase)
     "GearPair 1.transmission_error 1 amplitude", "PiecewiseShaft 1.stiffness 2"   likewise
     "HookeJoint *.angle"          the same number of every element of a kind
-    "factor of Shaft *.damping"   multiplies what the line has (1 leaves it as it is)
+    "half shaft *.stiffness"      of every element whose name fits
+    "factor of Shaft *.damping"   multiplies what each of them has (1 leaves it as it is)
+
+Tolerances, designs and derivatives take each number of a pattern by itself (``each``). Along an axis one value goes
+into all of them. Joints are then all bent by one angle; other numbers must be alike, or be scaled by a factor:
+``resolve_axis`` refuses what would make unlike ones alike.
 """
 
 from __future__ import annotations
@@ -31,6 +36,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.packed_numbers import SPEED as SPEED
 from trunnion.driveline.packed_numbers import UNITS as UNITS
+from trunnion.driveline.patterns import names
 from trunnion.errors import InputError, InputRemark
 
 
@@ -118,6 +124,29 @@ class PackedLine:
             parameter.label, parameter.unit, np.array(index, dtype=np.intp), np.array(slope), np.array(offset)
         )
 
+    def resolve_axis(self, parameter: str | Parameter) -> Columns:
+        """The same of a parameter whose one value is to go into all of its columns.
+
+        Raises
+        ------
+        InputError : as ``resolve``; a pattern over numbers that differ, joint angles aside.
+        """
+        columns = self.resolve(parameter)
+        numbers = self.values[columns.index]
+        path = parameter if isinstance(parameter, str) else ""
+        if "*" not in path or path.startswith("factor of ") or path.endswith(".angle") or np.ptp(numbers) == 0:
+            return columns
+        first, last = columns.index[numbers.argmin()], columns.index[numbers.argmax()]
+        differ = " and ".join(f"{self.labels[c]} {self.values[c]:.6g}" for c in (first, last))
+        remedy = f'vary the "factor of {path}", from 0.5 to 2, say, or one of them'
+        raise InputError(f"would make unlike numbers one ({differ} {columns.unit})", key=path, remedy=remedy)
+
+    def each(self, path: str) -> tuple[str, ...]:
+        """The numbers of a path one by one; a path that has no pattern, or is a factor, as it is."""
+        if "*" not in path or path.startswith("factor of "):
+            return (path,)
+        return tuple(self.labels[c] for c in self._find(path))
+
     def value(self, parameter: str | Parameter) -> float:
         """The value the line has now (NaN for a speed that was not given)."""
         columns = self.resolve(parameter)
@@ -182,11 +211,11 @@ class PackedLine:
         line = self.line
         if owner == "driveline":
             members = [-1]
-        elif owner.endswith(" *"):
-            members = [i for i, e in enumerate(line.elements) if e.kind == owner[:-2]]
         else:
             members = [i for i, n in enumerate(line.names) if n == owner]
             members = members or [i for i, n in enumerate(line.default_names) if n == owner]
+            parts = enumerate(zip(line.names, line.elements, strict=True))
+            members = members or [i for i, (name, e) in parts if names(owner, name, e.kind)]
         columns = [c for i in members if (c := self.column(i, key)) >= 0]
         if not columns:
             raise self._unknown(path)

@@ -1,4 +1,4 @@
-"""How far the numbers of a line scatter from one specimen to the next: tolerances of an element, or of a kind.
+"""How far the numbers of a line scatter from one specimen to the next: tolerances of an element, or of each of several.
 
 ::
 
@@ -9,8 +9,8 @@
     inertia = { deviation = "2 %" }         # normally distributed, cut at three standard deviations
     fork_offset = "0.5 deg"                 # within ±0.5 deg
 
-A tolerance changes no motion; ``tolerance_study`` and ``certify_stability`` go by it. What an element states of its own
-goes before its kind's.
+A tolerance changes no motion; ``tolerance_study`` and ``certify_stability`` go by it. A named element's
+tolerance overrides its kind's.
 """
 
 from __future__ import annotations

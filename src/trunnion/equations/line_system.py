@@ -350,7 +350,7 @@ class LineSystem:
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
         """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the
         torque of ``with_drive``."""
-        columns, labels = self.assembly.packed.resolve(parameter), self.assembly.packed.labels
+        columns, labels = self.assembly.packed.resolve_axis(parameter), self.assembly.packed.labels
 
         def at(value: float, drive: float = 0.0) -> System:
             changes = {

@@ -81,8 +81,8 @@ def _words(label: str) -> str:
     if not dot:
         return label.replace("_", " ")
     key = key.replace("_", " ")
-    if owner.endswith(" *"):
-        owner = f"all {_PLURAL.get(owner[:-2], owner[:-2])}"
+    if owner.endswith(" *") and owner[:-2] in _PLURAL:
+        owner = f"all {_PLURAL[owner[:-2]]}"
     return f"{'factor of the ' if factor else ''}{key} of {owner}"
 
 

@@ -60,7 +60,7 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
     InputError : unknown parameter, reversed or empty range, too few points, values no line can have.
     """
     parameter = _parameter(request, key)
-    columns = assembly.packed.resolve(parameter)
+    columns = assembly.packed.resolve_axis(parameter)
     low, high, points, scale = _range(request, columns.label)
     low, high, said = _clip(assembly, columns, low, high)
     values = _points(columns.label, low, high, points, scale)

@@ -51,8 +51,9 @@ def optimise(
 
     Parameters
     ----------
-    free : path as of a chart's axis → (low, high), SI units or texts, as {"joint 2.angle": ("2 deg", "8 deg")}; what
-        ranges over more than a factor of ten is searched by its logarithm.
+    free : path → (low, high), SI units or texts, as {"joint 2.angle": ("2 deg", "8 deg")}; a pattern as
+        "Shaft *.stiffness" frees each number by itself, "factor of Shaft *.stiffness" all together. What ranges
+        over more than a factor of ten is searched by its logarithm.
     aims : one of these, or two: "irregularity" of the output, shafts rigid; "growth rate", the largest over the range;
         "peak torque of SPRING", "vibratory torque of SPRING", the largest over the range and all load cases, all to be
         smallest; "margin of CHECK", "least spare margin" of all checks that decide, to be largest; or a function of a

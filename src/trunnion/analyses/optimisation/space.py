@@ -8,7 +8,7 @@ from math import isfinite, log
 
 import numpy as np
 
-from trunnion.analyses.bounded import Bounded, columns_of, require_possible, table_at
+from trunnion.analyses.bounded import Bounded, columns_of, each_named, require_possible, table_at
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import kind_of, parse
@@ -51,7 +51,7 @@ class Space:
         if not isinstance(free, Mapping) or not free:
             raise InputError("must name one parameter or more", key="free", remedy=EXAMPLE)
         self.assembly = assembly
-        self.free = tuple(_free(assembly, path, ends) for path, ends in free.items())
+        self.free = tuple(_free(assembly, path, ends) for path, ends in each_named(assembly, free).items())
         require_possible(assembly, self.free, once="let each number be free once", within="move the bound")
 
     @property

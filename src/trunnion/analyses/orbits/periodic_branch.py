@@ -115,7 +115,7 @@ def system_over(
             "starts free, which a series of harmonics at a given speed does not take", element="driveline",
             remedy='use periodic_branch or method = "shooting", or put a ConstantSpeed in front',
         )  # fmt: skip
-    columns = prepared.assembly.packed.resolve(parameter)
+    columns = prepared.assembly.packed.resolve_axis(parameter)
     scale = np.append(LINE_SCALE * np.asarray(prepared.system.scale), (high - low) * width)
     return SystemOver(
         columns.label, columns.unit, prepared.shafts, "N*m", speed_unit(description),

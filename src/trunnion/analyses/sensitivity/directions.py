@@ -51,8 +51,9 @@ def directions_of(assembly: Assembly, parameters: Iterable[str | Parameter] | No
     every = tuple(_stated(packed)) if given is None else several(given, "parameters", '["Shaft 1.stiffness"], say')
     if not every:
         raise InputError("names no parameter", key="parameters", remedy='parameters=["Shaft 1.stiffness"], say')
+    single = [name for one in every for name in (packed.each(one) if isinstance(one, str) else (one,))]
     found = []
-    for one in every:
+    for one in dict.fromkeys(single):
         columns = packed.resolve(one)
         if 0 in columns.index:
             raise InputError(

@@ -66,7 +66,7 @@ def sensitivity(
     ----------
     speeds : input speed or speeds [rad/s] of growth rates and torques; default the operating speed of the description,
         or the ends of its range, or none.
-    parameters : paths as of a chart's axis, "HookeJoint *.angle" and "factor of Shaft *.damping" included; default
+    parameters : paths; "HookeJoint *.angle" is each joint's, "factor of Shaft *.damping" all together; default
         every number that the description states, zeros of angles included.
     of : any of "frequencies", "growth", "torques", "checks".
     checks : names of checks of ``assess``; default the six with the least to spare. They are judged over the range of

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from trunnion.analyses.bounded import Bounded, columns_of, require_possible, table_at
+from trunnion.analyses.bounded import Bounded, columns_of, each_named, require_possible, table_at
 from trunnion.arrays import Array
 from trunnion.driveline.tolerances import Scatter
 from trunnion.equations.coefficients import Assembly
@@ -35,8 +35,9 @@ class Spread(Bounded):
 
 
 def read_tolerances(assembly: Assembly, tolerances: Tolerances | None) -> tuple[Spread, ...]:
-    """Spreads of a mapping of paths to a share (0.1: ±10 %, uniform), ("range", low, high) in SI units, ("normal",
-    share), or ("deviation", size in SI units); those that the line states where none are given.
+    """Spreads of a mapping of paths, of patterns each number by itself, to a share (0.1: ±10 %, uniform), ("range",
+    low, high) in SI units, ("normal", share), or ("deviation", size in SI units); those that the line states where none
+    are given.
 
     Raises
     ------
@@ -49,7 +50,7 @@ def read_tolerances(assembly: Assembly, tolerances: Tolerances | None) -> tuple[
             raise InputError("are not stated", element="driveline", key="tolerances", remedy=remedy)
     if not isinstance(tolerances, Mapping) or not tolerances:
         raise InputError("must name one parameter or more", key="tolerances", value=tolerances, remedy=EXAMPLE)
-    spreads = tuple(_spread(assembly, path, given) for path, given in tolerances.items())
+    spreads = tuple(_spread(assembly, path, given) for path, given in each_named(assembly, tolerances).items())
     require_possible(assembly, spreads, once="let each number scatter once", within="narrow the tolerance")
     return spreads
 
