@@ -211,7 +211,7 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
     from trunnion.analyses.orders.result import order_name
 
     data = _in_unit(result.data, unit)
-    kept = data[["mean_torque", "peak_torque", "vibratory_torque", "vibratory_stress", "heat"]]
+    kept = data[["mean_torque", "peak_torque", "vibratory_torque", "rated_torque", "vibratory_stress", "heat"]]
     labels = [order_name(o, f) for o, f in zip(result.order, result.frequency, strict=True)]
     axes = ("speed", "order_number", "spring")
     parts = {
@@ -224,16 +224,33 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
 
 def _response_json(result: OrderResponse, findings: Sequence[Finding], unit: str) -> dict[str, Any]:
     """The largest of every spring; the numbers by speed and order are in the files written."""
-    keys = ("spring", "peak_torque", "speed", "vibratory_torque", "order", "order_amplitude", "order_speed")
     return {
         **_span(result.speed, unit),
         "orders": [
             {"order": o, "frequency": f} for o, f in zip(result.order.tolist(), result.frequency.tolist(), strict=True)
         ],
         "sum_is_bound": result.sum_is_bound,
-        "springs": [dict(zip(keys, row.values(), strict=True)) for row in result.table(unit)],
+        "springs": [_spring_json(result, spring, unit) for spring in range(len(result.springs))],
         "findings": output.findings_json(findings),
     }
+
+
+def _spring_json(result: OrderResponse, spring: int, unit: str) -> dict[str, Any]:
+    """Largest torques [N m] of a spring, each with its speed; a rated torque of couplings with a rating alone."""
+    from trunnion.analyses.orders.result import order_name
+
+    columns = {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque}
+    if result.rated[spring]:
+        columns["rated_torque"] = result.rated_torque
+    found: dict[str, Any] = {"spring": result.springs[spring]}
+    for name, values in columns.items():
+        value, speed = result.largest(values[:, spring])
+        found |= {name: value, "speed" if name == "peak_torque" else f"{name}_speed": speed * speed_factor(unit)}
+    order, speed, size = result.leading_order(result.springs[spring])
+    if not size > 0:
+        return found | {"order": "none", "order_amplitude": None, "order_speed": None}
+    name = order_name(order, float(result.frequency[result.order == order].max(initial=0.0)))
+    return found | {"order": name, "order_amplitude": size, "order_speed": speed * speed_factor(unit)}
 
 
 def _span(speed: Array, unit: str) -> dict[str, Any]:

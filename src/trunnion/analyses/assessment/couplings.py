@@ -2,7 +2,7 @@
 
     T_KN ≥ T_N S_t          mean torque, S_t the temperature factor
     T_Kmax ≥ T_peak S_t S_z     largest torque over the cycle, S_z the starting factor
-    T_KW ≥ S_t Σ S_f T_f        rated torque: amplitudes of all orders, S_f = 1 up to 10 Hz and √(f/10 Hz) above
+    T_KW/S_t ≥ Σ S_f T_f        rated torque: amplitudes of all orders, S_f = 1 up to 10 Hz and √(f/10 Hz) above
     P_KV ≥ P_W S_t          heat of the damping
 
 Each order counts with the S_f of its own frequency, and phases are left out: the sum of amplitudes is an upper bound.
@@ -18,7 +18,14 @@ import numpy as np
 from trunnion.analyses.assessment.check import Check, Rule, Status
 from trunnion.analyses.assessment.compared import at_largest, unanswered
 from trunnion.analyses.assessment.course import WHOLE, course
-from trunnion.analyses.assessment.measures import of_rating, rating_name, service_factors, spring_of
+from trunnion.analyses.assessment.measures import (
+    allowed_by,
+    of_rating,
+    rating_name,
+    rating_words,
+    service_factors,
+    spring_of,
+)
 from trunnion.analyses.assessment.subject import Case, Subject, cause
 from trunnion.driveline.quantities import POWER, TORQUE, shown
 from trunnion.driveline.shafts import Coupling
@@ -27,15 +34,19 @@ SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 FORMULAS = {
     "nominal_torque": "T_N S_t ≤ T_KN",
     "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
-    "vibratory_torque": "S_t Σ S_f(f) T_f ≤ T_KW over all orders, S_f = √(f/10 Hz), at least 1",
+    "vibratory_torque": "Σ S_f(f) T_f ≤ T_KW/S_t over all orders, S_f = √(f/10 Hz), at least 1",
     "heat_rating": "P_W S_t ≤ P_KV",
 }
 TAKEN = {
     "nominal_torque": "mean, by S_t",
     "maximum_torque": f"{WHOLE}, by S_t S_z",
-    "vibratory_torque": "sum of amplitudes, each by its S_f, by S_t",
+    "vibratory_torque": "sum of amplitudes, each by its S_f: an upper bound",
     "heat_rating": "mean over the cycle, by S_t",
 }
+
+
+LIMITED = {"vibratory_torque": "T_KW/S_t"}
+"""How a picture calls the limit, where it is no rating by itself."""
 
 
 def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
@@ -56,12 +67,13 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
 
 def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rule: Rule) -> Check:
     measure, response = of_rating(case.assembly, name, key, rating), case.answered
-    found, kind, words = case.largest(measure), POWER if key == "heat_rating" else TORQUE, key.replace("_", " ")
+    found, kind, words = case.largest(measure), POWER if key == "heat_rating" else TORQUE, rating_words(key)
+    allowed = allowed_by(rating, key, service_factors(case.assembly, name)[0])
     by_order = np.abs(measure.parts(response)) ** (2 if measure.squared else 1)
     leads = key != "nominal_torque"
     seen = course(
         response, f"{words.removesuffix(' rating')} of {name}", kind, TAKEN[key], found.values,
-        {f"{words} {shown(rating, kind, digits=4)}": rating}, by_order if leads else None,
+        {f"{LIMITED.get(key, words)} {shown(allowed, kind, digits=4)}": allowed}, by_order if leads else None,
     )  # fmt: skip
     inputs = _factors(case, name, key, found.at)
     return at_largest(

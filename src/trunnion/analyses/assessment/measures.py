@@ -188,7 +188,7 @@ def service_factors(assembly: Assembly, name: str) -> tuple[float, float]:
 
 
 def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure:
-    """Of a rating of a coupling, service factors included."""
+    """Of a rating of a coupling, service factors included: those of the rated torque lower its limit."""
     c = spring_of(assembly, name)
     temperature, starting = service_factors(assembly, name)
     reads: dict[str, tuple[Values, Parts]] = {
@@ -198,21 +198,32 @@ def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure
             _of_spring(c, temperature * starting),
         ),
         "vibratory_torque": (
-            lambda r: r.rated_torque[:, c] * temperature,
-            lambda r: r.torque[:, :, c] * (r.frequency_factor * temperature),
+            lambda r: r.rated_torque[:, c],
+            lambda r: r.torque[:, :, c] * r.frequency_factor,
         ),
         "heat_rating": (lambda r: r.heat[:, c] * temperature, lambda r: r.heat_parts(c) * np.sqrt(temperature)),
     }
     return Measure(
-        rating_name(name, key), name, *_with_limit(reads[key], rating), squared=key == "heat_rating",
+        rating_name(name, key), name, *_with_limit(reads[key], allowed_by(rating, key, temperature)),
+        squared=key == "heat_rating",
         margin=required_of(assembly, name),
     )  # fmt: skip
 
 
+def allowed_by(rating: float, key: str, temperature: float) -> float:
+    """What a rating leaves for the number it is compared with: T_KW is lowered by S_t, so that a rated torque is the
+    same number wherever it is printed; others are compared as they are."""
+    return rating / temperature if key == "vibratory_torque" else rating
+
+
 def rating_name(name: str, key: str) -> str:
     """ "rating: rated torque of coupling"."""
-    words = "rated torque" if key == "vibratory_torque" else key.replace("_", " ")
-    return f"rating: {words} of {name}"
+    return f"rating: {rating_words(key)} of {name}"
+
+
+def rating_words(key: str) -> str:
+    """What a rating is compared with: of T_KW the rated torque, S_f included, which no vibratory torque is."""
+    return "rated torque" if key == "vibratory_torque" else key.replace("_", " ")
 
 
 def _with_limit(read: tuple[Values, Parts], limit: float) -> tuple[Values, Values, Parts]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
+from trunnion.analyses.assessment.measures import rating_name
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.analyses.assessment.subject import Subject, with_torques
 from trunnion.analyses.comparison.result import Comparison, Difference
@@ -19,6 +20,9 @@ from trunnion.driveline.operating_speed import speed_unit, stated_range
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
 
+RATING = "rating: "
+RATED = rating_name("", "vibratory_torque")
+"""What the names of checks of ratings begin with."""
 Values = dict[str, tuple[str, float, str, float]]
 """By name: kind, value, unit, input speed."""
 
@@ -72,7 +76,7 @@ def compare(
             subject = subject_of(line, span, load_case, unit)
             subject = replace(subject, cases=tuple(with_torques(subject.cases, _every_torque(subject))))
             judged.append(judgement(subject, checks_of(subject)))
-            values |= dict(_over_range(subject)) | dict(_margins(judged[-1]))
+            values |= dict(_over_range(subject)) | dict(_rated(judged[-1])) | dict(_margins(judged[-1]))
         else:
             judged.append(None)
         found.append(values)
@@ -126,6 +130,13 @@ def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, 
         for word in ("peak", "vibratory"):
             most = max((case.largest_torque(word, c) for case in cases), key=lambda found: found[0])
             yield f"{word} torque of {spring}", ("torque", most[0], "N*m", most[1])
+
+
+def _rated(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
+    """The rated torque of every coupling with a rating: Σ S_f|T| over all orders, an upper bound."""
+    for check in judged.checks if judged else ():
+        if check.judged and check.name.startswith(RATED):
+            yield check.name.removeprefix(RATING), ("torque", float(check.value), "N*m", float(check.speed))
 
 
 def _every_torque(subject: Subject) -> tuple[tuple[str, int], ...]:

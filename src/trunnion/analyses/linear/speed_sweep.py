@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.orders.response import order_response, response_about
+from trunnion.analyses.orders.response import has_rating, order_response, response_about
 from trunnion.analyses.orders.where_unstable import where_unstable
 from trunnion.analyses.range_search.largest import Quantity, first_speeds, search
 from trunnion.analyses.range_search.resonances import resonances
@@ -176,5 +176,11 @@ def _torques(assembly: Assembly) -> list[Quantity]:
     def of(c: int, word: str) -> Quantity:
         return Quantity(lambda found: getattr(found, word)[:, c], lambda found: found.torque[:, :, c])
 
+    def rated(c: int) -> Quantity:
+        return Quantity(
+            lambda found: found.rated_torque[:, c], lambda found: found.torque[:, :, c] * found.frequency_factor
+        )
+
     springs = range(len(assembly.topology.compliances))
-    return [of(c, word) for c in springs for word in ("peak_torque", "vibratory_torque")]
+    every = [of(c, word) for c in springs for word in ("peak_torque", "vibratory_torque")]
+    return [*every, *(rated(c) for c in springs if has_rating(assembly, c))]

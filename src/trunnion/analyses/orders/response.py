@@ -31,7 +31,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.exciters import Exciter, exciters
 from trunnion.equations.steady_base import bent, moves_by_itself
@@ -182,6 +182,7 @@ def _result(
         remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
         unit=speed_unit(assembly.line),
         limits=_limits(assembly),
+        rated=tuple(has_rating(assembly, c) for c in range(len(topo.compliances))),
     )
 
 
@@ -197,6 +198,12 @@ def _limits(assembly: Assembly) -> dict[str, dict[str, float]]:
                 own[key] = min(own.get(key, float("inf")), float(one.value))
         found[spring] = own
     return found
+
+
+def has_rating(assembly: Assembly, spring: int) -> bool:
+    """Whether a spring holds a coupling that states T_KW."""
+    members = [assembly.line.elements[i] for i in assembly.topology.compliances[spring].shafts]
+    return any(isinstance(one, Coupling) and one.vibratory_torque is not None for one in members)
 
 
 def _picked(values: Complex, places: Places) -> Complex:

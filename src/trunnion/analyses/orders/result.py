@@ -64,7 +64,8 @@ class OrderResponse(Judged):
     The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
     exists: an undamped resonance. ``verdict`` says where the motion is stable; it is computed when asked for first, by
     ``judged``. remarks: what excites the line and what was left out, in sentences. limits: of torque by spring and name
-    [N m], as the description states them, for drawings.
+    [N m], as the description states them, for drawings; rated (spring,): which springs hold a coupling with a rating
+    T_KW, whose rated torque is printed.
     """
 
     speed: Array
@@ -84,6 +85,7 @@ class OrderResponse(Judged):
     remarks: tuple[Finding, ...]
     unit: str
     limits: Mapping[str, Mapping[str, float]]
+    rated: tuple[bool, ...]
 
     @property
     def sum_is_bound(self) -> bool:
@@ -153,8 +155,8 @@ class OrderResponse(Judged):
     def rated_torque(self) -> Array:
         """Σ S_f(f_k) |T_k| over all orders (speed, spring) [N m], S_f = √(f/10 Hz), at least 1.
 
-        What DIN 740-2 compares with a coupling's T_KW, service factors of its own left out; the amplitudes' sum, an
-        upper bound of what they make with their phases.
+        What DIN 740-2 compares with a coupling's T_KW/S_t: an upper bound, for amplitudes are added up without their
+        phases. ``vibratory_torque`` has no S_f in it.
         """
         spectrum = self.spectrum
         size = np.abs(spectrum.amplitude[..., spectrum.channels.torque])
@@ -301,24 +303,37 @@ class OrderResponse(Judged):
         unit = unit or self.unit
         rows: list[dict[str, object]] = []
         for s, spring in enumerate(self.springs):
-            column = self.peak_torque[:, s]
-            at = int(np.nanargmax(column)) if np.any(np.isfinite(column)) else 0
             order, speed, size = self.leading_order(spring)
             factor, vibrates = speed_factor(unit), bool(size > 0)
+            rated = (
+                self._largest("rated torque", self.rated_torque[:, s], factor, unit, "  ") if any(self.rated) else {}
+            )
             rows.append(
                 {
                     "spring": spring,
-                    "peak torque [N m]": float(column[at]),
-                    f"at [{unit}]": float(self.speed[at] * factor),
-                    "vibratory [N m]": float(self.vibratory_torque[at, s]),
+                    **self._largest("peak torque", self.peak_torque[:, s], factor, unit, ""),
+                    **self._largest("vibratory torque", self.vibratory_torque[:, s], factor, unit, " "),
+                    **rated,
                     "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0))
                     if vibrates
                     else "none",
                     "of it [N m]": size if vibrates else None,
-                    f"at [{unit}] ": speed * factor if vibrates else None,
+                    f"at [{unit}]   ": speed * factor if vibrates else None,
                 }
             )
         return rows
+
+    def _largest(self, name: str, column: Array, factor: float, unit: str, apart: str) -> dict[str, object]:
+        """Largest of a column over the speeds, and where: heads of tables differ by blanks behind them."""
+        value, speed = self.largest(column)
+        return {f"{name} [N m]": value, f"at [{unit}]{apart}": speed * factor}
+
+    def largest(self, column: Array) -> tuple[float, float]:
+        """Largest of values (speed,) and the speed [rad/s] where it is; NaN where none is known."""
+        if not np.any(np.isfinite(column)):
+            return np.nan, np.nan
+        at = int(np.nanargmax(column))
+        return float(column[at]), float(self.speed[at])
 
     def describe(self, unit: str | None = None) -> str:
         """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
@@ -329,13 +344,17 @@ class OrderResponse(Judged):
             if not np.any(np.isfinite(column)):
                 rows.append(f"  {spring}: no steady state")
                 continue
-            at = int(np.nanargmax(column))
-            rows.append(
-                f"  {spring}: torque up to {column[at]:.4g} N m at {show_speed(self.speed[at], unit)}, of which "
-                f"±{self.vibratory_torque[at, s]:.4g} N m vibratory{self._led_by(spring, unit)}"
-            )
+            said = [f"torque up to {self._at_most(column, unit)}"]
+            said.append(f"vibratory torque up to {self._at_most(self.vibratory_torque[:, s], unit)}")
+            if self.rated[s]:
+                said.append(f"rated torque, Σ S_f|T|, up to {self._at_most(self.rated_torque[:, s], unit)}")
+            rows.append(f"  {spring}: {'; '.join(said)}{self._led_by(spring, unit)}")
         rows += [f"  {finding}" for finding in self.findings_in(unit)]
         return "\n".join(rows)
+
+    def _at_most(self, column: Array, unit: str) -> str:
+        value, speed = self.largest(column)
+        return f"{value:.4g} N m at {show_speed(speed, unit)}"
 
     def _led_by(self, spring: str, unit: str) -> str:
         order, at, size = self.leading_order(spring)
