@@ -43,7 +43,7 @@ def columns_of(assembly: Assembly, path: str) -> Columns:
 
 
 def each_named(assembly: Assembly, given: Mapping[str, Value]) -> dict[str, Value]:
-    """What is given by path, by every number's own path; what is said of one element goes before a pattern."""
+    """What is given by path, by every number's own path; what is said of one element overrides a pattern."""
     found: dict[str, Value] = {}
     for path in sorted(given, key=lambda path: closeness(path.rpartition(".")[0])):
         for one in assembly.packed.each(path):

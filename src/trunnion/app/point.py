@@ -9,6 +9,7 @@ import panel as pn
 
 from trunnion.app import figures
 from trunnion.app.pieces import column, facts, pane
+from trunnion.results.units import with_error
 
 
 class Point:
@@ -54,7 +55,7 @@ class Point:
             {
                 "speed": f"{data['speed'] * factor:.6g} {unit}",
                 "verdict": data["verdict"],
-                "spectral radius": f"{data['radius']:.9f} ± {data['error']:.1e}",
+                "spectral radius": with_error(data["radius"], data["error"], beside=1.0),
                 "growth per turn": f"{100 * data['per_turn']:.5g} %",
                 "growth rate": f"{data['growth']:.6g} 1/s",
                 "resonance": data["resonance"] or "none",

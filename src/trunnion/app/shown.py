@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.analyses.orders.result import order_name
 from trunnion.driveline.quantities import eye_unit
+from trunnion.results.units import amplification_words
 from trunnion.results.written import write_numbers
 
 Plain = dict[str, Any]
@@ -147,7 +148,8 @@ def campbell(result: Any) -> Plain:
         "crossing_speed": np.array([c.speed for c in result.crossings]),
         "crossing_frequency": np.array([c.frequency for c in result.crossings]),
         "crossing": [
-            f"{c.line.name} ({', '.join(c.line.causes)}) on mode {c.mode}, amplification {c.amplification:.3g}"
+            f"{c.line.name} ({', '.join(c.line.causes)}) on mode {c.mode}, "
+            f"amplification {amplification_words(c.amplification)}"
             for c in result.crossings
         ],
     }

@@ -15,6 +15,7 @@ from trunnion.cli.kinetostatics import kinetostatics_json
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import frequency_unit, show_speed, speed_factor
+from trunnion.results.units import with_error
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
         i, j = np.unravel_index(np.nanargmax(chart.spectral_radius), chart.spectral_radius.shape)
         radius, error = chart.spectral_radius[i, j], chart.error_estimate[i, j]
         lines.append(
-            f"  largest spectral radius {radius:.6g} ± {error:.1e} at "
+            f"  largest spectral radius {with_error(radius, error, beside=1.0)} at "
             f"{across.value(float(chart.x[j]))}, {up.value(float(chart.y[i]))}"
         )
         middle, worst = np.nanmedian(chart.error_estimate), np.nanmax(chart.error_estimate)

@@ -144,8 +144,8 @@ class Clutch(PiecewiseShaft):
         middle = friction.middle_under(spring, mean, size)
         if np.isnan(middle):
             raise InputError(
-                f"has no stage that carries {mean:g} N·m", element=self.name or "Clutch", key="stiffnesses",
-                remedy="raise its outermost stiffness",
+                f"has no stage that carries {mean:g} N·m: it slips", element=self.name or "Clutch", key="stiffnesses",
+                remedy="raise the torque at which it slips, or ask for a smaller one",
             )  # fmt: skip
         stiffness = float(friction.over_a_cycle(spring, middle, size)[1])
         stiffness += sum(float(friction.mean_stiffness(s.torque, s.stiffness, size)) for s in self.friction)

@@ -96,7 +96,7 @@ class Driveline(Chain):
 
     @cached_property
     def limits_by_element(self) -> tuple[OneLimit, ...]:
-        """Every limit that holds; one stated for an element goes before that of its kind."""
+        """Every limit that holds; that of a named element overrides its kind's."""
         return limits_of(self.limits, self.parts)
 
     @cached_property

@@ -8,7 +8,7 @@
     vibratory_torque = "600 N*m"
     margin = "10 %"
 
-A limit changes no motion; ``assess`` compares with it. What an element states of its own goes before its kind's.
+A limit changes no motion; ``assess`` compares with it. A named element's limit overrides its kind's.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ class OneLimit:
 
 
 def limits_of(limits: Sequence[Limit], parts: Elements) -> tuple[OneLimit, ...]:
-    """Every limit that holds, by element; one stated for an element goes before that of its kind."""
+    """Every limit that holds, by element; that of a named element overrides its kind's."""
     found: dict[tuple[str, str], OneLimit] = {}
     for limit, name, element in in_turn(limits, parts):
         for key, value in limit.limited.items():

@@ -7,7 +7,7 @@
     "Shaft *"            all of the kind Shaft, whatever their names
 
 A pattern speaks of each element by itself: "Shaft *" with a tolerance of 5 % lets every shaft scatter by 5 % of what
-it states, not all together. What is said of one element goes before a pattern of names, and that before a kind.
+it states, not all together. What is said of one element overrides a pattern of names, and that a kind.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from trunnion.arrays import Array
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import Element
 from trunnion.driveline.parameters import PackedLine
-from trunnion.equations.stage_laws import stage_law
+from trunnion.equations.stage_laws import SLIPS, stage_law
 from trunnion.errors import InputError
 from trunnion.laws import friction
 
@@ -38,8 +38,8 @@ def mean_clutch(
     middle = friction.middle_under(law, torque, amplitude)
     if np.isnan(middle).any():
         raise InputError(
-            f"has no stage that carries its load of {float(torque[np.isnan(middle)][0]):g} N·m", element=law.name,
-            remedy="raise its outermost stiffness",
+            f"has no stage that carries its load of {float(torque[np.isnan(middle)][0]):g} N·m: it slips",
+            element=law.name, remedy=SLIPS,
         )  # fmt: skip
     stiffness = friction.over_a_cycle(law, middle, amplitude)[1]
     lost = np.zeros(len(table))

@@ -63,9 +63,12 @@ class StageLaw(StageSpring):
                 "take it as it is",
             )
         return InputError(
-            f"has no stage that carries its load of {torque:g} N·m", element=self.name,
-            remedy="raise its outermost stiffness",
-        )  # fmt: skip
+            f"has no stage that carries its load of {torque:g} N·m: it slips", element=self.name, remedy=SLIPS
+        )
+
+
+SLIPS = "raise the torque at which it slips, lower the load, or take it as holding: a Shaft of its inner stiffness"
+"""What to do about a spring whose outermost stages bear no more torque, such as a slip clutch in series."""
 
 
 def has_stages(element: Element) -> bool:

@@ -18,6 +18,7 @@ from trunnion.errors import InputError
 from trunnion.plots.over_speed import hatched, over_speed
 from trunnion.plots.style import INK, PATTERNS, TEXT, curve_style, key_below, new_axes, printed
 from trunnion.results.speeds import speed_factor
+from trunnion.results.units import angle_words
 
 MOST_ORDERS = 6
 """Curves of single orders drawn, the largest of them."""
@@ -109,7 +110,9 @@ def _beyond_the_linear_range(axes: Axes, x: Array, result: OrderResponse) -> Non
     """Hatched where joints swing too far for linear theory, and where no steady motion exists."""
     lost = ~np.all(np.isfinite(result.mean_torque) & np.isfinite(result.vibratory_torque), axis=1)
     if np.any(~result.linear & ~lost) and len(x) > 1:
-        hatched(axes, x, ~result.linear & ~lost, f"a joint swings by more than {LINEAR_RANGE:g} rad: indication only")
+        hatched(
+            axes, x, ~result.linear & ~lost, f"a joint swings by more than {angle_words(LINEAR_RANGE)}: indication only"
+        )
     if np.any(result.unstable) and len(x) > 1:
         axes.fill_between(
             x, 0, 1, where=result.unstable, transform=axes.get_xaxis_transform(), step="mid",

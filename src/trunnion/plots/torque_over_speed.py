@@ -11,6 +11,7 @@ from trunnion.driveline.operation import Operation
 from trunnion.plots.over_speed import hatched, over_speed
 from trunnion.plots.style import curve_style, key_below, logarithmic, new_axes
 from trunnion.results.speeds import speed_factor
+from trunnion.results.units import angle_words
 
 DECADES = 4.0
 """Smallest amplitude shown, in decades below the largest."""
@@ -36,7 +37,9 @@ def draw(sweep: SpeedSweep, axes: Axes | None = None, *, unit: str = "", operati
         least = max(float(known.min()), largest / 10**DECADES)
         axes.set_ylim(least / 1.5, 2.0 * largest)
     if not np.all(sweep.linear):
-        hatched(axes, x, ~sweep.linear, f"a joint's input swings by more than {LINEAR_RANGE:g} rad: indication only")
+        hatched(
+            axes, x, ~sweep.linear, f"a joint's input swings by more than {angle_words(LINEAR_RANGE)}: indication only"
+        )
     over_speed(axes, x, unit, "torque amplitude [N·m]", operating)
     columns = 3 if np.all(sweep.linear) else 2  # the words for the hatching are long
     key_below(axes, columns, columnspacing=1.5, handlelength=2.6)

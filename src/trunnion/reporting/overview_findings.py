@@ -19,7 +19,7 @@ from trunnion.equations.exciters import quiet
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import rounded_span, rounded_speed, speed_factor
+from trunnion.results.speeds import about_speed, rounded_span, rounded_speed, speed_factor
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -149,15 +149,17 @@ def response_findings(
     if not grave[which, shaft] > 0:
         return
     r, at = forced[which], float(places[which])
-    how = f"to ±{torque[which, shaft]:.4g} N*m" if sweep.linear[which] else "beyond linear theory"
     outside = max(r.speed / high, low / r.speed) - 1
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
-    yield Finding(
-        Gravity.CAUTION,
-        f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}: by linear theory the torque of "
-        f"{sweep.shafts[shaft]} rises {how} at {rounded_speed(at, unit)}, {raised[which, shaft]:.2g} times its usual "
-        "one.",
-    )
+    joints = f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}"
+    if not sweep.linear[which]:
+        words = f"{joints}. Resonance at {about_speed(at, unit)} beyond linear theory; do not use this amplitude."
+    else:
+        words = (
+            f"{joints}: the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
+            f"{rounded_speed(at, unit)}, {raised[which, shaft]:.2g} times its median over the range."
+        )
+    yield Finding(Gravity.CAUTION, words)
 
 
 def free_findings(assembly: Assembly, along: StabilityAlong | None, unit: str) -> Iterator[Finding]:

@@ -25,6 +25,7 @@ from trunnion.results.declared import Held, Result, axis, fields_over, over, rem
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.files import read_dataset, save_numbers
 from trunnion.results.quantity_axes import parameter_axis
+from trunnion.results.units import with_error
 from trunnion.results.verdict import Verdict, flag_attributes
 from trunnion.writing import written_whole
 
@@ -52,7 +53,7 @@ class ChartPoint:
     interpolated: bool
 
     def __str__(self) -> str:
-        return f"{self.verdict}: spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}"
+        return f"{self.verdict}: spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}"
 
 
 @dataclass(frozen=True)

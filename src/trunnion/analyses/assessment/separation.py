@@ -20,6 +20,7 @@ from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.arrays import Array
 from trunnion.results.counts import counted, few
+from trunnion.results.units import amplification_words, order_words
 
 REQUIRED = 0.10
 WORTH = 0.01
@@ -49,7 +50,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
         shown = f"at {subject.shown(case.speeds[at])}"
         if near >= REQUIRED:
-            said = f"order {order:.4g} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
+            said = f"{order_words(order)} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
             clear.append((near, said, float(case.speeds[at])))
             continue
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
@@ -57,7 +58,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         gain = abs(here) / max(-2 * here.real, 1e-300)
         without = few(unlimited(case.assembly))
         needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
-        said = f"order {order:.4g} {what} {hertz} {shown}, amplification {gain:.3g}{NEEDS}{needs}"
+        said = f"{order_words(order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
         yield _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))
     if clear:
         nearest, said, speed = min(clear)

@@ -25,6 +25,7 @@ from trunnion.results.declared import Described, Held, axis, over, remark, remar
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.units import angle_words
 from trunnion.writing import written_whole
 
 ANGLES = (
@@ -376,7 +377,7 @@ def _twists(r: Kinetostatics) -> list[str]:
         return []
     s = int(np.argmax(largest(r.twist)))
     return [
-        f"  largest twist {largest(r.twist)[s]:.4g} rad in {r.shafts[s]}, varying by ± "
+        f"  largest twist {angle_words(largest(r.twist)[s], 4)} in {r.shafts[s]}, varying by ± "
         f"{100 * constant.variation[s]:.3g} % of its mean over the turn; taken as constant, the output speed "
         f"is off by {constant.speed / r.input_speed:.2g} of the input speed"
     ]

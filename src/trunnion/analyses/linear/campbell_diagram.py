@@ -34,6 +34,7 @@ from trunnion.results.declared import Held, Judged, axis, over, remark
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
+from trunnion.results.units import amplification_words, order_words
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
@@ -63,7 +64,7 @@ class ExcitationLine:
     @property
     def name(self) -> str:
         """ "order 2", or the frequency of an excitation fixed in time."""
-        return show_speed(self.frequency, "Hz") if self.frequency else f"order {self.order:.4g}"
+        return show_speed(self.frequency, "Hz") if self.frequency else order_words(self.order)
 
 
 @dataclass(frozen=True)
@@ -185,7 +186,7 @@ class CampbellDiagram(Judged):
         for c in self.crossings:
             rows.append(
                 f"  {show_speed(float(f'{c.speed:.5g}'), unit)}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
-                f"{c.mode} ({c.frequency / (2 * np.pi):.4g} Hz), amplification {c.amplification:.3g}"
+                f"{c.mode} ({c.frequency / (2 * np.pi):.4g} Hz), amplification {amplification_words(c.amplification)}"
             )
         if not self.lines:
             rows.append("  Nothing excites this line.")

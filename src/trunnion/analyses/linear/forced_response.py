@@ -17,6 +17,7 @@ from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
 from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
+from trunnion.results.units import angle_words
 
 LINEAR_RANGE = 0.1
 """Rotation [rad] at a joint's input up to which the linear response is trusted: 0.1 rad shifts the 2χ of the
@@ -77,14 +78,15 @@ class LinearResponse(Result):
 
     def __str__(self) -> str:
         rows = [
-            f"  {name}: twist ±{t:.4g} rad, torque ±{f:.4g} N m about {m if abs(m) > NOTHING * f else 0.0:.4g} N m"
+            f"  {name}: twist ±{angle_words(t, 4)}, torque ±{f:.4g} N m "
+            f"about {m if abs(m) > NOTHING * f else 0.0:.4g} N m"
             for name, t, f, m in zip(
                 self.shafts, self.twist_amplitude, self.torque_amplitude, self.torque_mean, strict=True
             )
         ]
         trust = (
-            f"largest rotation at a joint's input {self.largest_joint_rotation:.3g} rad"
-            f" ({'within' if self.linear else 'BEYOND'} the linear range of {LINEAR_RANGE} rad)"
+            f"largest rotation at a joint's input {angle_words(self.largest_joint_rotation)}"
+            f" ({'within' if self.linear else 'BEYOND'} the linear range of {angle_words(LINEAR_RANGE)})"
         )
         return "\n".join(["linear forced response over one period", *rows, f"  {trust}"])
 

@@ -20,6 +20,9 @@ from trunnion.results.drawing import Figure, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import four_figures, show_speed, speed_factor
 
+ALIKE = 5e-4
+"""Share by which damped and undamped frequencies may differ before a sentence gives both."""
+
 
 @dataclass(frozen=True, repr=False)
 class NaturalFrequencies(Result):
@@ -144,9 +147,9 @@ class NaturalFrequencies(Result):
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
             return f"overdamped, {self._decay(mode)}; undamped {undamped}"
-        ratio, frequency = self.damping_ratio[mode], self._shown(self.frequency[mode])
-        beside = "" if frequency == undamped else f"; undamped {undamped}"
-        return f"{frequency}, damping ratio {ratio:.3g}{beside}"
+        ratio, frequency = self.damping_ratio[mode], self.frequency[mode]
+        apart = abs(frequency - self.undamped_frequency[mode]) > ALIKE * frequency
+        return f"{self._shown(frequency)}, damping ratio {ratio:.3g}{f'; undamped {undamped}' if apart else ''}"
 
     def _shown(self, frequency: float) -> str:
         unit = speed_unit(self.assembly.line)

@@ -26,6 +26,7 @@ from trunnion.results.declared import Described, Held, axis, fields_over, over, 
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.speeds import show_speed
+from trunnion.results.units import angle_words
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
@@ -109,8 +110,8 @@ class SpeedSweep(Described):
         beyond = int(np.count_nonzero(~self.linear))
         if beyond:
             rows.append(
-                f"  at {counted(beyond, 'speed')} a joint's input deviates by more than {LINEAR_RANGE} rad: indication "
-                "only"
+                f"  at {counted(beyond, 'speed')} a joint's input deviates by more than {angle_words(LINEAR_RANGE)}: "
+                "indication only"
             )
         return "\n".join([*rows, *(f"  {finding}" for finding in self.findings_in(unit))])
 

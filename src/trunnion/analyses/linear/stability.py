@@ -36,6 +36,7 @@ from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.declared import Held, Judged, fields_over, over, remarks
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed
+from trunnion.results.units import angle_words, with_error
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
@@ -163,9 +164,9 @@ class Stability(Judged):
         unit = unit or self.unit
         lines = [
             f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
-            f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e} per period of "
+            f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)} per period of "
             f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle",
-            f"  growth rate {self.growth_rate:+.6g} ± {self.growth_rate_error:.1e} 1/s",
+            f"  growth rate {with_error(self.growth_rate, self.growth_rate_error, 4, sign='+')} 1/s",
         ]
         if self.resonance is not None:
             at = f" (at {show_speed(self.resonance.speed, unit)})" if np.isfinite(self.resonance.speed) else ""
@@ -369,8 +370,9 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
         steady = "Stable does not mean quiet: its" if result.verdict is Verdict.STABLE else "Its"
         yield Finding(
             Gravity.DANGER,
-            f"{steady} excitation forces a rotation of {response.joint_rotation[worst]:.3g} rad at the input of "
+            f"{steady} excitation forces a rotation of {angle_words(response.joint_rotation[worst])} at the input of "
             f"{response.joints[worst]} at {at} (twist of {response.shafts[shaft]} "
-            f"±{response.twist_amplitude[shaft]:.3g} rad by linear theory), beyond the linear range of "
-            f"{LINEAR_RANGE} rad: read it as resonance, not as an amplitude; the verdict holds for small twist only.",
+            f"±{angle_words(response.twist_amplitude[shaft])} by linear theory), beyond the linear range of "
+            f"{angle_words(LINEAR_RANGE)}: read it as resonance, not as an amplitude; the verdict holds for small "
+            "twist only.",
         )

@@ -17,6 +17,7 @@ from trunnion.results.declared import Held, Result, axis, ending, fields_over, o
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_acceleration, show_speed
+from trunnion.results.units import angle_words, order_words
 from trunnion.results.verdict import Verdict
 
 SMALL = 0.01
@@ -222,13 +223,13 @@ def _causes(result: LinearityCheck) -> Iterator[str]:
         if one.slipping:
             yield (
                 f"{one.clutch} slips: linear theory has it at the stiffness and loss of this one swing, "
-                f"±{one.swing:.3g} rad, which it does not find by itself"
+                f"±{angle_words(one.swing)}, which it does not find by itself"
             )
     for name, swing in zip(result.linear.joints, result.linear.joint_rotations[0], strict=True):
         if swing > LINEAR_RANGE:
             yield (
-                f"the input of {name} swings by {swing:.3g} rad, beyond the linear range of {LINEAR_RANGE} rad: its "
-                "speed ratio moves with the vibration"
+                f"the input of {name} swings by {angle_words(swing)}, beyond the linear range of "
+                f"{angle_words(LINEAR_RANGE)}: its speed ratio moves with the vibration"
             )
     yield from _loads_by_speed(result)
 
@@ -282,7 +283,8 @@ def _findings(result: LinearityCheck, unit: str) -> Iterator[Finding]:
         yield Finding(
             Gravity.NOTE,
             f"{one.clutch} {doing} and stands in the linear line as a shaft of {one.stiffness:.4g} N m/rad and "
-            f"{one.damping:.4g} N m s/rad, its mean at ±{one.swing:.3g} rad and {one.frequency / (2 * np.pi):.4g} Hz.",
+            f"{one.damping:.4g} N m s/rad, its mean at ±{angle_words(one.swing)} and "
+            f"{one.frequency / (2 * np.pi):.4g} Hz.",
         )
     if result.passage is not None:
         yield _passing(result.passage, unit)
@@ -302,7 +304,7 @@ def _sentence(result: LinearityCheck, at: str) -> Finding:
     )
     return Finding(
         Gravity.CAUTION,
-        f"Linear theory misleads at {at}: order {result.order[k]:.6g} of {result.springs[s]} is "
+        f"Linear theory misleads at {at}: {order_words(result.order[k])} of {result.springs[s]} is "
         f"{abs(result.linear_torque[k, s]):.4g} N m by it and {abs(result.nonlinear_torque[k, s]):.4g} N m truly, "
         f"{share:.2g} % of the largest order apart, phases counted; {reason}.",
     )

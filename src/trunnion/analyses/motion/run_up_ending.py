@@ -10,6 +10,7 @@ from trunnion.results.counts import few
 from trunnion.results.declared import Held, remarks
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_span, about_speed, frequency_unit, rounded_speed
+from trunnion.results.units import order_words
 
 WANDERS = 0.02
 """Change of the mean speed from turn to turn, relative, that shows a motion which does not repeat."""
@@ -173,8 +174,8 @@ class RunUpEnding:
         at, strongest = about_speed(self.hung_speed, unit), self.strongest
         shaken, damped, lower = "vibration takes what should accelerate it", "the line", "what excites it"
         if strongest is not None:
-            shaken = f"order {strongest.order:.4g}{_of(strongest.sources)} shakes {_mode(strongest, unit)}"
-            damped, lower = strongest.spring, f"what excites order {strongest.order:.4g}"
+            shaken = f"{order_words(strongest.order)}{_of(strongest.sources)} shakes {_mode(strongest, unit)}"
+            damped, lower = strongest.spring, f"what excites {order_words(strongest.order)}"
         since, free = "", ""
         if self.hanging is not None:
             since = f" from t = {self.hanging.since:.3g} s to the end at {self.time:.4g} s"
@@ -191,7 +192,7 @@ class RunUpEnding:
         """The order that vibrated, in brackets; nothing where it is not known."""
         if self.strongest is None:
             return ""
-        return f" (order {self.strongest.order:.4g}{_of(self.strongest.sources)})"
+        return f" ({order_words(self.strongest.order)}{_of(self.strongest.sources)})"
 
 
 def _of(sources: tuple[str, ...]) -> str:

@@ -26,10 +26,12 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.numerics.spectrum import spectral_radius
+from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
+from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
 from trunnion.systems.system import System
@@ -148,7 +150,7 @@ class PeriodicOrbit(Result):
             [
                 f"{self.verdict} {what} of {self.system.name}, period {self.period:.8g} s{changes}: "
                 f"{MEANING[self.verdict]}",
-                f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
+                f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}, growth rate "
                 f"{self._growth}{tangents}",
                 *rows,
                 f"  {self.outcome}",
@@ -307,6 +309,12 @@ def _shares(place: IntegratedMap, run: Trajectory, x: Array) -> int:
     return 1
 
 
+def _ended(root: Root) -> str:
+    if not root.iterations:
+        return "shooting found no step from its start that comes nearer to a periodic motion"
+    return f"shooting did not converge in {counted(root.iterations, 'iteration')}"
+
+
 def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
     place, n, nan = closing.map, closing.size, float("nan")
     assert closing.last is not None
@@ -319,7 +327,7 @@ def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = No
         outcome = Outcome(
             False,
             "not converged",
-            f"shooting did not converge in {root.iterations} iterations (residual {root.size:.1e}); start closer, "
+            f"{_ended(root)} (residual {root.size:.1e}); start closer, "
             "for example from the end of a longer simulation, or follow the motion from a parameter where it is known",
         )
     return PeriodicOrbit(

@@ -38,6 +38,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
+from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.systems.system import System
 
@@ -231,7 +232,7 @@ class PeriodicResponse(Judged):
         return "\n".join(
             [
                 f"{self.verdict} periodic motion at {at}, period {self.turns:.6g} turns: {MEANING[self.verdict]}",
-                f"  spectral radius {self.spectral_radius:.10g} ± {self.error_estimate:.1e}, growth rate "
+                f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}, growth rate "
                 f"{self.growth_rate:+.6g} 1/s",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),

@@ -33,7 +33,7 @@ ROUNDING = 2e-16
 
 
 def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
-    """Three speeds (3,) that stand for all where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
+    """Three speeds (3,) that suffice where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
     None where each case has to stand for itself. Excitations are taken to be of second degree in the speed as well."""
     laws = [np.broadcast_to(n, (len(speed), 1)) for law in co.joints for n in law.numbers]
     parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, *laws, co.shift, co.loss)

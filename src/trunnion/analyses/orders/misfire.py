@@ -49,10 +49,15 @@ class Misfire(Result):
         yield over("spring", "normal", self.normal, "N*m", "vibratory torque with all cylinders firing")
         yield remark("worst", f"{self.worst[0]} {self.worst[1]}")
 
+    def _called(self, name: str, number: int) -> str:
+        """A disk that carries one cylinder is that cylinder."""
+        several = sum(one == name for one, _ in self.cylinders) > 1
+        return f"cylinder {number} of {name}" if several else name
+
     def __str__(self) -> str:
         name, number = self.worst
         row = self.cylinders.index(self.worst)
-        rows = [f"misfire: cylinder {number} of {name} is the worst of {len(self.cylinders)}"]
+        rows = [f"misfire: {self._called(name, number)} is the worst of {len(self.cylinders)}"]
         for s, spring in enumerate(self.springs):
             at = show_speed(float(self.speed[row, s]), self.response.unit)
             rows.append(

@@ -37,6 +37,7 @@ from trunnion.equations.exciters import Exciter, exciters
 from trunnion.equations.steady_base import bent, moves_by_itself
 from trunnion.errors import InputError
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import four_figures
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -265,7 +266,7 @@ def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[
 
 
 def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
-    """How far the disks swing whose orders are taken at their nominal angle."""
+    """How far the disks swing whose orders are taken at their mean angle."""
     topo, worst = assembly.topology, (0.0, "")
     swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
     for exciter in at_work:
@@ -273,14 +274,16 @@ def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Ex
             i = topo.unknown_of[exciter.station]
             worst = max(worst, (exciter.own_order * float(np.nanmax(swing[:, i], initial=0.0)), exciter.element))
     if worst[0] > 0:
+        grave = worst[0] > LARGEST_SWING
+        check = " Run linearity-check." if grave else ""
         yield Finding(
-            Gravity.CAUTION if worst[0] > LARGEST_SWING else Gravity.NOTE,
-            f"Orders act at the nominal angle of their disk; that {worst[1]} swings about it moves the torque of an "
-            f"order by up to {100 * worst[0]:.2g} % of its amplitude, into other orders for the most part.",
+            Gravity.CAUTION if grave else Gravity.NOTE,
+            f"Torque is applied at the mean angle of {worst[1]}; its swing can shift up to "
+            f"{four_figures(float(f'{100 * worst[0]:.2g}'))} % of it to other orders.{check}",
         )
 
 
 ALIKE_SWING = 1.5
 """Factor by which a clutch may swing more or less than where its mean was taken, before that is said."""
 LARGEST_SWING = 0.1
-"""Order times swing of its disk [rad] from which the nominal angle is no longer good enough."""
+"""Order times swing of its disk [rad] from which the mean angle is no longer good enough."""

@@ -19,6 +19,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.stretches import ranges_in_words, stretches_above
+from trunnion.results.units import angle_words, order_words
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -373,7 +374,7 @@ def frequency_factor(frequency: Array) -> Array:
 def order_name(order: float, frequency: float) -> str:
     """``order 2``, ``77.7 Hz``, or the sideband of a fixed frequency: ``77.7 Hz -2 per turn``."""
     if not frequency:
-        return f"order {order:.6g}"
+        return order_words(order)
     return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
 
 
@@ -381,7 +382,7 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
     lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
     for speed in result.speed[lost][:3]:
         k = np.flatnonzero(~np.all(np.isfinite(result.torque[result.speed == speed][0]), axis=1))
-        which = f"order {result.order[k[0]]:.6g}" if len(k) else "an excitation"
+        which = order_words(result.order[k[0]]) if len(k) else "an excitation"
         yield Finding(
             Gravity.DANGER,
             f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
@@ -398,7 +399,7 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
         where = ranges_in_words(beyond, unit, digits=3)
         yield Finding(
             Gravity.CAUTION,
-            f"A joint's input swings by up to {np.nanmax(result.joint_rotation):.3g} rad, beyond the linear range of "
-            f"{LINEAR_RANGE} rad, at {where}: read it as resonance, not as an amplitude; tn.periodic_response gives "
-            "the true motion.",
+            f"A joint's input swings by up to {angle_words(np.nanmax(result.joint_rotation))}, beyond the linear range "
+            f"of {angle_words(LINEAR_RANGE)}, at {where}: read it as resonance, not as an amplitude; "
+            "tn.periodic_response gives the true motion.",
         )

@@ -1,10 +1,10 @@
 """From every resonance of the straight line to the region that it opens: a search of rows that samples nothing.
 
-Where the straight line has ω_i + ω_j = N cycles in the period, two of its multipliers meet. The line is bent by and by
-up to the lowest row, then the row rises through the box. The phases θ of all modes are followed on that way, and the
-speed is moved so that θ_i + θ_j stays N turns: θ goes nearly as 1/Ω, which makes the next speed Ω(θ_i + θ_j)/2πN. If
-the two multipliers have parted there in modulus, this is a point of the region, and half of what ln|σ| differs by
-tells its width: edges lie where the phases of the straight line would be apart by that much.
+Where the straight line has ω_i + ω_j = N cycles in the period, two of its multipliers meet. We raise the joint angle in
+steps, from nothing to the lowest row and then through the box, and track each resonance: the phases θ of all modes are
+followed, and the speed is moved so that θ_i + θ_j stays N turns: θ goes nearly as 1/Ω, which makes the next speed
+Ω(θ_i + θ_j)/2πN. If the two multipliers have parted there in modulus, this is a point of the region, and half of what
+ln|σ| differs by tells its width: edges lie where the phases of the straight line would be apart by that much.
 
 It sees how small a region is, but not a resonance of higher order than ``ORDERS`` or one that only steep angles make.
 Differences ω_j − ω_i = N are not followed: stiffness matrices are symmetric, and two modes whose difference it is have

@@ -1,10 +1,10 @@
 """The resonance of a tongue: which modes, and how many cycles of the excitation.
 
-With all joints straight a line has multipliers e^{±iω_jT}. Bent by and by, they move along the circle, and each keeps
-the mode it came from until two of them meet. So the phase θ_j of every mode is followed from ω_jT on, as the angles of
-joints and the shares of mesh-stiffness variations grow from nothing to what they are where the tongue begins. There
-θ_i + θ_j is a whole number of turns, 2πN, and N cycles in the period name the resonance, whatever steep angles have
-made of the frequencies on the way: for one mode i = j, and 2θ_i = 2πN.
+With all joints straight a line has multipliers e^{±iω_jT}. As the joint angles are raised in steps, they move along the
+circle, and each keeps the mode it came from until two of them meet. So the phase θ_j of every mode is followed from
+ω_jT on, as the angles of joints and the shares of mesh-stiffness variations grow from nothing to what they are where
+the tongue begins. There θ_i + θ_j is a whole number of turns, 2πN, and N cycles in the period name the resonance,
+whatever steep angles have made of the frequencies on the way: for one mode i = j, and 2θ_i = 2πN.
 
 The content of the growing mode by frequency (``linear.mode_content``) says the same at small angles and gets blurred at
 large ones, where a mode is spread over many harmonics.

@@ -24,6 +24,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
+from trunnion.results.units import in_words
 
 NEAR = 0.1
 """Spare margin below which a check is nearly binding."""
@@ -177,8 +178,12 @@ def _sentence(subject: Subject, design: Design, before: Check, after: Check | No
         here, there = moved
         what = f"{before.cause.name} on mode {before.cause.mode}"
         return f"{change} moves {what} from {subject.shown(here)} to {subject.shown(there)}: {left}"
-    unit = "" if before.unit == "1" else f" {before.unit}"
-    return f"{change} brings it from {before.value:.4g}{unit} to {after.value:.4g}{unit}: {left}"
+    return f"{change} brings it from {_shown(subject, before)} to {_shown(subject, after)}: {left}"
+
+
+def _shown(subject: Subject, check: Check) -> str:
+    """The value of a check in an engineer's unit, speeds in the file's."""
+    return subject.shown(check.value) if check.unit == "rad/s" else in_words(check.value, check.unit)
 
 
 def _closest(found: Found, base: dict[str, Check]) -> str:
@@ -206,7 +211,7 @@ def _critical(subject: Subject, design: Design, before: Check, found: Found) -> 
         line = line.with_load(before.load_case)
     assembly = assemble(line)
     number = cause.mode - (2 if assembly.topology.free else 1)
-    natural = abs(loaded_modes(assembly, np.array([before.speed]))[0][0, number])
+    natural = float(loaded_modes(assembly, np.array([before.speed]))[0][0, number].imag)
     there = (natural - cause.frequency) / cause.order
     here = cause.critical
     return (here, float(there)) if np.isfinite(there) and abs(np.log(there / here)) > MOVED else None
