@@ -272,6 +272,11 @@ _LISTS = {"breakpoints": ("breakpoint", "rad"), "stiffnesses": ("stiffness", "N*
 _NUMBERS = (float, int)
 
 
+def unit_of(path: str) -> str:
+    """SI unit of the number that a path names; "1" of a factor."""
+    return "1" if path.startswith("factor of ") else _unit(path.rpartition(".")[2])
+
+
 def _unit(key: str) -> str:
     """Unit of "stiffness", "excitation 2 amplitude", "breakpoint 1"."""
     if key in UNITS:

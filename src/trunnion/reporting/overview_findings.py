@@ -151,12 +151,12 @@ def response_findings(
     r, at = forced[which], float(places[which])
     outside = max(r.speed / high, low / r.speed) - 1
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
-    joints = f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}"
+    said = f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}"
     if not sweep.linear[which]:
-        words = f"{joints}. Resonance at {about_speed(at, unit)} beyond linear theory; do not use this amplitude."
+        words = f"{said}. Resonance at {about_speed(at, unit)}; do not use this amplitude: it is beyond linear theory."
     else:
         words = (
-            f"{joints}: the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
+            f"{said}: the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
             f"{rounded_speed(at, unit)}, {raised[which, shaft]:.2g} times its median over the range."
         )
     yield Finding(Gravity.CAUTION, words)

@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.results.speeds import speed_factor
+from trunnion.results.units import figures
 
 MOST_STRETCHES = 4
 
@@ -33,7 +34,7 @@ def ranges_in_words(ranges: Sequence[tuple[float, float]], unit: str, digits: in
     factor = speed_factor(unit)
     words = [
         f"{a} {unit}" if a == b else f"{a} to {b} {unit}"
-        for a, b in ((f"{low * factor:.{digits}g}", f"{high * factor:.{digits}g}") for low, high in ranges)
+        for a, b in ((figures(low * factor, digits), figures(high * factor, digits)) for low, high in ranges)
     ]
     more = f" and {len(words) - MOST_STRETCHES} more stretches" if len(words) > MOST_STRETCHES else ""
     return f"{', '.join(words[:MOST_STRETCHES])}{more}"

@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.analyses.assessment.assess import checks_of, subject_of
 from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
-from trunnion.analyses.tolerance.spread import Spread, numbers_at, tables
+from trunnion.analyses.tolerance.spread import Spread, numbers_at, tables, values_in_words
 from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
@@ -101,7 +101,7 @@ class CheckStudy(Result):
         if self.failed:
             rows.append(f"  {self.failed} lines could not be computed and count as exceeding")
         if self.worst is not None:
-            values = ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items())
+            values = values_in_words(self.worst.values)
             rows.append(f"  worst line judged: {self.worst.check}, {self.worst.because}, with {values}")
             rows.append("  what moves it: " + ", ".join(f"{n} {100 * s:.0f} %" for n, s in self.ranking[:5]))
         return "\n".join(rows)

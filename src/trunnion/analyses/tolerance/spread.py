@@ -10,9 +10,11 @@ from scipy.special import ndtri
 
 from trunnion.analyses.bounded import Bounded, columns_of, each_named, require_possible, table_at
 from trunnion.arrays import Array
+from trunnion.driveline.parameters import unit_of
 from trunnion.driveline.tolerances import Scatter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+from trunnion.results.units import in_words
 
 Tolerances = Mapping[str, object]
 """Path → what it scatters by; see ``read_tolerances``."""
@@ -82,6 +84,11 @@ def tables(assembly: Assembly, spreads: tuple[Spread, ...], shares: Array, speed
     return table_at(
         assembly, spreads, np.stack([s.values(x) for s, x in zip(spreads, inside.T, strict=True)], 1), speed
     )
+
+
+def values_in_words(values: Mapping[str, float]) -> str:
+    """Numbers of one line by parameter, in engineers' units: "Shaft 1.stiffness = 11 kN*m/rad"."""
+    return ", ".join(f"{path} = {in_words(value, unit_of(path), 5)}" for path, value in values.items())
 
 
 def numbers_at(spreads: tuple[Spread, ...], shares: Array) -> dict[str, float]:

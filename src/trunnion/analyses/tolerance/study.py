@@ -19,7 +19,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
-from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables
+from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables, values_in_words
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import numbers, one_number, whole_number
 from trunnion.driveline.driveline import Driveline
@@ -119,8 +119,7 @@ class ToleranceStudy(Result):
             f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances",
             f"  worst line found: {self.worst.verdict}, "
             f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
-            f"{show_speed(self.worst.speed, self.unit)}, with "
-            + ", ".join(f"{name} = {value:.6g}" for name, value in self.worst.values.items()),
+            f"{show_speed(self.worst.speed, self.unit)}, with {values_in_words(self.worst.values)}",
             "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
         ]
         if self.undecided:
