@@ -37,8 +37,8 @@ from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.units import figures
 
-MOST_READABLE = 12
-"""Largest number in a fraction that is read at a glance; behind gears others are written out, "ω₄/0.475"."""
+MOST_READABLE = 4
+"""Largest multiple of a frequency that is read at a glance, "3ω₁/2"; others, behind gears, are written "ω₄/0.475"."""
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -73,7 +73,7 @@ class Resonance:
         top = pairs.get(self.kind, first)
         below = 2 * self.order - (self.kind == "subharmonic")
         under = below * self.rate
-        if max(under.numerator, under.denominator) > MOST_READABLE and under.denominator > 1:
+        if under.denominator > MOST_READABLE:
             return f"{top}/{figures(float(under))}"
         over = "" if under.denominator == 1 else f"{under.denominator}"
         return f"{over}{top}" if under.numerator == 1 else f"{over}{top}/{under.numerator}"
