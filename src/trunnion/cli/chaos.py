@@ -119,6 +119,7 @@ def poincare_map(
         "section": result.section,
         "points": len(result.points),
         "repeat": result.repeat,
+        "settling": result.settling,
         "states": dict(zip(system.states, result.points.T, strict=True)),
         "outcome": result.outcome.kind,
         "says": str(result.outcome),

@@ -16,7 +16,7 @@ from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
 from trunnion.analyses.chaos.lyapunov_map import LyapunovMap, LyapunovSweep
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap
-from trunnion.analyses.motion.long_motion import wrapped
+from trunnion.analyses.motion.repetition import modulo
 from trunnion.arrays import Array
 from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.motion import pair_of_states
@@ -178,10 +178,11 @@ def _portrait(result: ChaosCertificate, axes: Axes) -> None:
     )
     if run.steps:
         times = np.linspace(0.0, run.time, 30_000)
-        turning = result.map.angles if result.map is not None else ()
-        path = wrapped(run.at(times), turning)
-        for k in {i, j} & set(turning):  # no line across the page where an angle starts anew
-            path[1:][np.abs(np.diff(path[:, k])) > np.pi] = np.nan
+        turns = result.map.turns if result.map is not None else np.zeros((0, system.size))
+        path = modulo(run.at(times), turns, np.asarray(system.scale))
+        for turn in turns[:, [i, j]]:  # no line across the page where an angle starts anew
+            anew = np.abs(np.diff(path[:, [i, j]], axis=0)) > np.abs(turn) / 2
+            path[1:][np.any(anew & (turn != 0), axis=1)] = np.nan
         axes.plot(path[:, i] * across.factor, path[:, j] * up.factor, color=COLOURS[0], lw=0.5)
         rests = [np.ptp(path[:, k]) < 1e-4 * np.abs(path[:, k]).max() for k in (i, j)]
         if all(rests):

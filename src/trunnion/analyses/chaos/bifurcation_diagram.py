@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.arrays import Array, Integers
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
@@ -32,7 +32,8 @@ DIRECTIONS = ("up", "down")
 class BifurcationDiagram(Result):
     """Points (directions, values, points, n) of the map over a parameter, NaN where the motion failed.
 
-    repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed.
+    repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed; settling
+    (directions, values): where it does not repeat and comes closer to it, so that a longer ``transient`` would tell.
     """
 
     system: System
@@ -41,6 +42,7 @@ class BifurcationDiagram(Result):
     directions: tuple[str, ...]
     points: Array
     repeat: Integers
+    settling: Flags
     section: str
     transient: int
     tolerance: float
@@ -53,6 +55,7 @@ class BifurcationDiagram(Result):
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
             yield over("direction value point", name, self.points[..., i], unit)
         yield over("direction value", "repeat", self.repeat)
+        yield over("direction value", "settling", self.settling)
         remarks = {"section": self.section, "transient": self.transient, "tolerance": self.tolerance}
         yield from about(self.system, self.outcome, **remarks)
 
@@ -67,10 +70,12 @@ class BifurcationDiagram(Result):
             f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high}, "
             f"{len(self.values)} values, {self.points.shape[2]} points each, {self.section}"
         ]
-        for direction, repeat in zip(self.directions, self.repeat, strict=True):
+        for direction, repeat, settling in zip(self.directions, self.repeat, self.settling, strict=True):
             counts = {int(k): int(np.sum(repeat == k)) for k in np.unique(repeat[repeat > 0])}
             told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
-            rows.append(f"  {direction}: {told or 'none repeats'}; {int(np.sum(repeat == 0))} do not repeat")
+            told = f"{told or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
+            late = f"; {int(np.sum(settling))} still settle: raise transient" if settling.any() else ""
+            rows.append(f"  {direction}: {told}{late}")
         return "\n".join([*rows, f"  {self.outcome}"])
 
 
@@ -113,6 +118,7 @@ def bifurcation_diagram(
     tell = progress or (lambda share: None)
     found = np.full((len(directions), len(chosen), points, system.size), np.nan)
     repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
+    settling = np.zeros(repeat.shape, dtype=bool)
     told: list[str] = []
     shown: PoincareMap | None = None
     for d, direction in enumerate(directions):
@@ -127,7 +133,8 @@ def bifurcation_diagram(
                 state = first
                 continue
             shown = mapped
-            found[d, i], repeat[d, i], state = mapped.wrapped, mapped.repeat, mapped.points[-1]
+            found[d, i], repeat[d, i], settling[d, i] = mapped.wrapped, mapped.repeat, mapped.settling
+            state = mapped.points[-1]
     outcome = Outcome(True, "reached", "every value was reached")
     if told:
         outcome = Outcome(False, "failed in part", f"{len(told)} of {repeat.size} values failed, the first {told[0]}")
@@ -139,6 +146,7 @@ def bifurcation_diagram(
         tuple(directions),
         found,
         repeat,
+        settling,
         words.split(" of ")[0],
         transient,
         tolerance,

@@ -4,7 +4,8 @@ The three steps of Bugaru and Vasile (Appl. Sci. 12, 2022, 6182), with exponents
 time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria of
 ``chaos_criteria``), Poincaré map (PM: does it repeat). The 0–1 test of the map is a second, independent witness.
 
-    unbounded   the motion grows until it cannot be followed, or grows from block to block of the run
+    unbounded   the motion grows until it cannot be followed, or states and rates grow from block to block of the run;
+                clocks and what turns (states that may move by a period without changing any rate) do not count
     regular     the map repeats (periodic), or does not but neighbours do not part and the 0–1 test agrees
                 (quasi-periodic), or the motion has come to rest
     chaotic     the largest exponent is above 0 by more than its interval, by more than what a regular motion's
@@ -24,15 +25,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.chaos.chaos_criteria import Criterion, criteria
-from trunnion.analyses.chaos.chaos_subject import angles, as_system, clocks, first_starts
+from trunnion.analyses.chaos.chaos_subject import as_system, clocks, first_starts, phases, turns
 from trunnion.analyses.chaos.chaos_zero_one import FEWEST as FEWEST_FOR_TEST
 from trunnion.analyses.chaos.chaos_zero_one import ZeroOne, zero_one_test
 from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, shear_bound
 from trunnion.analyses.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.analyses.motion.long_motion import motion_size, wrapped
-from trunnion.arrays import Array
+from trunnion.analyses.motion.long_motion import motion_size
+from trunnion.analyses.motion.repetition import modulo
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import End
@@ -45,7 +47,9 @@ from trunnion.systems.system import System
 POINTS = 3000
 """Points of the Poincaré map."""
 BLOCKS, GROWN = 8, 2.0
-"""A motion whose largest state rises in each of so many blocks, by this factor in all, is unbounded."""
+"""A state, or a rate, that rises in each of so many blocks, by this factor in all, grows."""
+LOOKED_AT = 32
+"""Samples of each block at which rates are looked at."""
 UNSTABLE = "at rest on an unstable equilibrium"
 VAGUE, UNDAMPED = 0.1, 1e-9
 """Share of the mean damping from which an interval says nothing, and the damping of a period that is none."""
@@ -231,15 +235,14 @@ def _witness(
         return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
     if stopped:
         return Witness(None, None, Verdict.UNDECIDED, "", (str(spectrum.outcome),))
-    turning = angles(system, run.states[:: max(len(run.states) // 8, 1)][:8])
     if len(run.growth) < FEWEST:
         return Witness(None, None, Verdict.UNDECIDED, "", (_too_short(spectrum, i),))
-    size = motion_size(system, run.states[-1], interval, spectrum.tolerance)
-    scale = np.asarray(system.scale) + np.abs(wrapped(run.states[-64:], turning)).max(axis=0)
+    size, turning = motion_size(system, run.states[-1], interval, spectrum.tolerance), turns(system, run.states)
+    whole = modulo(run.states, turning, np.asarray(system.scale))
+    scale = np.asarray(system.scale) + np.abs(whole[-64:]).max(axis=0)
     still = [j for j in range(system.size) if j not in running]
-    if _grows(run.states, turning, np.asarray(system.scale)):
-        reason = "the largest state rises from block to block of the run and does not stop"
-        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+    if (growing := _growing(system, whole, running, turning)) is not None:
+        return growing
     exponent, width = spectrum.by_start[i][0], spectrum.by_start_half_width[i][0]
     width = max(width, spectrum.sum_error if np.isfinite(spectrum.sum_error) else 0.0)
     forced = system.forcing_period is not None
@@ -264,6 +267,7 @@ def _witness(
 def _judge(
     spectrum: LyapunovSpectrum, i: int, mapped: PoincareMap, test: ZeroOne | None, exponent: float, width: float
 ) -> Witness:
+    forced = spectrum.system.forcing_period is not None
     shear = shear_bound(len(spectrum.runs[i].growth), spectrum.interval)
     parts = bool(exponent > max(width, shear))
     told = f"largest exponent {exponent:+.4g} ± {width:.2g} 1/s"
@@ -272,6 +276,10 @@ def _judge(
         return Witness(
             mapped, test, Verdict.REGULAR, "periodic", (f"{told}; the map repeats after {mapped.repeat} {times}",)
         )
+    if mapped.settling and not parts:
+        longer = spectrum.transient + 4 * len(spectrum.runs[i].growth)
+        reason = f"the map is {mapped.repetition} to {longer} periods or more"
+        return Witness(mapped, test, Verdict.UNDECIDED, "", (told, reason))
     if test is None:
         reason = f"{len(mapped.points)} points are too few for the 0–1 test; give {FEWEST_FOR_TEST} periods or more"
         return Witness(mapped, test, Verdict.UNDECIDED, "", (told, reason))
@@ -281,7 +289,7 @@ def _judge(
             (f"{told}: neighbours part exponentially, by e in {1 / exponent:.4g} s; the 0–1 test agrees",),
         )  # fmt: skip
     if not parts and test.says == "regular":
-        settling = exponent + width < 0 and not _zero(spectrum, i)
+        settling = exponent + width < 0 and _zeros(spectrum, i) < (1 if forced else 2)
         if settling:
             longer = int(np.ceil(10 / (-exponent * spectrum.interval)))
             return Witness(
@@ -311,11 +319,12 @@ def _judge(
     )  # fmt: skip
 
 
-def _zero(spectrum: LyapunovSpectrum, i: int) -> bool:
-    """Whether some exponent of this start is 0 to within its interval: a torus, or a phase among the states."""
+def _zeros(spectrum: LyapunovSpectrum, i: int) -> int:
+    """How many exponents of this start are 0 to within their intervals. A torus has one without the phase of the
+    forcing, and two where the direction of the motion counts."""
     value, width = spectrum.by_start[i], spectrum.by_start_half_width[i]
     size = float(np.max(np.abs(value)))
-    return bool(np.any(np.abs(value) <= width + 1e-5 * size))
+    return int(np.sum(np.abs(value) <= width + 1e-5 * size))
 
 
 def _too_short(spectrum: LyapunovSpectrum, i: int) -> str:
@@ -327,19 +336,48 @@ def _too_short(spectrum: LyapunovSpectrum, i: int) -> str:
     return f"{told}; by the scatter of what they show, about {max(needed, FEWEST_FOR_TEST)} periods would decide"
 
 
-def _grows(states: Array, turning: tuple[int, ...], scale: Array) -> bool:
-    inside = [j for j in range(states.shape[1]) if j not in turning]
-    if len(states) < 4 * BLOCKS or not inside:
-        return False
-    length = len(states) // BLOCKS
-    largest = np.abs(states[len(states) - BLOCKS * length :, inside]).reshape(BLOCKS, length, -1).max(axis=1)
+def _growing(system: System, states: Array, running: dict[int, float], turning: Array) -> Witness | None:
+    """What a motion is whose ``states`` (m, n), modulo its turns, grow; None where none does.
+
+    Clocks and angles grow by themselves. Where a state runs on and no rate grows with it, it may be an angle whose turn
+    was not found.
+    """
+    alone = turning[np.count_nonzero(turning, axis=1) == 1]
+    free = [j for j in range(system.size) if j not in running and not alone[:, j].any()]
+    if len(states) < 4 * BLOCKS or not free:
+        return None
+    scale, length = np.asarray(system.scale), len(states) // BLOCKS
+    blocks = states[len(states) - BLOCKS * length :].reshape(BLOCKS, length, -1)
+    which = _rising(np.abs(blocks).max(axis=1)[:, free], scale[free])
+    if not which.any():
+        return None
+    few = blocks[:, :: max(length // LOOKED_AT, 1)]
+    rates = np.array([[_largest_rates(system, x) for x in block] for block in few]).max(axis=1)
+    if _rising(rates, np.zeros(system.size)).any():
+        reason = "the largest state rises from block to block of the run and does not stop"
+        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+    names = ", ".join(system.states[free[k]] for k in np.flatnonzero(which))
+    reason = (
+        f"{names} runs on while no rate grows, and nothing was found that repeats in it: if it is an angle, count it "
+        "in radians"
+    )
+    return Witness(None, None, Verdict.UNDECIDED, "", (reason,))
+
+
+def _rising(largest: Array, least: Array) -> Flags:
+    """Which of the largest values (blocks, n) rise from block to block, by a factor in all and beyond ``least`` (n,)."""
     rises = np.all(np.diff(largest, axis=0) > 0, axis=0)
-    return bool(np.any(rises & (largest[-1] > GROWN * largest[0]) & (largest[-1] > scale[inside])))
+    return np.asarray(rises & (largest[-1] > GROWN * largest[0]) & (largest[-1] > least))
+
+
+def _largest_rates(system: System, state: Array) -> Array:
+    rates = [system.rate_at(t, state, system.regime_at(t, state)) for t in phases(system)]
+    return np.asarray(np.abs(rates).max(axis=0))
 
 
 def _map(
     system: System, spectrum: LyapunovSpectrum, i: int, section: Event | None, points: int, running: dict[int, float],
-    turning: tuple[int, ...], size: Array,
+    turning: Array, size: Array,
 ) -> PoincareMap:  # fmt: skip
     run = spectrum.runs[i]
     if section is None and system.forcing_period is not None:
@@ -363,31 +401,41 @@ def _map(
     )  # fmt: skip
 
 
-def _usual_section(system: System, states: Array, turning: tuple[int, ...]) -> Event:
+def _usual_section(system: System, states: Array, turning: Array) -> Event:
     """The mean of the state that moves most, rising; where all are angles, the first of them passing whole turns."""
-    free = [j for j in range(system.size) if j not in turning]
+    free = [j for j in range(system.size) if not turning[:, j].any()]
     if not free:
-        # An angle that wanders away from its mean for ever passes a multiple of 2π again and again.
-        return Event(_sine_of(0), direction=1, name=f"sin({system.states[0]}) = 0")
+        # An angle that wanders away from its mean for ever passes whole turns again and again.
+        turn = _turn_of(0, turning)
+        angle = system.states[0] if turn == 2 * np.pi else f"{system.states[0]}·2π/{turn:.6g}"
+        return Event(_sine_of(0, turn), direction=1, name=f"sin({angle}) = 0")
     j = max(free, key=lambda j: float(np.ptp(states[:, j])) / float(np.asarray(system.scale)[j]))
     return Event(system.states[j], float(np.mean(states[:, j])), direction=1)
 
 
+def _turn_of(place: int, turning: Array) -> float:
+    """By how much a state turns once around; 0 of one that does not turn."""
+    return float(np.abs(turning[:, place]).max(initial=0.0))
+
+
 @cache
-def _sine_of(place: int) -> Callable[..., Any]:
+def _sine_of(place: int, turn: float) -> Callable[..., Any]:
+    factor = 2 * np.pi / turn
+
     def sine(t: float, x: Any, p: Any) -> Any:
-        return np.sin(x[place])
+        return np.sin(factor * x[place])
 
     return sine
 
 
-def _test(system: System, mapped: PoincareMap, free: list[int], turning: tuple[int, ...]) -> ZeroOne | None:
+def _test(system: System, mapped: PoincareMap, free: list[int], turning: Array) -> ZeroOne | None:
     """The test on the state that moves most over its scale; of an angle its sine."""
     if len(mapped.points) < FEWEST_FOR_TEST:
         return None
     points = mapped.points[-POINTS:]
-    columns = {j: np.sin(points[:, j]) if j in turning else points[:, j] for j in free}
-    scales = {j: 1.0 if j in turning else float(np.asarray(system.scale)[j]) for j in free}
+    turn = {j: _turn_of(j, turning) for j in free}
+    columns = {j: np.sin(2 * np.pi / turn[j] * points[:, j]) if turn[j] else points[:, j] for j in free}
+    scales = {j: 1.0 if turn[j] else float(np.asarray(system.scale)[j]) for j in free}
     best = max(free, key=lambda j: float(np.ptp(columns[j])) / (scales[j] + float(np.abs(columns[j]).max())))
     return zero_one_test(columns[best], scale=max(scales[best], float(mapped.size[best])) * 1e-2)
 

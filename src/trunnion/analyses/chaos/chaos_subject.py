@@ -1,10 +1,14 @@
-"""What analyses of long motions take: a system, or a driveline at a speed; its starts; its angles."""
+"""What analyses of long motions take: a system, or a driveline at a speed; its starts; what turns or runs evenly in it."""
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import null_space
 
+from trunnion.analyses.motion.repetition import LONGEST_REPEAT
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
@@ -13,6 +17,11 @@ from trunnion.systems.system import System
 
 SAME = 1e-9
 """Change of a rate over its size that counts as none."""
+TURN_STEPS, TURN_NEAR = 64, 0.3
+"""Looks along the way of a state between two samples, and the change of the rates over its largest at which one turn of
+it may be near."""
+TOGETHER, LARGEST_RATIO = 0.02, 12
+"""Difference of ratios of states that run on together which counts as none; largest denominator of such a ratio."""
 PHASES = 7
 """Phases of the forcing at which a system is looked at; an odd number meets no two zeros of a half-period."""
 NEIGHBOUR = 1e-2
@@ -77,21 +86,89 @@ def tilted_frame(system: System, count: int) -> Array:
     return np.asarray((np.eye(*shape) + 0.1 * np.random.default_rng(1).normal(size=shape)) * np.asarray(system.scale))
 
 
-def angles(system: System, states: Array) -> tuple[int, ...]:
-    """States that count as angles: adding 2π to one changes no rate at any of the sampled ``states`` (m, n).
+def turns(system: System, states: Array) -> Array:
+    """Vectors (k, n) that change no rate when they are added to a state, so that states count modulo these.
 
-    A state that the equations do not contain at all counts as one, too.
+    ``states`` (m, n) are samples of a motion, equal times apart. A state is an angle where 2π more of it changes
+    nothing; so is one that the equations do not contain at all. Of states that run on the period is looked for, up to
+    64 times as far as they move between two samples, and then that of all of them together, as of a rotation that
+    only differences of angles feel. One that is not found is missing, never wrong: each is checked at several states.
     """
+    few = states[:: max(len(states) // 8, 1)][:8]
+    each = np.eye(system.size)
+    found = [2 * np.pi * one for one in each if _unmoved(system, few, 2 * np.pi * one)]
+    runs = _drift(system, states)
+    for one in each:
+        if runs @ one and not any(turn @ one for turn in found):
+            found += _turn_along(system, few, one * (runs @ one))
+    left = np.where(np.any(found, axis=0) if found else False, 0.0, runs)
+    left[[*clocks(system, few)]] = 0.0
+    if np.count_nonzero(left) > 1:
+        found += _turn_together(system, few, left)
+    return np.array(found).reshape(-1, system.size)
+
+
+def _unmoved(system: System, states: Array, vector: Array) -> bool:
     rates = _rates(system, states)
     size = np.abs(rates).max(axis=0) + 1e-300
-    found = []
-    for i in range(system.size):
-        turned = np.array(states, dtype=float)
-        turned[:, i] += 2 * np.pi
-        again = _rates(system, turned)
-        if np.all(np.abs(again - rates) <= SAME * size):
-            found.append(i)
-    return tuple(found)
+    return bool(np.all(np.abs(_rates(system, states + vector) - rates) <= SAME * size))
+
+
+def _drift(system: System, states: Array) -> Array:
+    """By how much each state (n,) runs on between two samples, over their later half; 0 of those that do not."""
+    steps = np.diff(states[len(states) // 2 :], axis=0)
+    if not len(steps):
+        return np.zeros(system.size)
+    mean = steps.mean(axis=0)
+    runs = (np.abs(mean) > 0.5 * np.abs(steps).mean(axis=0)) & (len(steps) * np.abs(mean) > np.asarray(system.scale))
+    return np.where(runs, mean, 0.0)
+
+
+def _turn_along(system: System, states: Array, drift: Array) -> list[Array]:
+    """The shortest multiple of ``drift`` (n,) that changes no rate, at most 64 times it; none where none is found."""
+    two = [(phases(system)[-1], states[0]), (phases(system)[len(phases(system)) // 2], states[-1])]
+    rates = [system.rate_at(t, x, system.regime_at(t, x)) for t, x in two]
+    size = np.abs(rates).max(axis=0) + 1e-300
+
+    def change(share: float) -> Array:
+        moved = [system.rate_at(t, x + share * drift, system.regime_at(t, x + share * drift)) for t, x in two]
+        return np.ravel((np.array(moved) - rates) / size)
+
+    def slope(share: float) -> Array:
+        moved = [(t, x + share * drift) for t, x in two]
+        return np.ravel([system.jacobian_times(t, x, drift, system.regime_at(t, x)) / size for t, x in moved])
+
+    grid = np.arange(1, TURN_STEPS * LONGEST_REPEAT + 1) / TURN_STEPS
+    off = np.array([np.abs(change(share)).max() for share in grid])
+    if off.max() <= SAME:
+        return []
+    near = [i for i in range(1, len(grid) - 1) if off[i] <= min(off[i - 1], off[i + 1], TURN_NEAR * off.max())]
+    for i in near[:LONGEST_REPEAT]:
+        share = grid[i]
+        for _ in range(8):  # Newton on the squares, as there are more rates than shares
+            by = slope(share)
+            share -= float(by @ change(share)) / max(float(by @ by), 1e-300)
+        if abs(share - grid[i]) < 2 / TURN_STEPS and _unmoved(system, states, share * drift):
+            return [share * drift]
+    return []
+
+
+def _turn_together(system: System, states: Array, drift: Array) -> list[Array]:
+    """The same where several states run on together (``drift`` (n,)): at rates that the equations hold together, or in
+    a ratio of small whole numbers."""
+    scale = np.asarray(system.scale)
+    matrices = [system.jacobian(t, x, system.regime_at(t, x)) for t in phases(system) for x in states]
+    unfelt = null_space(np.vstack(matrices) * scale, rcond=SAME)
+    along = scale * (unfelt @ (unfelt.T @ (drift / scale)))
+    if np.linalg.norm((along - drift) / scale) <= TOGETHER * np.linalg.norm(drift / scale):
+        turn = 2 * np.pi * along / np.abs(along).max()
+        if _unmoved(system, states, turn):
+            return [turn]
+    first = drift[np.argmax(np.abs(drift))]
+    ratio = np.array([float(Fraction(d / first).limit_denominator(LARGEST_RATIO)) for d in drift])
+    if np.all(np.abs(ratio - drift / first) <= TOGETHER):
+        return _turn_along(system, states, ratio * first)
+    return []
 
 
 def clocks(system: System, states: Array) -> dict[int, float]:

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.analyses.chaos.chaos_subject import angles, as_system, first_starts, whole_number
+from trunnion.analyses.chaos.chaos_subject import as_system, first_starts, turns, whole_number
 from trunnion.analyses.motion.integration_outcomes import outcome_of
-from trunnion.analyses.motion.long_motion import LONGEST_REPEAT, failure, motion_size, repeat_of, usual_time, wrapped
+from trunnion.analyses.motion.long_motion import failure, motion_size, usual_time
+from trunnion.analyses.motion.repetition import Repetition, modulo, repetition
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
@@ -38,29 +40,40 @@ class PoincareMap(Result):
     """Points of a motion on a section.
 
     points (points, n); time (points,) [s] of each, after the transient; size (n,): how far each state moves
-    between the points, against which returns are measured; angles: states counted modulo 2π; section: what the
-    points have in common, in words.
+    between the points, against which returns are measured; turns (k, n): what may be added to a state without
+    changing any rate, 2π of an angle, say: points count modulo these; section: what the points have in common, in
+    words.
     """
 
     system: System
     points: Array
     time: Array
     size: Array
-    angles: tuple[int, ...]
+    turns: Array
     section: str
     transient: int
     tolerance: float
     outcome: Outcome
 
+    @cached_property
+    def repetition(self) -> Repetition:
+        """After how many points the map repeats, and whether it still settles."""
+        return repetition(self.points, self.size, np.asarray(self.system.scale), self.turns)
+
     @property
     def repeat(self) -> int:
-        """After how many points the map repeats; 0 if it does not, or not within 64 points."""
-        return repeat_of(self.wrapped, self.size, np.asarray(self.system.scale), self.angles)
+        """After how many points the map repeats; 0 if it does not, or not within 64 points, or still settles."""
+        return self.repetition.after
+
+    @property
+    def settling(self) -> bool:
+        """Whether the map does not repeat but comes closer to it: give a longer ``transient``."""
+        return self.repetition.settling
 
     @property
     def wrapped(self) -> Array:
-        """The points with angles between −π and π."""
-        return wrapped(self.points, self.angles)
+        """The points modulo their turns; angles lie between −π and π."""
+        return modulo(self.points, self.turns, np.asarray(self.system.scale))
 
     def declared(self) -> Iterator[Held]:
         """Every state and the time over the points."""
@@ -68,8 +81,8 @@ class PoincareMap(Result):
             yield over("point", name, self.points[:, i], unit)
         yield over("point", "time", self.time, "s")
         yield from about(
-            self.system, self.outcome, section=self.section, repeat=self.repeat, transient=self.transient,
-            tolerance=self.tolerance,
+            self.system, self.outcome, section=self.section, repeat=self.repeat, settling=int(self.settling),
+            transient=self.transient, tolerance=self.tolerance,
         )  # fmt: skip
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
@@ -85,10 +98,8 @@ class PoincareMap(Result):
             for name, axis, column in zip(self.system.states, axes, self.wrapped.T, strict=True)
             if len(column)
         ]
-        if self.repeat:
-            rows.append(f"  repeats after {self.repeat} point{'s' if self.repeat > 1 else ''}")
-        elif self.outcome.ok:
-            rows.append(f"  does not repeat within {LONGEST_REPEAT} points")
+        if self.outcome.ok or self.repeat:
+            rows.append(f"  {self.repetition}")
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
@@ -185,6 +196,6 @@ def _result(
     system: System, points: Array, time: Array, words: str, transient: int, tolerance: float, outcome: Outcome,
     interval: float,
 ) -> PoincareMap:  # fmt: skip
-    turning = angles(system, points[:: max(len(points) // 8, 1)][:8]) if len(points) else ()
+    turning = turns(system, points) if len(points) else np.zeros((0, system.size))
     size = motion_size(system, points[-1], interval, tolerance) if len(points) else np.zeros(system.size)
     return PoincareMap(system, points, time, size, turning, words, transient, tolerance, outcome)

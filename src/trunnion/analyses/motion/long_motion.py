@@ -1,4 +1,4 @@
-"""Helpers of analyses of long motions: how they end, how long a turn takes, how large they are, whether they repeat."""
+"""Helpers of analyses of long motions: how they end, how long a turn takes, how large they are."""
 
 from __future__ import annotations
 
@@ -10,13 +10,6 @@ from trunnion.numerics.integration.integration import integrate
 from trunnion.numerics.integration.tangents import Motion
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
-
-LONGEST_REPEAT = 64
-"""Returns after which a motion that has not closed is not called periodic."""
-CLOSED = 1e-5
-"""Distance between a point and its return, over the size of the motion, that counts as none."""
-ROUNDED = 1e-8
-"""The same over the scale of the system, for motions that have come to rest."""
 
 
 def failure(system: System, motion: Motion, length: float, before: str) -> Outcome:
@@ -67,28 +60,3 @@ def motion_size(system: System, state: Array, interval: float, tolerance: float)
     )
     return np.ptp(run.state, axis=0) if run.steps else np.zeros(system.size)
 
-
-def wrapped(points: Array, turning: tuple[int, ...]) -> Array:
-    """Points (m, n) with the angles among their states between −π and π."""
-    out = np.array(points, dtype=float)
-    for i in turning:
-        out[:, i] = np.angle(np.exp(1j * out[:, i]))
-    return out
-
-
-def repeat_of(points: Array, size: Array, scale: Array, turning: tuple[int, ...] = ()) -> int:
-    """The smallest number of points after which the later half of (m, n) comes back to itself; 0 if none does."""
-    later = points[len(points) // 2 :]
-    if len(later) < 4:
-        return 0
-    size = size.copy()
-    for i in turning:
-        size[i] = min(size[i], 2 * np.pi)
-    allowed = CLOSED * size + ROUNDED * (scale + np.abs(later).max(axis=0))
-    for k in range(1, min(LONGEST_REPEAT, len(later) // 3) + 1):
-        apart = later[k:] - later[:-k]
-        for i in turning:
-            apart[:, i] = np.angle(np.exp(1j * apart[:, i]))
-        if np.all(np.abs(apart) <= allowed):
-            return k
-    return 0

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.integration_outcomes import outcome_of
+from trunnion.analyses.motion.repetition import repetition
 from trunnion.analyses.orbits.closing import Phase, close
 from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, rests
 from trunnion.arrays import Array, Complex
@@ -44,6 +45,8 @@ RUNAWAY = 1e-4
 """Residual, in units of the states' scale, that no motion leaves which really closes."""
 MOST_SHARES = 12
 """Repetitions within the period found that are looked for where there is no forcing."""
+WHOLE = 4
+"""Times that a closed orbit is gone round to ask after how much of it it repeats."""
 MOST_STEPS = 200_000
 """Steps of one trial motion; one that needs more will not close."""
 LONGEST = 10.0
@@ -297,16 +300,19 @@ def _unbounded(system: System, x: Array) -> Outcome:
 
 def _shares(place: IntegratedMap, run: Trajectory, x: Array) -> int:
     """How many times the motion repeats within one application of the map."""
-    free = isinstance(place, TimedMap)
     moved = np.ptp(run.state, axis=0) + 1e-300
     if np.all(moved <= 1e-9 * np.asarray(place.system.scale)):
         return 1
-    whole = [share for share in range(place.periods, 1, -1) if place.periods % share == 0]
-    for share in range(MOST_SHARES, 1, -1) if free else whole:
-        off = np.abs(run.at(np.array([place.phase + place.length / share]))[0] - x)
-        if np.all(off <= 1e-5 * moved):
-            return share
-    return 1
+
+    def after(parts: int) -> int:
+        """After how many of so many equal parts of the orbit it repeats; 0 where it takes more than can be told."""
+        points = run.at(place.phase + place.length * np.arange(parts) / parts) - x
+        # The orbit is closed: what follows is the same again.
+        return repetition(np.tile(points, (2 * WHOLE, 1)), moved, np.zeros(len(x)), np.zeros((0, len(x)))).after
+
+    if isinstance(place, TimedMap):
+        return next((share for share in range(MOST_SHARES, 1, -1) if after(share) == 1), 1)
+    return place.periods // (after(place.periods) or place.periods)
 
 
 def _ended(root: Root) -> str:
