@@ -13,11 +13,12 @@ from functools import cache
 import numpy as np
 import pytest
 from oracles.forced_oscillator import oscillator, what_it_is
+from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
 from trunnion.analyses.motion.repetition import Repetition, repetition
-from trunnion.systems.reference import lorenz, rossler
+from trunnion.systems.reference import lorenz, mathieu_oscillator, rossler
 
 Known = tuple[str, int]
 PERIODIC, QUASI, CHAOTIC, UNBOUNDED, REST = "periodic", "quasi-periodic", "chaotic", "unbounded", "at rest"
@@ -26,9 +27,6 @@ PERIODIC, QUASI, CHAOTIC, UNBOUNDED, REST = "periodic", "quasi-periodic", "chaot
 def slow(ratio: float, damping: float) -> tn.System:
     """x″ + 2ζn x′ + n² x = cos t: whatever n, what remains has period 1."""
     return oscillator((0.0, 0.0), d=2 * damping * ratio, a=ratio**2, force=1.0)
-
-
-# Settling ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_motion_that_settles_slowly_is_said_to_settle() -> None:
@@ -40,6 +38,7 @@ def test_a_motion_that_settles_slowly_is_said_to_settle() -> None:
     assert tn.poincare_map(system, 400, transient=4000).repeat == 1
 
 
+@pytest.mark.slow
 def test_a_diagram_counts_what_settles() -> None:
     found = tn.bifurcation_diagram(
         slow(0.25, 0.004), "force", (1.0, 2.0, 3), directions=["up"], points=100, transient=900
@@ -53,13 +52,16 @@ def test_a_certificate_waits_for_what_settles() -> None:
     assert found.verdict == "undecided" and any("still settling" in reason for reason in found.reasons)
 
 
+@pytest.mark.slow
 def test_settling_of_a_limit_cycle_whose_phase_is_a_state() -> None:
-    """z′ = 1 has the exponent 0; it makes no torus of an oscillator that settles at 0.001 1/s."""
+    """z′ = 1 has the exponent 0; it makes no torus of an oscillator that settles at 0.0001 1/s."""
 
     def rate(t, x, p):  # type: ignore[no-untyped-def]
-        return x[1], -0.002 * x[1] - x[0] / 16 + np.cos(x[2]), 1.0
+        return x[1], -0.0002 * x[1] - x[0] / 16 + np.cos(x[2]), 1.0
 
-    found = tn.certify_chaos(tn.System.from_function(rate, ["x", "v", "z"], start=[0.0, 0.0, 0.0]), duration=6000.0)
+    found = tn.certify_chaos(
+        tn.System.from_function(rate, ["x", "v", "z"], start=[0.0, 0.0, 0.0]), duration=3000.0, sweep=False
+    )
     assert found.verdict == "undecided" and found.kind == ""
 
 
@@ -77,13 +79,13 @@ def test_spirals_into_a_point_never_have_a_longer_period() -> None:
     rng, said = np.random.default_rng(5), Counter[tuple[int, bool]]()
     for _ in range(300):
         ratio = rng.choice([1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 5, 1 / 7, rng.uniform()])
-        found = _said(_spiral(ratio, 10 ** rng.uniform(-6, -1), 10 ** rng.uniform(-6, 1), rng.integers(50, 600)))
+        found = _said(_spiral(ratio, 10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-6, 1), rng.integers(50, 600)))
         said[found.after, found.settling] += 1
     assert set(said) <= {(1, False), (0, True), (0, False)}
-    assert said[1, False] > 50 and said[0, True] > 100 and said[0, False] < 60, said
+    assert said[1, False] > 30 and said[0, True] > 150 and said[0, False] < 30, said
 
 
-@pytest.mark.parametrize(("r", "period"), [(2.9, 1), (3.2, 2), (3.5, 4), (3.83, 3), (3.738, 5), (3.99, 0)])
+@pytest.mark.parametrize(("r", "period"), [(2.9, 1), (3.2, 2), (3.5, 4), (3.83, 3), (3.74, 5), (3.99, 0)])
 def test_periods_of_the_logistic_map(r: float, period: int) -> None:
     x, points = 0.3, np.empty((1000, 2))
     for i in range(3000):
@@ -92,9 +94,6 @@ def test_periods_of_the_logistic_map(r: float, period: int) -> None:
     found = _said(points)
     assert (found.after, found.settling) == (period, False)
     assert _said(points[:40]).after in (0, period)
-
-
-# States that run on --------------------------------------------------------------------------------------------------
 
 
 def clock(factor: float) -> tn.System:
@@ -147,36 +146,41 @@ def test_a_clock_of_any_period_is_not_unbounded() -> None:
     assert (found.verdict, found.kind) == ("regular", QUASI), str(found)
 
 
+@pytest.mark.slow
 def test_a_clock_that_closes_with_the_forcing() -> None:
     found = tn.certify_chaos(clock(1 / 3), 500, sweep=False)
     assert (found.verdict, found.kind, found.repeat) == ("regular", PERIODIC, 3), str(found)
 
 
+@pytest.mark.slow
 def test_turns_of_other_lengths_are_found() -> None:
-    found = tn.certify_chaos(rotation(0.5, 360.0), duration=2000.0, sweep=False)
+    found = tn.certify_chaos(rotation(30.0, 360.0), duration=2000.0, sweep=False)
     assert (found.verdict, found.kind, found.repeat) == ("regular", PERIODIC, 1), str(found)
     assert np.abs(found.map.turns[0]) == pytest.approx([360.0, 0.0], rel=1e-9)  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_what_runs_on_without_a_turn_is_undecided() -> None:
-    """x′ = 1 + sin²√x is bounded, x is not; nothing repeats in it."""
+    """x′ = 1 + ½ sin²√(1 + |x|) is bounded, x is not; nothing repeats in it."""
 
     def rate(t, x, p):  # type: ignore[no-untyped-def]
         return 1 + 0.5 * np.sin(np.sqrt(1 + abs(x[0]))) ** 2, -x[1] + np.cos(t)
 
-    found = tn.certify_chaos(tn.System.from_function(rate, ["x", "y"], start=[0.0, 0.0], period=2 * np.pi), 500)
+    found = tn.certify_chaos(
+        tn.System.from_function(rate, ["x", "y"], start=[0.0, 0.0], period=2 * np.pi), 500, transient=50, sweep=False
+    )
     assert found.verdict == "undecided" and "runs on" in found.reasons[0]
 
 
+@pytest.mark.slow
 def test_what_speeds_up_is_unbounded() -> None:
     def rate(t, x, p):  # type: ignore[no-untyped-def]
         return x[1], 0.001 + 0.01 * np.cos(t)
 
-    found = tn.certify_chaos(tn.System.from_function(rate, ["x", "v"], start=[0.0, 0.0], period=2 * np.pi), 500)
+    found = tn.certify_chaos(
+        tn.System.from_function(rate, ["x", "v"], start=[0.0, 0.0], period=2 * np.pi), 500, transient=50
+    )
     assert found.verdict == "unbounded"
-
-
-# A hundred systems ---------------------------------------------------------------------------------------------------
 
 
 @cache
@@ -197,7 +201,7 @@ def hundred() -> dict[str, tuple[Callable[[], tn.System], Known | None]]:
     for ratio in (np.sqrt(2), np.sqrt(3) / 4, 0.6180339887):
         put(f"undamped n={ratio:.4f}", lambda n=ratio: slow(n, 0.0), (QUASI, 0))
     put("undamped at resonance", lambda: slow(1.0, 0.0), (UNBOUNDED, 0))
-    put("in a tongue", lambda: oscillator(a=0.25, q=0.2, d=0.01), (UNBOUNDED, 0))
+    put("in a tongue", mathieu_oscillator, (UNBOUNDED, 0))
     for force in np.sort(rng.uniform(0.5, 13.0, 16)):
         put(f"ueda {force:.3f}", lambda f=force: oscillator(d=0.05, b=1.0, force=f), None)
     for force in np.sort(rng.uniform(0.15, 0.5, 10)):
@@ -221,6 +225,71 @@ def hundred() -> dict[str, tuple[Callable[[], tn.System], Known | None]]:
         put(f"clock {factor:.4f}", lambda f=factor: clock(f), known)
     for turn in (1.0, 2 * np.pi, 3.3, 360.0):
         put(f"rotation, a turn is {turn:.4g}", lambda turn=turn: rotation(0.5 * turn / 6.0, turn), (PERIODIC, 1))
-    put("free disks", lambda: free_disks(1.0), None)
-    put("geared pendula", geared_pendula, None)
+    put("free disks", lambda: free_disks(1.0), (PERIODIC, 1))
     return made
+
+
+@cache
+def found_of(name: str) -> tuple[Known, tn.System, ChaosCertificate]:
+    """What is known of one of the hundred, and its certificate."""
+    make, known = hundred()[name]
+    system = make()
+    effort = {"duration": 3000.0} if system.forcing_period is None else {"periods": 1000}
+    found = tn.certify_chaos(system, sweep=False, tolerance=1e-9, **effort)
+    return known or what_it_is(system, found.spectrum.runs[0].states[-1]), system, found
+
+
+def say(name: str) -> str:
+    """Whether verdict, kind and count are "right" or left "open"; what is wrong fails."""
+    (kind, repeat), system, found = found_of(name)
+    if system.forcing_period is not None and kind != UNBOUNDED:
+        mapped = tn.poincare_map(system, 300, transient=200, tolerance=1e-9)
+        if kind == PERIODIC:
+            assert mapped.repeat in (0, repeat), f"{name}: {mapped}"
+        else:
+            assert mapped.repeat == 0, f"{name}: {mapped}"
+    if found.verdict == "undecided":
+        return "open"
+    said = found.kind or str(found.verdict)
+    assert kind != "other" and (said, found.repeat) == (kind, repeat), f"{name}, known {kind} {repeat}: {found}"
+    return "right"
+
+
+FEW = (
+    "linear n=0.2500 ζ=0.05", "linear n=0.2500 ζ=0.0001", "linear n=0.6180 ζ=0.001", "undamped n=1/4",
+    "undamped n=1.4142", "undamped at resonance", "clock 1.4142", "rössler 4.0", "lorenz", "lorenz at rest",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_ten_of_the_hundred(name: str) -> None:
+    assert say(name) == ("open" if "ζ=0.0" in name and "0.05" not in name else "right")
+
+
+@pytest.mark.slow
+@pytest.mark.study
+def test_a_hundred_systems_none_wrong() -> None:
+    """Left open are the 21 linear oscillators that have not settled, and undamped ones whose error damps them."""
+    told = {name: say(name) for name in hundred()}
+    opened = [name for name, said in told.items() if said == "open"]
+    assert len(told) >= 100
+    assert all(name.startswith(("linear", "undamped n=1/")) for name in opened), opened
+    assert len(opened) <= 26
+
+
+@pytest.mark.slow
+def test_two_angles_that_turn_together() -> None:
+    """After its period the motion is ahead by whole turns of both, in the ratio of the gears, by scipy."""
+    found = tn.certify_chaos(geared_pendula(), duration=3000.0, sweep=False)
+    assert (found.verdict, found.kind) == ("regular", PERIODIC), str(found)
+
+    def rates(t: float, x: np.ndarray) -> list[float]:
+        mesh = 5.0 * (1.5 * x[0] + x[1]) + 0.5 * (1.5 * x[2] + x[3])
+        first = 2.0 - 0.1 * x[2] - np.sin(x[0] * 3) / 3 - 1.5 * mesh
+        return [x[2], x[3], first, -0.1 * x[3] - np.sin(x[1] * 3) - mesh]
+
+    begin = found.map.points[-1]  # type: ignore[union-attr]
+    end = solve_ivp(rates, (0, found.period), begin, method="DOP853", rtol=1e-11, atol=1e-11).y[:, -1]
+    turns = (end - begin)[:2] / (2 * np.pi / 3)
+    assert turns == pytest.approx(np.round(turns), abs=1e-4) and abs(turns[0]) > 0.5
+    assert (end - begin)[2:] == pytest.approx(0.0, abs=1e-4)

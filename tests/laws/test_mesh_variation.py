@@ -10,6 +10,7 @@ from oracles.comparisons import floquet, set_distance
 from oracles.package_kernels import chain_kernel
 from oracles.random_lines import random_geared_line
 from oracles.sampling import quick_every
+from scipy.integrate import solve_ivp
 from scipy.special import mathieu_a, mathieu_b
 
 import trunnion as tn
@@ -172,3 +173,58 @@ def test_a_free_line_has_a_steady_state_at_every_speed() -> None:
     held[2] = tn.Disk(inertia=0.55, load_torque=-30.0)  # as the drive: a soft spring would twist far
     near = tn.order_response(tn.Driveline(held), speeds)
     assert near.vibratory_torque[:, 1:] == pytest.approx(free.vibratory_torque, rel=1e-6)
+
+
+def reversed_line(phase: float, second: float) -> tn.Driveline:
+    """``geared`` behind a ratio of −2, with two harmonics of the stiffness."""
+    line = geared(0.2, phase=phase)
+    mesh = line.elements[3].model_copy(
+        update={"stiffness_variation": tuple(
+            tn.StiffnessVariation(order=k, share=share, phase=at)
+            for k, share, at in ((1, 0.2, phase), (2, 0.15, second))
+        )}
+    )  # fmt: skip
+    return tn.Driveline([*line.elements[:3], tn.Ratio(ratio=-2.0), mesh, *line.elements[4:]])
+
+
+def torque_by_hand(speed: float, phase: float, second: float) -> float:
+    """Peak to peak of the mesh torque [N m on the wheel] in the steady state, from the Lagrangian of
+    ``reversed_line``: every rotation counts in its own sense of turning, and teeth come into mesh as time goes on."""
+    inertia = np.array([0.01, 0.02, 0.05])
+    along, twist = np.array([RADIUS_IN / 2, -RADIUS_OUT, 0.0]), np.array([0.0, -1.0, 1.0])
+    steady = np.diag([1e5, 0, 0]) + 2e4 * np.outer(twist, twist)
+    damping = np.diag([1.0, 0, 0]) + 500 * np.outer(along, along) + np.outer(twist, twist)
+    teeth, load = 25 * speed / 2, np.array([0.0, 100.0, 0.0])
+
+    def mesh(t: np.ndarray | float) -> np.ndarray | float:
+        return 1e8 * (1 + 0.2 * np.cos(teeth * t + phase) + 0.15 * np.cos(2 * teeth * t + second))
+
+    def rate(t: float, y: np.ndarray) -> np.ndarray:
+        x, v = y[:3], y[3:]
+        return np.concatenate([v, (-load - damping @ v - steady @ x - mesh(t) * along * (along @ x)) / inertia])
+
+    period = 2 * np.pi / teeth
+    unforced = solve_ivp(rate, (0, period), np.zeros(6), method="DOP853", rtol=1e-11, atol=1e-14).y[:, -1]
+    columns = [
+        solve_ivp(rate, (0, period), row, method="DOP853", rtol=1e-11, atol=1e-14).y[:, -1] - unforced
+        for row in 1e-3 * np.eye(6)
+    ]
+    start = np.linalg.solve(np.eye(6) - 1e3 * np.array(columns).T, unforced)
+    times = np.linspace(0, period, 801)
+    x = solve_ivp(rate, (0, period), start, method="DOP853", rtol=1e-11, atol=1e-14, t_eval=times).y
+    force = mesh(times) * (along @ x[:3]) + 500 * (along @ x[3:])
+    return float(np.ptp(force) * RADIUS_OUT)
+
+
+def test_behind_a_negative_ratio_a_mesh_runs_in_its_own_sense() -> None:
+    """Two harmonics add up by their phases, which tell one sense of running from the other."""
+    speed, phase, second = 100.0, 0.7, 2.5
+    truth, otherwise = torque_by_hand(speed, phase, second), torque_by_hand(speed, -phase, -second)
+    assert abs(truth / otherwise - 1) > 0.02
+    line = reversed_line(phase, second)
+    linear, nonlinear = tn.stability(line, speed).response, tn.periodic_response(line, speed=speed)
+    orders = tn.order_response(line, [speed])
+    assert linear is not None
+    assert 2 * linear.torque_amplitude[1] == pytest.approx(truth, rel=1e-3)
+    assert nonlinear.torque_peak_to_peak[1] == pytest.approx(truth, rel=1e-3)
+    assert 2 * orders.vibratory_torque[0, 1] == pytest.approx(truth, rel=1e-3)

@@ -6,6 +6,8 @@ The package's own equations of it (``oscillator``) are written apart from these.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numba import njit
 
@@ -22,6 +24,7 @@ def oscillator(start: tuple[float, float] = (0.1, 0.0), **values: float) -> tn.S
     return _system().with_parameters(full).with_fields(start=np.array(start))
 
 
+@cache
 def _system() -> tn.System:
     def rate(t, x, p):  # type: ignore[no-untyped-def]
         beyond = max(abs(x[0]) - 1.0, 0.0) * np.sign(x[0])

@@ -365,7 +365,7 @@ def _growing(system: System, states: Array, running: dict[int, float], turning: 
 
 
 def _rising(largest: Array, least: Array) -> Flags:
-    """Which of the largest values (blocks, n) rise from block to block, by a factor in all and beyond ``least`` (n,)."""
+    """Which of the largest values (blocks, n) rise from block to block, by GROWN in all and beyond ``least`` (n,)."""
     rises = np.all(np.diff(largest, axis=0) > 0, axis=0)
     return np.asarray(rises & (largest[-1] > GROWN * largest[0]) & (largest[-1] > least))
 

@@ -1,4 +1,4 @@
-"""What analyses of long motions take: a system, or a driveline at a speed; its starts; what turns or runs evenly in it."""
+"""What analyses of long motions take: a system, or a driveline at a speed; its starts; what turns or runs in it."""
 
 from __future__ import annotations
 
