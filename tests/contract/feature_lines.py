@@ -166,7 +166,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "joint plane": (
         jointed(tn.HookeJoint(angle=0.3, name="extra")), jointed(tn.HookeJoint(angle=0.3, plane=1.0, name="extra"))
     ),
-    "ideal joint": (STRAIGHT_JOINT, jointed(tn.IdealJoint(angle=0.3, name="extra"))),
+    "angle of an ideal joint": (STRAIGHT_JOINT, jointed(tn.IdealJoint(angle=0.3, name="extra"))),
     "tripod joint": (STRAIGHT_JOINT, jointed(tn.TripodJoint(angle=0.3, radius=0.05, length=0.5, name="extra"))),
     "ripple of a Rzeppa joint": (STRAIGHT_JOINT, rippled()),
     "double Cardan joint": (STRAIGHT_JOINT, CENTRED),

@@ -126,8 +126,8 @@ QUICK = {
     **dict.fromkeys(("tongues", "stable_windows", "minimum_damping"), ("load torque", "free start")),
     "certify_stability": ("load torque", "stiffness", "ratio", "prescribed far end"),
     "assess": tuple(key for key in feature_lines.CHANGES if key != "mesh-stiffness variation"),
-    "compare": ("load torque", "ideal joint", "dry friction", "prescribed far end"),
-    "sensitivity": ("load torque", "ideal joint", "dry friction"),
+    "compare": ("load torque", "angle of an ideal joint", "dry friction", "prescribed far end"),
+    "sensitivity": ("load torque", "angle of an ideal joint", "dry friction"),
     "optimise": ("load torque", "excitation by order", "dry friction"),
     "envelope": ("load torque", "Hooke's joint", "prescribed far end", "dry friction"),
     "periodic_response": ("load torque", "prescribed far end"),
@@ -143,9 +143,9 @@ QUICK = {
     "poincare_map": ("excitation by order", "prescribed far end"),
     "bifurcation_diagram": ("quadratic load", "prescribed far end"),
     "certify_chaos": ("load torque", "prescribed far end"),
-    "piecewise_orbit": ("transmission error", "ideal joint", "quadratic load"),
-    "piecewise_branch": ("transmission error", "ideal joint", "quadratic load"),
-    "sweep": ("transmission error", "ideal joint", "quadratic load"),
+    "piecewise_orbit": ("transmission error", "angle of an ideal joint", "quadratic load"),
+    "piecewise_branch": ("transmission error", "angle of an ideal joint", "quadratic load"),
+    "sweep": ("transmission error", "angle of an ideal joint", "quadratic load"),
 }
 """Features seen in the quick run, where an analysis takes long; the others are seen in the slow one."""
 

@@ -83,7 +83,11 @@ def _row(
 
 
 _TORSION = {"bending stiffness": "torsion does not bend the tubes"}
-_EVEN = {"ideal joint": "passes rotation unchanged", "double Cardan joint": "centred, it passes rotation unchanged"}
+_PLANE = "its plane, from which the next joint measures its own, counts as a joint plane"
+_EVEN = {
+    "angle of an ideal joint": f"at any angle it passes rotation unchanged; {_PLANE}",
+    "double Cardan joint": f"centred, it passes rotation unchanged; {_PLANE}",
+}
 _UNEVEN = ("Hooke's joint", "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre")
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
@@ -181,8 +185,8 @@ _UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation", "stages",
-        "dry friction", ONE_MOTION,
+        "angle of an ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
+        "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
         "unlike damping in series", "free start", "drive share",

@@ -109,7 +109,7 @@ FEATURES = (
             "HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "RzeppaJoint.plane", "DoubleCardanJoint.plane",
         ),
     ),
-    Feature("ideal joint", ("IdealJoint.angle",)),
+    Feature("angle of an ideal joint", ("IdealJoint.angle",)),
     Feature(
         "tripod joint", ("TripodJoint.angle", "TripodJoint.radius", "TripodJoint.length", "TripodJoint.spider")
     ),
