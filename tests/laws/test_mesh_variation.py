@@ -228,3 +228,67 @@ def test_behind_a_negative_ratio_a_mesh_runs_in_its_own_sense() -> None:
     assert 2 * linear.torque_amplitude[1] == pytest.approx(truth, rel=1e-3)
     assert nonlinear.torque_peak_to_peak[1] == pytest.approx(truth, rel=1e-3)
     assert 2 * orders.vibratory_torque[0, 1] == pytest.approx(truth, rel=1e-3)
+
+
+BEND, TEETH_IN, TEETH_OUT, LOAD, SHARE, PHASE = 0.35, 17, 20, 200.0, 0.3, 1.0
+
+
+def loaded_behind_a_joint() -> tn.Driveline:
+    """A shaft and a disk, Hooke's joint and a varying mesh rigidly behind it, a loaded wheel."""
+    return tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=2e4, damping=2.0), tn.Disk(inertia=0.02), tn.HookeJoint(angle=BEND),
+         tn.GearPair(teeth_in=TEETH_IN, teeth_out=TEETH_OUT, module=0.003, mesh_stiffness=5e6, mesh_damping=300.0,
+                     stiffness_variation=[{"share": SHARE, "phase": PHASE}]),
+         tn.Disk(inertia=0.05, load_torque=LOAD)]
+    )  # fmt: skip
+
+
+def radius_behind_a_joint(speed: float, about: str) -> float:
+    """Spectral radius over a turn, from the Lagrangian, about the "true" periodic motion; or about the one without
+    vibration, the twist of the mesh being constant, with the torque that it then gives, "k(t)", or the mean, "mean"."""
+    wheel = TEETH_OUT * 0.003 * np.cos(np.deg2rad(20.0)) / 2
+    stiffness, damping, over = 5e6 * wheel**2, 300.0 * wheel**2, TEETH_IN / TEETH_OUT
+    cosine, front = np.cos(BEND), -over * LOAD / 2e4
+
+    def joint(a: float) -> tuple[float, float, float]:
+        """Output less input of the joint, η and its slope, tan ψ = tan a / cos β."""
+        ahead = np.arctan2((1 - cosine) * np.sin(a) * np.cos(a), cosine * np.cos(a) ** 2 + np.sin(a) ** 2)
+        below = 1 - (1 - cosine**2) * np.cos(a) ** 2
+        return ahead, cosine / below, -cosine * (1 - cosine**2) * np.sin(2 * a) / below**2
+
+    def rate(t: float, y: np.ndarray) -> np.ndarray:
+        x, tangents = y[:4], y[4:].reshape(4, 4)
+        wave = 1 + SHARE * np.cos(TEETH_IN * speed * t + PHASE)
+        a, turning = (speed * t + x[0], speed + x[2]) if about == "true" else (speed * t + front, speed)
+        ahead, eta, slope = joint(a)
+        torque = stiffness * wave * (x[1] - over * (ahead + x[0])) + damping * (x[3] - over * (eta * turning - speed))
+        if about != "true":
+            torque = -LOAD * (wave if about == "k(t)" else 1.0)
+        away = tangents[1] - over * eta * tangents[0]
+        faster = tangents[3] - over * (eta * tangents[2] + slope * turning * tangents[0])
+        more = stiffness * wave * away + damping * faster
+        first = (-2e4 * tangents[0] - 2 * tangents[2] + over * (slope * torque * tangents[0] + eta * more)) / 0.02
+        held = [(-2e4 * x[0] - 2 * x[2] + over * eta * torque) / 0.02, (-torque - LOAD) / 0.05]
+        return np.concatenate([x[2:], held, tangents[2], tangents[3], first, -more / 0.05])
+
+    x = np.array([front, -LOAD / stiffness + over * front, 0.0, 0.0])
+    for _ in range(6 if about == "true" else 1):
+        run = solve_ivp(
+            rate, (0, 2 * np.pi / speed), [*x, *np.eye(4).ravel()], method="DOP853", rtol=1e-11, atol=1e-12
+        ).y[:, -1]
+        matrix = run[4:].reshape(4, 4)
+        x = x + np.linalg.solve(np.eye(4) - matrix, run[:4] - x)
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def test_the_torque_of_a_varying_mesh_in_the_motion_without_vibration() -> None:
+    """Linear theory stands on a constant twist of the mesh, whose torque is then k(t)θ̄. The true motion vibrates, which
+    moves the radius by more than the torque's share of it: it tells neither k(t)θ̄ nor a constant torque right, and is
+    what ``periodic_response`` judges."""
+    line, speed = loaded_behind_a_joint(), 60.0
+    truth, varying, mean = (radius_behind_a_joint(speed, about) for about in ("true", "k(t)", "mean"))
+    found, orbit = tn.stability(line, speed), tn.periodic_response(line, speed=speed)
+    turns = 2 * np.pi / found.period
+    assert found.spectral_radius**turns == pytest.approx(varying, abs=1e-8)
+    assert np.abs(orbit.multipliers).max() ** turns == pytest.approx(truth, abs=1e-7)
+    assert 1e-7 < abs(varying - mean) < abs(varying - truth) < 1e-4
