@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -79,7 +79,7 @@ def test_spirals_into_a_point_never_have_a_longer_period() -> None:
     rng, said = np.random.default_rng(5), Counter[tuple[int, bool]]()
     for _ in range(300):
         ratio = rng.choice([1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 5, 1 / 7, rng.uniform()])
-        found = _said(_spiral(ratio, 10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-6, 1), rng.integers(50, 600)))
+        found = _said(_spiral(ratio, 10 ** rng.uniform(-6, 0), 10 ** rng.uniform(-6, 1), int(rng.integers(50, 600))))
         said[found.after, found.settling] += 1
     assert set(said) <= {(1, False), (0, True), (0, False)}
     assert said[1, False] > 30 and said[0, True] > 150 and said[0, False] < 30, said
@@ -195,25 +195,23 @@ def hundred() -> dict[str, tuple[Callable[[], tn.System], Known | None]]:
 
     for ratio in (1 / 2, 1 / 3, 1 / 4, 1 / 5, 2 / 3, 0.6180, 1.5):
         for damping in (0.05, 1e-3, 1e-4, 1e-6):
-            put(f"linear n={ratio:.4f} ζ={damping:g}", lambda n=ratio, z=damping: slow(n, z), (PERIODIC, 1))
+            put(f"linear n={ratio:.4f} ζ={damping:g}", partial(slow, ratio, damping), (PERIODIC, 1))
     for k in (2, 3, 4, 5, 7):
-        put(f"undamped n=1/{k}", lambda k=k: slow(1 / k, 0.0), (PERIODIC, k))
+        put(f"undamped n=1/{k}", partial(slow, 1 / k, 0.0), (PERIODIC, k))
     for ratio in (np.sqrt(2), np.sqrt(3) / 4, 0.6180339887):
-        put(f"undamped n={ratio:.4f}", lambda n=ratio: slow(n, 0.0), (QUASI, 0))
+        put(f"undamped n={ratio:.4f}", partial(slow, ratio, 0.0), (QUASI, 0))
     put("undamped at resonance", lambda: slow(1.0, 0.0), (UNBOUNDED, 0))
     put("in a tongue", mathieu_oscillator, (UNBOUNDED, 0))
     for force in np.sort(rng.uniform(0.5, 13.0, 16)):
-        put(f"ueda {force:.3f}", lambda f=force: oscillator(d=0.05, b=1.0, force=f), None)
+        put(f"ueda {force:.3f}", partial(oscillator, d=0.05, b=1.0, force=force), None)
     for force in np.sort(rng.uniform(0.15, 0.5, 10)):
-        put(f"double well {force:.4f}", lambda f=force: oscillator((1.0, 0.0), d=0.25, a=-1.0, b=1.0, force=f), None)
+        put(f"double well {force:.4f}", partial(oscillator, (1.0, 0.0), d=0.25, a=-1.0, b=1.0, force=force), None)
     for force in np.sort(rng.uniform(0.9, 1.6, 10)):
-        put(f"pendulum {force:.4f}", lambda f=force: oscillator(d=0.5, g=1.0, force=f, frequency=2 / 3), None)
+        put(f"pendulum {force:.4f}", partial(oscillator, d=0.5, g=1.0, force=force, frequency=2 / 3), None)
     for frequency in np.sort(rng.uniform(0.5, 2.5, 8)):
-        put(
-            f"stops {frequency:.4f}", lambda w=frequency: oscillator(d=0.1, a=0.1, s=20.0, force=1.0, frequency=w), None
-        )
+        put(f"stops {frequency:.4f}", partial(oscillator, d=0.1, a=0.1, s=20.0, force=1.0, frequency=frequency), None)
     for c, repeat in ((2.5, 1), (3.5, 2), (4.0, 4)):
-        put(f"rössler {c}", lambda c=c: rossler(c=c), (PERIODIC, repeat))
+        put(f"rössler {c}", partial(rossler, c=c), (PERIODIC, repeat))
     put("rössler 5.7", rossler, (CHAOTIC, 0))
     put("lorenz", lorenz, (CHAOTIC, 0))
     put("lorenz at rest", lambda: lorenz(rho=10.0), (REST, 0))
@@ -222,9 +220,9 @@ def hundred() -> dict[str, tuple[Callable[[], tn.System], Known | None]]:
         (np.sqrt(2), (QUASI, 0)), (np.sqrt(5) / 2, (QUASI, 0)), (1.0, (PERIODIC, 1)), (1 / 2, (PERIODIC, 2)),
         (1 / 5, (PERIODIC, 5)), (2.0, (PERIODIC, 1)), (4 / 3, (PERIODIC, 3)),
     ):  # fmt: skip
-        put(f"clock {factor:.4f}", lambda f=factor: clock(f), known)
+        put(f"clock {factor:.4f}", partial(clock, factor), known)
     for turn in (1.0, 2 * np.pi, 3.3, 360.0):
-        put(f"rotation, a turn is {turn:.4g}", lambda turn=turn: rotation(0.5 * turn / 6.0, turn), (PERIODIC, 1))
+        put(f"rotation, a turn is {turn:.4g}", partial(rotation, 0.5 * turn / 6.0, turn), (PERIODIC, 1))
     put("free disks", lambda: free_disks(1.0), (PERIODIC, 1))
     return made
 

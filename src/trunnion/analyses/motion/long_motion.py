@@ -59,4 +59,3 @@ def motion_size(system: System, state: Array, interval: float, tolerance: float)
         dense=False,
     )
     return np.ptp(run.state, axis=0) if run.steps else np.zeros(system.size)
-
