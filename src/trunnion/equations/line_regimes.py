@@ -19,12 +19,12 @@ from trunnion.arrays import Array, Integers
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.sliders import sliders
+from trunnion.equations.sliders import beyond_capacity, sliders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.laws.stages import GUARDS, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
-from trunnion.systems.regimes import Regimes
+from trunnion.systems.regimes import SLACK, Regimes
 from trunnion.systems.user_functions import CFunction
 
 MOST_REGIMES = 400
@@ -106,35 +106,6 @@ def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, 
 
 
 @dataclass(frozen=True)
-class LineRegimes(Regimes):
-    """Regimes of a line; transitions and directions (regimes, guards) as the integrator takes them."""
-
-    transitions: Integers | None = None
-    directions: Integers | None = None
-    kernel: ModuleType | None = None
-    sliders: int = 0
-
-    def tables(self) -> tuple[Integers, Integers]:
-        assert self.transitions is not None and self.directions is not None
-        return self.transitions, self.directions
-
-    def idle(self, fired: Integers) -> int:
-        """How many sliders never slip: their guards are the last."""
-        first = len(self.guards) - GUARDS * self.sliders
-        return self.sliders - len({(int(i) - first) // GUARDS for i in fired if first <= i < len(self.guards)})
-
-    def at(self, time: float, state: Array, parameters: Mapping[str, float], numbers: Array) -> int:
-        assert self.kernel is not None
-        return int(self.kernel.locate(float(time), np.ascontiguousarray(state, dtype=float), numbers))
-
-
-def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
-    """Strides of the stages of ``count`` sliders, which come after those of the springs."""
-    first = prod(spring.stages for spring in springs.values())
-    return [first * SLIDER_STAGES**i for i in range(count)]
-
-
-@dataclass(frozen=True)
 class _Part:
     """What a regime is made of: one spring or slider with stages.
 
@@ -150,6 +121,78 @@ class _Part:
     def stage(self, regime: int) -> int:
         """Its stage in a regime of the line."""
         return regime // self.stride % len(self.law.pieces)
+
+
+@dataclass(frozen=True)
+class LineRegimes(Regimes):
+    """Regimes of a line; transitions and directions (regimes, guards) as the integrator takes them."""
+
+    transitions: Integers | None = None
+    directions: Integers | None = None
+    kernel: ModuleType | None = None
+    sliders: tuple[_Part, ...] = ()
+
+    def tables(self) -> tuple[Integers, Integers]:
+        assert self.transitions is not None and self.directions is not None
+        return self.transitions, self.directions
+
+    @property
+    def slider_names(self) -> tuple[str, ...]:
+        return tuple(slider.name for slider in self.sliders)
+
+    def limits(self, numbers: Array) -> Array | None:
+        if not self.sliders:
+            return None
+        free = np.full(2 * int(numbers[self._core.UNKNOWNS]), np.inf)
+        return np.concatenate([free, self._numbers(numbers)[:, self._core.REACH]])
+
+    def refusal(self, state: Array, numbers: Array) -> tuple[str, str] | None:
+        table = self._numbers(numbers)
+        deflection = state[len(state) - len(table) :]
+        for slider, x, row in zip(self.sliders, deflection, table, strict=True):
+            spring, reach = row[self._core.SPRING], row[self._core.REACH]
+            if abs(x) > (1 + SLACK) * reach:
+                return beyond_capacity(slider.name, spring * x, spring * reach, reach)
+        return None
+
+    def stuck(self, regime: Integers, length: Array, most: float) -> Integers:
+        stages = regime[:, None] // np.array([s.stride for s in self.sliders], dtype=np.int64) % SLIDER_STAGES
+        slips = length @ (stages != STICKS)
+        return np.flatnonzero(slips <= most * length.sum())
+
+    def conserved(self, which: Integers, slopes: Array) -> Array:
+        # A twist depends on the rotations as its rate does on their rates, and that is the last guard of a slider.
+        count, n = len(self.sliders), slopes.shape[1] - 1
+        unknowns = (n - count) // 2
+        own = slopes[len(self.guards) - GUARDS * count :][GUARDS - 1 :: GUARDS][which]
+        found = np.zeros((len(which), n))
+        found[:, :unknowns] = -own[:, unknowns : 2 * unknowns]
+        found[np.arange(len(which)), 2 * unknowns + which] = 1.0
+        return found
+
+    def holding(self, which: Integers, numbers: Array) -> Array:
+        more = numbers.copy()
+        self._numbers(more)[which, self._core.REACH] *= 2
+        return more
+
+    @property
+    def _core(self) -> ModuleType:
+        assert self.kernel is not None
+        return self.kernel
+
+    def _numbers(self, numbers: Array) -> Array:
+        """The rows (slider, PER_SLIDER) of the sliders among the numbers of a line, a view."""
+        first, per = int(self._core.places(numbers)[2]), self._core.PER_SLIDER
+        return numbers[first : first + per * len(self.sliders)].reshape(-1, per)
+
+    def at(self, time: float, state: Array, parameters: Mapping[str, float], numbers: Array) -> int:
+        return int(self._core.locate(float(time), np.ascontiguousarray(state, dtype=float), numbers))
+
+
+def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
+    """Strides of the stages of ``count`` sliders, which come after those of the springs."""
+    first = prod(spring.stages for spring in springs.values())
+    return [first * SLIDER_STAGES**i for i in range(count)]
 
 
 def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
@@ -194,7 +237,7 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
         transitions,
         directions,
         kernel,
-        sum(bool(part.along) for part in parts),
+        tuple(part for part in parts if part.along),
     )
 
 

@@ -59,6 +59,13 @@ def sliders(packed: PackedLine, topo: Topology, row: Array) -> tuple[PlacedSlide
     return tuple(found)
 
 
+def beyond_capacity(name: str, torque: float, most: float, reach: float) -> tuple[str, str]:
+    """What is wrong with a slider that starts with a ``torque`` [N m] beyond the ``most`` that it holds, where its
+    spring is deflected by ``reach`` [rad]; and the remedy."""
+    words = f"loads {name} with {torque:.6g} N·m, beyond the {most:.6g} N·m at which it slips"
+    return words, f"start its deflection between {-reach:.6g} and {reach:.6g} rad"
+
+
 LINEAR = "whose torque depends on how far it moves: linear equations have none"
 NOT_FOLLOWED = "whose sliders change between sticking and slipping, which this analysis does not follow"
 _MOTION = 'linear_amplitude = "1 deg" and linear_frequency = "30 Hz"'

@@ -13,7 +13,8 @@ A slider of a clutch is one more row between the two, on the twist of its clutch
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -29,7 +30,7 @@ from trunnion.equations.exact_oscillator import Turning, common_frequency
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import harmonic_torques, refuse_second_speed
-from trunnion.equations.sliders import sliders
+from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.steady_base import imbalance, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -104,6 +105,33 @@ class StagedLine:
         m = self.size
         idle = {m + int(e) for e in np.flatnonzero(self.source != np.arange(m))} | ({m - 1} if self.turns else set())
         return np.array([i for i in range(2 * m) if i not in idle])
+
+    @property
+    def slider_rows(self) -> range:
+        """Rows of the sliders."""
+        return range(len(self.springs), len(self.springs) + len(self.sliders))
+
+    @cached_property
+    def placed(self) -> tuple[PlacedSlider, ...]:
+        """The sliders, in the order of their rows."""
+        return sliders(self.assembly.packed, self.assembly.topology, self.assembly.table(1)[0])
+
+    def speed_at(self, value: float) -> float:
+        """Mean input speed [rad/s] at a value of the clock; NaN where nothing depends on it."""
+        return value if self.clock == "speed" else np.nan if self.speed is None else self.speed
+
+    def within_limits(self, state: Array) -> Array:
+        """A state (2m,), deflections of sliders beyond what they hold brought back to it."""
+        found = state.copy()
+        for row in self.slider_rows:
+            found[row] = np.clip(state[row], -self.knots[row], self.knots[row])
+        return found
+
+    def holding(self, stuck: Sequence[int], value: float) -> StagedFlow:
+        """The flow at a value of the clock with the sliders in the rows ``stuck`` holding twice as much."""
+        flow, guards = self.flow(value), self.guards.copy()
+        guards[list(stuck), :, :, 2] *= 2
+        return replace(flow, guards=guards)
 
     @property
     def staged(self) -> Integers:

@@ -138,7 +138,10 @@ class IntegratedMap:
 
     def run(self, block: Array, *, dense: bool = False, looser: float = 1.0) -> Trajectory:
         """The motion from the first row of ``block``, the others carried along as tangents."""
-        regime = self.system.regime_at(self.phase, block[0])
+        start = self.system.within_limits(block[0])
+        if np.any(start != block[0]):  # a trial may lie where no motion is; its neighbours there lead to the same one
+            block = np.vstack([start, np.where(start == block[0], block[1:], 0.0)])
+        regime = self.system.regime_at(self.phase, start)
         return integrate(
             self.system.equations, self.phase, self.phase + self.length, block, regime=regime,
             tolerance=looser * self.tolerance, most_steps=self.most_steps, dense=dense,
@@ -172,6 +175,7 @@ class IntegratedMap:
         return np.asarray((ends[1] - ends[0]) / (2 * self.steps[place]))
 
     def settle(self, x: Array, periods: int) -> Array | None:
+        x = self.system.within_limits(x)
         run = integrate(
             self.system.equations, self.phase, self.phase + periods * self.length, x,
             regime=self.system.regime_at(self.phase, x), tolerance=max(self.tolerance, SETTLED), dense=False,

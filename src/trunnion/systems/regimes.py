@@ -12,6 +12,9 @@ from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.systems.user_functions import CFunction, guard_function, jump_function, parameter_tuple
 
+SLACK = 1e-6
+"""Share of its limit by which rounding may leave a state beyond it."""
+
 
 class Switch(NamedTuple):
     """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``."""
@@ -83,10 +86,32 @@ class Regimes:
             direction[place] = 2 if both else switch.direction
         return then, direction
 
-    def idle(self, fired: Integers) -> int:
-        """Multipliers exactly 1 of a periodic motion whose guards ``fired`` were these: of parts that keep what they
-        started with, as a slider does that never slips."""
-        return 0
+    @property
+    def slider_names(self) -> tuple[str, ...]:
+        """Parts with dry friction, whose deflections are the last states of the system."""
+        return ()
+
+    def limits(self, numbers: Array) -> Array | None:
+        """Largest size (n,) that each state can have, inf where there is none; None where no state has one."""
+        return None
+
+    def refusal(self, state: Array, numbers: Array) -> tuple[str, str] | None:
+        """What is wrong with a start beyond the limits, and the remedy; None where it lies within."""
+        return None
+
+    def stuck(self, regime: Integers, length: Array, most: float) -> Integers:
+        """Numbers of the sliders that slip for no more than ``most`` of a motion whose steps were in ``regime`` for
+        ``length`` [s], (steps,) each."""
+        return np.zeros(0, dtype=np.int64)
+
+    def conserved(self, which: Integers, slopes: Array) -> Array:
+        """Gradients (k, n) of what the motion leaves as it was while the sliders ``which`` stick; ``slopes`` (guards,
+        n + 1) are those of the guards by states and time."""
+        return np.zeros((0, slopes.shape[1] - 1))
+
+    def holding(self, which: Integers, numbers: Array) -> Array:
+        """The numbers with which the sliders ``which`` hold twice as much."""
+        return numbers
 
     def compiled(
         self, size: int, names: tuple[str, ...], scale: tuple[float, ...], *, compiled: bool

@@ -390,6 +390,29 @@ class System:
             )
         return value
 
+    def checked_start(self, start: ArrayLike) -> Array:
+        """``start`` as an array (n,), within the limits of its states.
+
+        Raises
+        ------
+        InputError : not n finite numbers; a state beyond its limit, as friction beyond what it holds.
+        """
+        state = self.checked(start, "start")
+        refused = self.regimes.refusal(state, self.numbers) if self.regimes is not None else None
+        if refused is not None:
+            raise InputError(refused[0], element=self.name, key="start", remedy=refused[1])
+        return self.within_limits(state)
+
+    @property
+    def sliders(self) -> tuple[str, ...]:
+        """Names of the sliders, whose deflections are the last states."""
+        return self.regimes.slider_names if self.regimes is not None else ()
+
+    def within_limits(self, state: Array) -> Array:
+        """``state`` (n,), what lies beyond its limit brought back to it."""
+        limits = self.regimes.limits(self.numbers) if self.regimes is not None else None
+        return state if limits is None else np.clip(state, -limits, limits)
+
     def __repr__(self) -> str:
         shown = [f"{k} = {v:.6g}" for k, v in self.parameters.items()]
         values = ", ".join(shown if len(shown) <= MOST_SHOWN else [*shown[:MOST_SHOWN], f"… {len(shown)} in all"])

@@ -70,7 +70,7 @@ def first_starts(system: System, start: ArrayLike | None, count: int) -> Array:
     if start is None and system.start is None:
         raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
     given = np.atleast_2d(np.asarray(system.start if start is None else start, dtype=float))
-    given = np.array([system.checked(row, "start") for row in given])
+    given = np.array([system.checked_start(row) for row in given])
     if len(given) > 1:
         return given
     first = given[0]

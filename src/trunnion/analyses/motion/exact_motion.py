@@ -17,11 +17,14 @@ from trunnion.analyses.motion.simulation import positive_time
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.sliders import beyond_capacity
 from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
+from trunnion.laws.stages import STICKS
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
+from trunnion.systems.regimes import SLACK
 
 MOST_EVENTS = 100_000
 SAMPLES = 1024
@@ -214,7 +217,7 @@ def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
 
     Raises
     ------
-    InputError : not 2m finite numbers.
+    InputError : not 2m finite numbers; a slider loaded beyond what it holds.
     """
     if start is None:
         return line.rest()
@@ -227,7 +230,12 @@ def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
             f"must be {2 * line.size} finite numbers", element=line.name, key="start", value=f"shape {state.shape}",
             remedy=f"give the twists of {names}, then their rates",
         )  # fmt: skip
-    return state
+    for row, name in zip(line.slider_rows, line.sliders, strict=True):
+        stiffness, reach = line.pieces[row, STICKS, 1], line.knots[row]
+        if abs(state[row]) > (1 + SLACK) * reach:
+            words, remedy = beyond_capacity(name, stiffness * state[row], stiffness * reach, reach)
+            raise InputError(words, element=line.name, key="start", remedy=remedy)
+    return line.within_limits(state)
 
 
 def stage_events(line: StagedLine, run: StagedPassage) -> StageEvents:

@@ -164,7 +164,7 @@ def simulate_line(
     if duration is None and wanted is not None:
         duration = float(wanted[-1])
     duration = positive_time(duration, "give seconds, or turns of the input")
-    state = prepared.rest() if start is None else prepared.system.checked(start, "start")
+    state = prepared.rest() if start is None else prepared.system.checked_start(start)
     if len(profile.time) > 1:
         require_share(prepared.assembly)
     elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:

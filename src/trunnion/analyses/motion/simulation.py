@@ -244,4 +244,4 @@ def _start(system: System, start: ArrayLike | None) -> Array:
         if system.start is None:
             raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
         return system.start
-    return system.checked(start, "start")
+    return system.checked_start(start)

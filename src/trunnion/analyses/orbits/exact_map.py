@@ -8,7 +8,7 @@ the end of a piece (grazing) has none.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Self
@@ -18,15 +18,19 @@ import numpy as np
 from trunnion.arrays import Array, Integers
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
+from trunnion.laws.stages import STICKS
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
-from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage
+from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage, kernel, stages_of
 from trunnion.systems.maps import Observed, Passage
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.systems.regimes import SLACK
 
 SAMPLES = 512
 """Of a period, for the fundamental; a power of two times any usual number of periods."""
 LEAST_TWIST = 1e-6
 """What a twist counts as at least when an orbit is closed [rad]."""
+MOMENT = 0.02
+"""Share of the period within which a slider that sticks may slip by rounding."""
 REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
@@ -136,6 +140,8 @@ class LineMap(ExactMap):
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
     the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
     throughout: what it has beside the twist comes back whatever it is, and ``stuck`` holds (row, that [rad]) of each.
+    Such a slider holds twice as much here, so that rounding does not let it slip; whether it stays within what it holds
+    is asked of the motion found.
     """
 
     line: StagedLine
@@ -158,12 +164,13 @@ class LineMap(ExactMap):
     @cached_property
     def flow(self) -> StagedFlow:
         """The line's flow at the value."""
-        return self.line.flow(self.value)
+        return self.line.holding([row for row, _ in self.stuck], self.value)
 
     def whole(self, part: Array) -> Array:
-        """The line's state (2m,) from the map's."""
+        """The line's state (2m,) from the map's, deflections beyond what sliders hold brought back to it."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
+        state = self.line.within_limits(state)
         for row, beside in self.stuck:
             state[row] = state[self.line.source[row]] + beside
         return state
@@ -176,13 +183,23 @@ class LineMap(ExactMap):
             matrix[row] = matrix[self.line.source[row]]
         return matrix[:, self.kept]
 
-    def idle(self, passage: StagedPassage, start: Array) -> tuple[tuple[int, float], ...]:
-        """Sliders that do not slip in a passage from ``start`` (2m,), as ``stuck`` has them."""
-        first = len(self.line.springs)
-        rows = range(first, first + len(self.line.sliders))
-        slipped = {int(e) for e in passage.events[:, 1]}
+    def sticking(self, rows: Iterable[int], start: Array) -> Self:
+        """The map in which the sliders in these rows stick with the deflections that they have in ``start`` (2m,)."""
         beside = start[: self.line.size] - start[self.line.source]
-        return tuple((row, float(beside[row])) for row in rows if row not in slipped)
+        return replace(self, stuck=tuple((row, float(beside[row])) for row in sorted(rows)))
+
+    def idle(self, passage: StagedPassage, start: Array) -> set[int]:
+        """Rows of the sliders that slip for no more than a moment in a watched passage from ``start`` (2m,), and stay
+        within what they hold."""
+        k, first, found = kernel(), stages_of(self.flow, start), set()
+        for row in self.line.slider_rows:
+            own = passage.events[:, 1] == row
+            times = np.concatenate([[0.0], passage.events[own, 0], [self.length]])
+            slips = np.concatenate([[first[row]], passage.events[own, 2]]) != STICKS
+            furthest = np.abs(passage.seen[row, [k.LOW, k.HIGH]]).max()
+            if np.diff(times) @ slips <= MOMENT * self.length and furthest <= (1 + SLACK) * self.line.knots[row]:
+                found.add(row)
+        return found
 
     def scale(self, start: Array) -> Array:
         """Size of every state of the map that counts as one, from a start (2m,) of the line."""
@@ -196,7 +213,8 @@ class LineMap(ExactMap):
         run = staged_flow.period(self.flow, self.whole(x), self.length, slope, watch=watch)
         if not (run.done and np.isfinite(run.tangents).all()):
             return _broken(self.size, len(by))
-        matrix = (run.tangents[:, : 2 * self.line.size] @ self.spread)[self.kept]
+        by_state = self.spread * (self.whole(x)[self.kept] == x)  # beyond what it holds a deflection is brought back
+        matrix = (run.tangents[:, : 2 * self.line.size] @ by_state)[self.kept]
         by_value = run.tangents[self.kept, 2 * self.line.size :][:, : len(by)]
         return Passage(run.state[self.kept], matrix, by_value, len(run.events), True, run)
 

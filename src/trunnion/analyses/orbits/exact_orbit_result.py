@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.analyses.motion.exact_motion import StageEvents
 from trunnion.analyses.orbits.judging import exact_verdict
 from trunnion.analyses.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.analyses.orbits.stuck_clutches import StuckClutch
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.staged_line import StagedLine
@@ -127,8 +128,8 @@ class ExactOrbit(ExactMotion, Result):
     twist_high, twist_mean [rad], torque_low, torque_high, torque_mean [N m] (spring,); contacts: sides, impacts and
     their energy, per spring with stages; clearance [rad]: least distance of an extremum of a twist from an end of its
     stage, before it or behind it, inf without one; slowest_crossing [rad/s]: smallest rate at a change of stage, inf
-    without one; iterations of the shooting; stuck: sliders that never slip, whose multipliers, exactly 1, are set
-    aside.
+    without one; iterations of the shooting; continuum: the clutches with sliders that never slip, which make
+    this motion one of a continuum; the multipliers of those sliders, exactly 1, are set aside.
     """
 
     line: StagedLine
@@ -150,12 +151,17 @@ class ExactOrbit(ExactMotion, Result):
     slowest_crossing: float
     iterations: int
     outcome: Outcome
-    stuck: tuple[str, ...] = ()
+    continuum: tuple[StuckClutch, ...] = ()
 
     @property
     def springs(self) -> tuple[str, ...]:
         """Names of the springs."""
         return self.line.springs
+
+    @property
+    def stuck(self) -> tuple[str, ...]:
+        """Names of the sliders that never slip."""
+        return tuple(name for clutch in self.continuum for name in clutch.sliders)
 
     @property
     def torque_peak_to_peak(self) -> Array:
@@ -187,6 +193,7 @@ class ExactOrbit(ExactMotion, Result):
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
         yield from fields_over("", self, period="s", clearance="rad", slowest_crossing="rad/s")
         yield from remarks(driveline=self.line.name, verdict=str(self.verdict), value=self.value)
+        yield from remarks(continuum="; ".join(map(str, self.continuum)))
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -208,7 +215,7 @@ class ExactOrbit(ExactMotion, Result):
                 f"{MEANING[self.verdict]}",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),
-                *(f"  {name} sticks throughout; its multiplier, exactly 1, is set aside" for name in self.stuck),
+                *(f"  {clutch}" for clutch in self.continuum),
                 f"  {near}{slow}; largest multiplier {abs(self.multipliers[0]):.8g}; {self.outcome}",
             ]
         )

@@ -59,7 +59,7 @@ def kept_speed_orbit(
     InputError : excited in time or without a common period.
     """
     require_closing(line)
-    first = line.twisted() if start is None else line.system.checked(start, "start")
+    first = line.twisted() if start is None else line.system.checked_start(start)
     torque = torque_scale(line)
     driving = IntegratedMap(driven or line.with_drive, (0.0,), (torque,), 0.0, 1, tolerance, MOST_STEPS)
     neutral = neutral_motions(line)

@@ -3,8 +3,8 @@ branches.
 
 An integrated motion is run at two tolerances, whose difference bounds the error of Φ and so of every multiplier
 (``numerics.spectrum``). Of a motion that nothing holds in phase the multiplier 1 is set aside, and that of each slider
-which never slips. A motion is undecided
-where the spectral radius is 1 to within its error (``results.verdict``), and marginal where besides nothing damps it.
+which never slips (``systems.sticking``). A motion is undecided where the spectral radius is 1 to within its error
+(``results.verdict``), and marginal where besides nothing damps it.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.analyses.orbits.closing import Closing, by_modulus
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
 from trunnion.results.verdict import Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap
+from trunnion.systems.sticking import conserved
 from trunnion.systems.system import System
 
 EXACT_ERROR = 1e-9
@@ -65,18 +66,24 @@ class IntegratedClosing(Closing[IntegratedMap]):
 
     neutral: Callable[[System, Array], Neutral] | None = None
 
-    def judged(self, place: IntegratedMap, x: Array, run: Trajectory, coarse: Trajectory, missed: float) -> Judged:
-        """Of the motion from x, run again as ``coarse`` with a larger tolerance, which misses closing by ``missed``."""
+    def judged(
+        self, place: IntegratedMap, x: Array, run: Trajectory, coarse: Trajectory, missed: float, stuck: Integers
+    ) -> Judged:
+        """Of the motion from x, run again as ``coarse`` with a larger tolerance, which misses closing by ``missed``;
+        ``stuck``: sliders that never slip."""
         system, scale = place.system, np.asarray(place.system.scale)
         scaled, error = scaled_matrix(system, run, coarse, missed)
+        basis = np.eye(len(scaled))
+        if len(stuck):
+            kept, basis = without(scaled.T, (conserved(system, place.phase, x, stuck) * scale).T)
+            scaled = kept.T
         values, bound = multipliers(scaled, np.array(error))
         order = np.argsort(-np.abs(values))
         values, bound = values[order], bound[order]
         counted, counted_bound, speed = values, bound, np.nan
         if self.neutral is not None:
-            counted, counted_bound, speed = beside_neutral(scaled, error, self.neutral(system, x), scale)
-        stuck = system.regimes.idle(run.event_which) if system.regimes is not None else 0
-        for _ in range(stuck + (isinstance(place, TimedMap) and not rests(place, run))):
+            counted, counted_bound, speed = beside_neutral(scaled, error, self.neutral(system, x), basis.T / scale)
+        if isinstance(place, TimedMap) and not rests(place, run):
             one = int(np.argmin(np.abs(counted - 1)))
             counted, counted_bound = np.delete(counted, one), np.delete(counted_bound, one)
         return Judged(values, bound, counted, counted_bound, speed)
@@ -86,9 +93,11 @@ class IntegratedClosing(Closing[IntegratedMap]):
         passage = self.passage(point)
         if not passage.done:
             return super().multipliers(point)
-        if self.neutral is None:
-            return by_modulus(passage.run.final[1:])
-        values = self.judged(self.place(point.z), self.start(point), passage.run, passage.run, 0.0).counted
+        place, run = self.place(point.z), passage.run
+        stuck = never_slip(place.system, run)
+        if self.neutral is None and not len(stuck):
+            return by_modulus(run.final[1:])
+        values = self.judged(place, self.start(point), run, run, 0.0, stuck).counted
         return np.asarray(values[np.argsort(-np.abs(values))])
 
     def radius_error(self, point: CurvePoint, radius: float) -> float:
@@ -100,7 +109,7 @@ class IntegratedClosing(Closing[IntegratedMap]):
         if not coarse.done:
             return CLEAR
         missed = float(np.abs((passage.state - x) / np.asarray(place.system.scale)).max())
-        found = self.judged(place, x, passage.run, coarse.run, missed)
+        found = self.judged(place, x, passage.run, coarse.run, missed, never_slip(place.system, passage.run))
         return float(spectral_radius(found.counted, found.counted_bound)[1])
 
     def undamped(self, point: CurvePoint) -> bool:
@@ -121,6 +130,13 @@ class ExactClosing(Closing):  # type: ignore[type-arg]
     def undamped(self, point: CurvePoint) -> bool:
         """Whether volumes of states keep their size along the motion."""
         return _undamped(self.multipliers(point))
+
+
+def never_slip(system: System, run: Trajectory, most: float = 0.0) -> Integers:
+    """Numbers of the sliders that slip for no more than the share ``most`` of a motion."""
+    if system.regimes is None:
+        return np.zeros(0, dtype=np.int64)
+    return system.regimes.stuck(run.regime, run.length, most)
 
 
 def exact_verdict(values: Complex) -> Verdict:
@@ -155,9 +171,12 @@ def rests(place: IntegratedMap, run: Trajectory) -> bool:
     return isinstance(place, TimedMap) and bool(np.all(np.ptp(run.state, axis=0) <= AT_REST * size))
 
 
-def beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array) -> tuple[Complex, Array, float]:
-    """The multipliers to judge, their bounds, and the one of the line's speed where that is not judged with them."""
-    aside = neutral.returns / scale[:, None]
+def beside_neutral(scaled: Array, error: float, neutral: Neutral, units: Array) -> tuple[Complex, Array, float]:
+    """The multipliers to judge, their bounds, and the one of the line's speed where that is not judged with them.
+
+    ``units`` (m, n) : takes a disturbance of the states to the coordinates in which ``scaled`` (m, m) stands.
+    """
+    aside = units @ neutral.returns
     missed = float(np.linalg.norm(scaled @ aside[:, :1] - aside[:, :1]) / np.linalg.norm(aside[:, :1]))
     if missed > HELD[0] + HELD[1] * error:  # something holds the phase after all
         aside = aside[:, :0]
@@ -165,7 +184,7 @@ def beside_neutral(scaled: Array, error: float, neutral: Neutral, scale: Array) 
     values, bound = multipliers(rest, np.array(error))
     if neutral.drifts is None or not aside.shape[1]:
         return values, bound, np.nan
-    place = along(rest, (neutral.drifts / scale) @ basis)
+    place = along(rest, (units @ neutral.drifts) @ basis)
     return np.delete(values, place), np.delete(bound, place), float(values[place].real)
 
 

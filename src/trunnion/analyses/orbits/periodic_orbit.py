@@ -10,9 +10,9 @@ from the difference of Φ at two tolerances, and checked by Liouville's identity
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 from trunnion.analyses.motion.integration_outcomes import outcome_of
 from trunnion.analyses.motion.repetition import repetition
 from trunnion.analyses.orbits.closing import Phase, close
-from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, rests
-from trunnion.arrays import Array, Complex
+from trunnion.analyses.orbits.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, never_slip, rests
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import extremes, fourier
@@ -35,12 +35,16 @@ from trunnion.results.quantity_axes import state_axes
 from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
+from trunnion.systems.regimes import SLACK
+from trunnion.systems.sticking import holding
 from trunnion.systems.system import System
 
 TOLERANCE = 1e-11
 SAMPLES = 512
 LEFT = 200.0
 """Residual at which an orbit counts as closed, over the tolerance of its integration."""
+MOMENT = 0.02
+"""Share of the period within which a slider that sticks may slip by rounding."""
 RUNAWAY = 1e-4
 """Residual, in units of the states' scale, that no motion leaves which really closes."""
 MOST_SHARES = 12
@@ -58,7 +62,8 @@ class PeriodicOrbit(Result):
     """A periodic motion and its stability.
 
     start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
-    (n,) by falling modulus with multiplier_error (n,); spectral_radius and error_estimate leave out the
+    (n,) by falling modulus with multiplier_error (n,), without the 1 of each of the sliders ``stuck`` that
+    never slip; spectral_radius and error_estimate leave out the
     trivial multiplier of an autonomous system that moves (one at rest has none: outcome "at rest"), and the
     ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); monodromy (n, n);
     liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the
@@ -82,6 +87,7 @@ class PeriodicOrbit(Result):
     outcome: Outcome
     trajectory: Trajectory
     speed_multiplier: float = float("nan")
+    stuck: tuple[str, ...] = ()
 
     @property
     def growth_rate(self) -> float:
@@ -202,7 +208,7 @@ def periodic_orbit(
     periods = checked_periods(periods)
     if start is None and system.start is None:
         raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
-    first = system.start if start is None else system.checked(start, "start")
+    first = system.start if start is None else system.checked_start(start)
     assert first is not None
     if system.forcing_period is not None:
         if period is not None:
@@ -245,11 +251,12 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
     """The orbit where shooting ended: its multipliers, their error and the verdict; or why there is none."""
     if not root.converged:
         return _failed(closing, root)
-    n = closing.size
+    n, system = closing.size, closing.place(root.x).system
+    closing, root, stuck = _sticking(closing, root)
     place, x = closing.place(root.x), root.x[:n]
-    system, length, scale = place.system, place.length, np.asarray(place.system.scale)
+    length, scale = place.length, np.asarray(system.scale)
     run, coarse = place(x, dense=True).run, place(x, looser=COARSER).run
-    found, matrix = closing.judged(place, x, run, coarse, root.size), run.final[1:].T
+    found, matrix = closing.judged(place, x, run, coarse, root.size, stuck), run.final[1:].T
     radius, radius_error = np.array(0.0), np.array(0.0)
     if len(found.counted):
         radius, radius_error = spectral_radius(found.counted, found.counted_bound)
@@ -269,7 +276,7 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
     time = place.phase + length * np.arange(SAMPLES + 1) / SAMPLES
     return PeriodicOrbit(
         system=system,
-        start=x,
+        start=system.within_limits(x),
         period=length,
         time=time,
         state=run.at(time),
@@ -285,7 +292,36 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
         outcome=Outcome(True, "at rest" if still else "found", words),
         trajectory=run,
         speed_multiplier=found.speed,
+        stuck=tuple(system.sliders[one] for one in stuck),
     )
+
+
+def _sticking(closing: IntegratedClosing, root: Root) -> tuple[IntegratedClosing, Root, Integers]:
+    """The sliders that never slip, and the closing and root with rounding kept from letting them.
+
+    A motion that settles by slipping less and less just reaches in the end where its sliders slip. One that slips for a
+    moment is held and the motion closed again; where it stays within what the slider holds, the slider sticks.
+    """
+    place, n = closing.place(root.x), closing.size
+    stuck = never_slip(place.system, place(root.x[:n], tangents=False).run, MOMENT)
+    limits = place.system.within_limits(np.full(n, np.inf))
+    while len(stuck):
+        family = partial(_held, closing.map.family, stuck)
+        held = replace(closing, map=replace(closing.map, family=family))
+        again = held.solve(root.x)
+        run = held.place(again.x)(again.x[:n], tangents=False, dense=True).run
+        if not again.converged or run.end is not End.REACHED:
+            return closing, root, stuck[:0]
+        beyond = extremes(run.at, run.time_of_state).largest > (1 + SLACK) * limits
+        slips = beyond[n - len(place.system.sliders) :][stuck]
+        if not slips.any():
+            return held, replace(again, iterations=root.iterations + again.iterations), stuck
+        stuck = stuck[~slips]
+    return closing, root, stuck
+
+
+def _held(family: Callable[..., System], stuck: Integers, *values: float) -> System:
+    return holding(family(*values), stuck)
 
 
 def _unbounded(system: System, x: Array) -> Outcome:

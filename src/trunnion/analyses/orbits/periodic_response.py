@@ -23,10 +23,13 @@ from trunnion.analyses.orbits.free_orbit import (
 )
 from trunnion.analyses.orbits.linear_comparison import LinearComparison, compared
 from trunnion.analyses.orbits.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit, speed_in_words
+from trunnion.analyses.orbits.rubbing_clutches import continuum_of, slipping_on
 from trunnion.analyses.orbits.spring_contacts import SpringContact, spring_contacts
+from trunnion.analyses.orbits.stuck_clutches import StuckClutch
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.equations.clutch_capacity import carries_static_torque, refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
@@ -161,6 +164,16 @@ class PeriodicResponse(Judged):
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
         return np.asarray(self.order_torque(0)[1][0].real)
 
+    @property
+    def stuck(self) -> tuple[str, ...]:
+        """Names of the sliders that never slip."""
+        return self.orbit.stuck
+
+    @cached_property
+    def continuum(self) -> tuple[StuckClutch, ...]:
+        """The clutches with sliders that never slip, which make the motion one of a continuum, and its range."""
+        return continuum_of(self.line, self.orbit)
+
     @cached_property
     def contacts(self) -> tuple[SpringContact, ...]:
         """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
@@ -209,6 +222,7 @@ class PeriodicResponse(Judged):
         yield from fields_over("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
         yield from remarks(driveline=self.orbit.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
+        yield from remarks(continuum="; ".join(map(str, self.continuum)))
         yield remark("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
@@ -236,6 +250,7 @@ class PeriodicResponse(Judged):
                 f"{self.growth_rate:+.6g} 1/s",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),
+                *(f"  {clutch}" for clutch in self.continuum),
                 *([f"  {speed_in_words(self.orbit)}"] if np.isfinite(self.orbit.speed_multiplier) else []),
                 f"  {against}",
                 f"  {self.outcome}",
@@ -273,7 +288,8 @@ def periodic_response(
 
     Raises
     ------
-    InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time.
+    InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time; a
+        clutch that carries more than its friction holds and no spring takes; a start beyond what its friction holds.
     """
     if isinstance(line, System):
         if speed is not None:
@@ -284,7 +300,12 @@ def periodic_response(
     if prepared.assembly.topology.free:
         return _free(prepared, start, tolerance, settle)
     require_forced(prepared)
+    if carries_static_torque(prepared.assembly):
+        refuse_overload(prepared.assembly, prepared.speed)
     orbit = _forced(prepared, start, periods, tolerance, settle)
+    if not orbit.outcome.ok and prepared.sliders:
+        refuse_overload(prepared.assembly, prepared.speed)
+        orbit = replace(orbit, outcome=slipping_on(prepared, periods) or orbit.outcome)
     response = PeriodicResponse(prepared, prepared.speed, orbit, None, "not asked for")
     if not compare or not orbit.outcome.ok:
         return response
@@ -301,7 +322,7 @@ def _forced(
     prepared: LineSystem, start: ArrayLike | None, periods: int, tolerance: float, settle: bool
 ) -> PeriodicOrbit:
     """The motion of a driven line; soft lines under load lie far from rest, but near their static twist."""
-    first = prepared.rest() if start is None else prepared.system.checked(start, "start")
+    first = prepared.rest() if start is None else prepared.system.checked_start(start)
     carries = start is None and bool(np.any(prepared.twisted() != first))
     orbit = periodic_orbit(
         prepared.system, start=first, periods=periods, tolerance=tolerance, settle=settle and not carries
@@ -321,6 +342,8 @@ def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settl
     # Constant torques that balance lead to no speed of their own.
     if shares or not (loaded_by_speed(assembly) or imbalance(assembly, row)[0]):
         found = kept_speed_orbit(prepared, start, tolerance=tolerance, settle=settle)
+        if not found.orbit.outcome.ok:
+            refuse_overload(assembly, prepared.speed)
         words = (
             "does not apply (the line starts free; beyond the balance of its loads its drives give "
             f"{found.extra_torque:.4g} N m at the input)"
@@ -337,7 +360,7 @@ def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: flo
     if left > 0 and not loaded_by_speed(prepared.assembly):
         require_balance(prepared.assembly, row)  # nothing but dampers could drive it
     speed = prepared.speed
-    first = prepared.twisted() if start is None else prepared.system.checked(start, "start")
+    first = prepared.twisted() if start is None else prepared.system.checked_start(start)
     orbit, found = torque_driven_orbit(prepared, speed, first, tolerance=tolerance)
     if not orbit.outcome.ok and settle:
         run = simulate_system(prepared.system, periods=400, start=first, tolerance=1e-8, dense=False)
@@ -392,6 +415,7 @@ def _findings(result: PeriodicResponse, unit: str) -> list[Finding]:
     else:
         found.append(Finding(Gravity.NOTE, f"The periodic motion at {at} is {result.verdict}; {torque}."))
     rattling = [contact for contact in result.contacts if contact.rattles]
+    found += [Finding(Gravity.NOTE, f"At {at} {clutch}.") for clutch in result.continuum]
     found += [Finding(Gravity.CAUTION, f"At {at} contact is lost: {contact}.") for contact in rattling]
     comparison = result.comparison
     if comparison is not None and not comparison.agree:

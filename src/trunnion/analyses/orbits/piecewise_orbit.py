@@ -20,8 +20,10 @@ from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
 from trunnion.analyses.orbits.exact_orbit_result import ExactOrbit, PiecewiseOrbit
 from trunnion.analyses.orbits.judging import ExactClosing
 from trunnion.analyses.orbits.spring_contacts import SpringContact
+from trunnion.analyses.orbits.stuck_clutches import StuckClutch, slips_on, stuck_clutches
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
+from trunnion.equations.clutch_capacity import refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
@@ -99,7 +101,8 @@ def piecewise_orbit(
     Raises
     ------
     InputError : a start that is not two finite numbers; an undamped linear resonance; a driveline that has no exact
-        motion, no excitation or none with a common period.
+        motion, no excitation or none with a common period, or a clutch that carries more than it holds; a start beyond
+        what friction holds.
     """
     periods = checked_periods(periods)
     if isinstance(oscillator, Driveline | Assembly):
@@ -185,26 +188,55 @@ def refuse_found_speed(line: StagedLine) -> None:
 
 
 def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settle: bool = True) -> ExactOrbit:
-    """The periodic motion near ``start`` (2m,) at a value of the clock."""
+    """The periodic motion near ``start`` (2m,) at a value of the clock.
+
+    Raises
+    ------
+    InputError : a clutch that carries more than it holds.
+    """
     place = LineMap(value, periods, line)
     if not line.sliders:
         return _closed(place, start, settle)
-    # Which sliders stick is told by the motion once it has settled, and again by the orbit found.
+    if not line.turns:
+        refuse_overload(line.assembly, line.speed_at(value))
+    orbit = _rubbing(place, start, settle)
+    return orbit if orbit.outcome.ok else replace(orbit, outcome=_slipping(place, start) or orbit.outcome)
+
+
+def _rubbing(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
+    """The periodic motion of a line with sliders. Which of them stick is told by the motion once it has settled, and
+    again by every orbit found."""
+    line = place.line
     settled = place.settle(start[place.kept], SETTLED) if settle else start[place.kept]
     if settled is None:
         words = "stages change too often in a period; raise damping"
         return _no_orbit_of_line(place, start, Outcome(False, "chatter", words))
     whole = place.whole(settled)
-    passage = place.watched(settled)
+    rows = place.idle(place.watched(settled), whole)
     for _ in range(2 * len(line.sliders) + 1):
-        tried, place = place, replace(place, stuck=place.idle(passage, whole))
-        orbit = _closed(place, whole, settle)
+        found = place.sticking(rows, whole)
+        orbit = _closed(found, whole, settle)
         if not orbit.outcome.ok:
-            break
-        passage, whole = place.watched(orbit.start[place.kept]), orbit.start
-        if place.idle(passage, whole) == place.stuck or place.stuck == tried.stuck:
-            break
-    return orbit
+            return orbit
+        idle = found.idle(found.watched(orbit.start[found.kept]), orbit.start)
+        if idle == rows:
+            return orbit
+        # First those slip that cannot stick after all; then those stick that turn out not to slip.
+        rows, whole = rows & idle if rows - idle else idle, line.within_limits(orbit.start)
+    words = "no motion agrees with which of its sliders stick; start closer, from the end of a longer tn.exact_motion"
+    return _no_orbit_of_line(place, start, Outcome(False, "not converged", words))
+
+
+def _slipping(place: LineMap, start: Array) -> Outcome | None:
+    """What to say where a clutch slips on with every period once the line has settled."""
+    line, states = place.line, [start[place.kept]]
+    for wait in (SETTLED, 1, 1):
+        settled = place.settle(states[-1], wait)
+        if settled is None:
+            return None
+        states.append(settled)
+    twists = np.array([place.whole(state)[: len(line.springs)] for state in states[1:]])
+    return slips_on(line.assembly, line.speed_at(place.value), line.placed, twists)
 
 
 def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
@@ -255,8 +287,18 @@ def _orbit_of_line(place: LineMap, part: Array, iterations: int) -> ExactOrbit:
         slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
-        stuck=tuple(line.rows[row] for row, _ in place.stuck),
+        continuum=_continuum(place, run),
     )
+
+
+def _continuum(place: LineMap, run: StagedPassage) -> tuple[StuckClutch, ...]:
+    """The clutches with sliders that never slip in a watched passage."""
+    line, k = place.line, kernel()
+    rows, stuck = list(line.slider_rows), [row - len(line.springs) for row, _ in place.stuck]
+    mean = run.seen[: len(line.springs), k.TWIST_SUM] / place.length
+    return stuck_clutches(
+        line.assembly, line.placed, stuck, run.seen[rows, k.LOW], run.seen[rows, k.HIGH], mean
+    )  # fmt: skip
 
 
 def contacts_of(place: LineMap, start: Array, run: StagedPassage) -> tuple[SpringContact, ...]:

@@ -23,6 +23,7 @@ from trunnion.analyses.orbits.spring_contacts import SpringContact, contact_stat
 from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.clutch_capacity import refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
@@ -291,7 +292,7 @@ def sweep(
     Raises
     ------
     InputError : frequencies that are not positive, an undamped linear resonance among them; a driveline without exact
-        motion, or excited both by its rotation and in time.
+        motion, excited both by its rotation and in time, or with a clutch that carries more than it holds.
     """
     omegas = np.ascontiguousarray(np.atleast_1d(np.asarray(frequencies, dtype=float)))
     if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
@@ -348,6 +349,8 @@ def _of_line(
     same: float,
 ) -> LineSweep:
     prepared = line_over(line, float(values[0]), speed)
+    for value in values if prepared.sliders and not prepared.turns else ():
+        refuse_overload(prepared.assembly, prepared.speed_at(float(value)))
     maps = [LineMap(float(value), 1, prepared) for value in values]
     first = start_state(prepared, start)[maps[0].kept]
     lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"

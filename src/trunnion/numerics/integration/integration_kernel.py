@@ -48,6 +48,8 @@ TIME, STEP, LAST_EVENT, SPAN = range(4)
 SAMPLES = 8
 """Places per step at which switching functions are looked at."""
 MOST_QUICK_EVENTS = 60
+MOMENT = 0.01
+"""Share of a step by which the crossing of two surfaces may come in either order where one is only touched."""
 LARGEST = 1e100
 EPS = 2.220446049250313e-16
 
@@ -405,14 +407,16 @@ def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps,
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _new_sides(functions, t, y, p, asked, n, regime, own, fired, side, jumped, directions, g, slope, k, sides):
-    """On which side of each surface the motion goes on; 1 if it at once crosses ``fired`` again, −1 refused.
+def _new_sides(functions, t, h, y, p, asked, n, regime, own, fired, side, jumped, directions, back, g, slope, k, sides):
+    """On which side of each surface the motion goes on; the surface that it at once crosses, −1 for none, −2 refused.
 
-    ``fired``, reached from ``side``, stands at zero to rounding: its new side is that of its rate of change.
+    ``fired``, reached from ``side``, stands at zero to rounding: its new side is that of its rate of change. Where a
+    motion just touches ``fired``, a surface that leads ``back`` (own,) may have been crossed a moment before, far less
+    than the step ``h``; it is crossed now.
     """
     if _watched(functions, t, y[:n], p, asked, n, regime, own, 1, g, slope) != 0:
-        return -1
-    again = 0
+        return -2
+    again = -1
     for i in range(g.size):
         size = 0.0
         if i == fired or fired < 0:  # a start on a surface is like an event there
@@ -421,24 +425,28 @@ def _new_sides(functions, t, y, p, asked, n, regime, own, fired, side, jumped, d
             size = (1e-9 if i == fired else 1e-13) * (size + abs(slope[i * (n + 1) + n] * t)) + 1e-14
         if abs(g[i]) > size:
             sides[i] = _sign(g[i])
+            if i < own and back[i] and directions[i] == sides[i]:
+                speed = _change(functions, t, y, p, n, regime, slope, i, k)
+                if 0 < g[i] * speed and abs(g[i]) < MOMENT * h * abs(speed):
+                    again = i
             continue
-        sides[i] = _rate_sign(functions, t, y, p, n, regime, slope, i, k)
+        sides[i] = _sign(_change(functions, t, y, p, n, regime, slope, i, k))
         if i == fired and i < own and sides[i] != 0.0:
-            back = sides[i] == side and (directions[i] == side or directions[i] == 2)
-            if (not jumped and back) or (jumped and directions[i] == sides[i]):
-                again = 1
+            returns = sides[i] == side and (directions[i] == side or directions[i] == 2)
+            if (not jumped and returns) or (jumped and directions[i] == sides[i]):
+                again = i
     return again
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _rate_sign(functions, t, y, p, n, regime, slope, i, k):
-    """Sign of dg/dt along the motion, or of its own change where that vanishes."""
+def _change(functions, t, y, p, n, regime, slope, i, k):
+    """dg/dt of a function along the motion; 0 where it cannot be evaluated."""
     if _call_rate(functions[0], t, y[:n], p, 0, regime, k[0, :n]) != 0:
         return 0.0
     total = slope[i * (n + 1) + n]
     for j in range(n):
         total += slope[i * (n + 1) + j] * k[0, j]
-    return _sign(total)
+    return total
 
 
 @njit(cache=True, nogil=True, **INNER)
@@ -478,7 +486,7 @@ def advance(
     new, spare = np.empty(wide), np.empty(wide)
     x, q = np.empty(n), np.zeros((POWERS, n))
     g, slope = np.zeros(m), np.zeros(m * (n + 1))
-    active = np.zeros(m, dtype=np.int64)
+    active, back = np.zeros(m, dtype=np.int64), np.zeros(own, dtype=np.bool_)
     t, h, regime = clock[TIME], clock[STEP], whole[REGIME]
     whole[STORED], whole[EVENTS] = 0, 0
     if whole[FRESH] == 1:
@@ -487,7 +495,12 @@ def advance(
     if watched is not None:
         _directions(transitions, directions, watched, regime, active)
         if whole[FRESH] == 1 and m > 0:
-            if _new_sides(functions, t, y, p, asked, n, regime, own, -1, 0.0, False, active, g, slope, k, sides) < 0:
+            if (
+                _new_sides(
+                    functions, t, 0.0, y, p, asked, n, regime, own, -1, 0.0, False, active, back, g, slope, k, sides
+                )
+                == -2
+            ):
                 return REFUSED
     if _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
         return REFUSED
@@ -613,20 +626,25 @@ def advance(
                 near = t - clock[LAST_EVENT] <= 256 * EPS * max(abs(t), 1e-3 * clock[SPAN])
                 whole[QUICK] = whole[QUICK] + 1 if near else 0
                 clock[LAST_EVENT] = t
+                for i in range(own):
+                    back[i] = transitions[then, i] == regime
                 regime = then
                 whole[REGIME] = regime
                 _directions(transitions, directions, watched, regime, active)
                 again = _new_sides(
-                    functions, t, y, p, asked, n, regime, own, which, side, jumped, active, g, slope, k, sides
+                    functions, t, h, y, p, asked, n, regime, own, which, side, jumped, active, back, g, slope, k, sides
                 )
-                if again < 0 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
+                if again == -2 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
                     return REFUSED
                 if whole[QUICK] > MOST_QUICK_EVENTS:
                     return CHATTER
                 if which >= own and stops[which - own] != 0:
                     return STOPPED
-                side = -side if not jumped else side
-                which = which if again == 1 else -1
+                if again != which:
+                    side = -active[again] if again >= 0 else 0.0
+                elif not jumped:
+                    side = -side
+                which = again
         for i in range(wide):
             if not abs(y[i]) < LARGEST:
                 return BEYOND
