@@ -1,4 +1,4 @@
-"""What the clutches of a line do in a periodic motion found by integration, and where one slips on and none is found."""
+"""What the clutches of a line do in a periodic motion that is integrated, and where one slips on and none is found."""
 
 from __future__ import annotations
 
