@@ -8,6 +8,7 @@ derivative there; ``clearance`` and, of a line, ``slowest_crossing`` say how nea
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from typing import overload
 
@@ -38,6 +39,10 @@ CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
 SETTLED = 100
 """Periods after which a motion shows which sliders stick."""
+CHANCES = 2
+"""Motions in which a slider is tried as one that sticks: the first may begin before the motion has settled."""
+UNDETERMINED = "not determined"
+"""Kind of the outcome where motions close, but no single one."""
 SINGULAR = 1e-12
 """Smallest singular value over the largest below which the condition of closing determines nothing."""
 
@@ -212,17 +217,19 @@ def _rubbing(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
         words = "stages change too often in a period; raise damping"
         return _no_orbit_of_line(place, start, Outcome(False, "chatter", words))
     whole = place.whole(settled)
-    rows = place.idle(place.watched(settled), whole)
-    for _ in range(2 * len(line.sliders) + 1):
+    rows, slipped = place.idle(place.watched(settled), whole), Counter[int]()
+    for _ in range(2 * CHANCES * len(line.sliders) + 1):
         found = place.sticking(rows, whole)
         orbit = _closed(found, whole, settle)
-        if not orbit.outcome.ok:
+        if not (orbit.outcome.ok or orbit.outcome.kind == UNDETERMINED):
             return orbit
         idle = found.idle(found.watched(orbit.start[found.kept]), orbit.start)
-        if idle == rows:
+        slipped.update(rows - idle)
+        stick = {row for row in idle if slipped[row] < CHANCES}
+        if stick == rows:
             return orbit
         # First those slip that cannot stick after all; then those stick that turn out not to slip.
-        rows, whole = rows & idle if rows - idle else idle, line.within_limits(orbit.start)
+        rows, whole = rows & stick if rows - idle else stick, line.within_limits(orbit.start)
     words = "no motion agrees with which of its sliders stick; start closer, from the end of a longer tn.exact_motion"
     return _no_orbit_of_line(place, start, Outcome(False, "not converged", words))
 
@@ -251,7 +258,7 @@ def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
             "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
             "own frequency; give some damping or another frequency"
         )
-        return _no_orbit_of_line(place, start, Outcome(False, "not determined", words))
+        return _no_orbit_of_line(place, place.whole(root.x), Outcome(False, UNDETERMINED, words))
     return _orbit_of_line(place, root.x, root.iterations)
 
 

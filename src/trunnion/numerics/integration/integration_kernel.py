@@ -407,12 +407,12 @@ def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps,
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _new_sides(functions, t, h, y, p, asked, n, regime, own, fired, side, jumped, directions, back, g, slope, k, sides):
+def _new_sides(functions, t, h, y, p, asked, n, regime, own, fired, side, jumped, directions, due, g, slope, k, sides):
     """On which side of each surface the motion goes on; the surface that it at once crosses, −1 for none, −2 refused.
 
     ``fired``, reached from ``side``, stands at zero to rounding: its new side is that of its rate of change. Where a
-    motion just touches ``fired``, a surface that leads ``back`` (own,) may have been crossed a moment before, far less
-    than the step ``h``; it is crossed now.
+    motion just touches ``fired``, a surface that is ``due`` (own,), one that leads back or was awaited before, may have
+    been crossed a moment earlier, far less than the step ``h``; it is crossed now.
     """
     if _watched(functions, t, y[:n], p, asked, n, regime, own, 1, g, slope) != 0:
         return -2
@@ -425,7 +425,7 @@ def _new_sides(functions, t, h, y, p, asked, n, regime, own, fired, side, jumped
             size = (1e-9 if i == fired else 1e-13) * (size + abs(slope[i * (n + 1) + n] * t)) + 1e-14
         if abs(g[i]) > size:
             sides[i] = _sign(g[i])
-            if i < own and back[i] and directions[i] == sides[i]:
+            if i < own and due[i] and directions[i] == sides[i]:
                 speed = _change(functions, t, y, p, n, regime, slope, i, k)
                 if 0 < g[i] * speed and abs(g[i]) < MOMENT * h * abs(speed):
                     again = i
@@ -486,7 +486,7 @@ def advance(
     new, spare = np.empty(wide), np.empty(wide)
     x, q = np.empty(n), np.zeros((POWERS, n))
     g, slope = np.zeros(m), np.zeros(m * (n + 1))
-    active, back = np.zeros(m, dtype=np.int64), np.zeros(own, dtype=np.bool_)
+    active, due = np.zeros(m, dtype=np.int64), np.zeros(own, dtype=np.bool_)
     t, h, regime = clock[TIME], clock[STEP], whole[REGIME]
     whole[STORED], whole[EVENTS] = 0, 0
     if whole[FRESH] == 1:
@@ -497,7 +497,7 @@ def advance(
         if whole[FRESH] == 1 and m > 0:
             if (
                 _new_sides(
-                    functions, t, 0.0, y, p, asked, n, regime, own, -1, 0.0, False, active, back, g, slope, k, sides
+                    functions, t, 0.0, y, p, asked, n, regime, own, -1, 0.0, False, active, due, g, slope, k, sides
                 )
                 == -2
             ):
@@ -627,12 +627,13 @@ def advance(
                 whole[QUICK] = whole[QUICK] + 1 if near else 0
                 clock[LAST_EVENT] = t
                 for i in range(own):
-                    back[i] = transitions[then, i] == regime
+                    awaited = directions[then, i] == directions[regime, i] and sides[i] == -directions[then, i]
+                    due[i] = transitions[then, i] == regime or (transitions[regime, i] >= 0 and awaited)
                 regime = then
                 whole[REGIME] = regime
                 _directions(transitions, directions, watched, regime, active)
                 again = _new_sides(
-                    functions, t, h, y, p, asked, n, regime, own, which, side, jumped, active, back, g, slope, k, sides
+                    functions, t, h, y, p, asked, n, regime, own, which, side, jumped, active, due, g, slope, k, sides
                 )
                 if again == -2 or _call_rate(rate, t, y, p, count, regime, k[0]) != 0:
                     return REFUSED
