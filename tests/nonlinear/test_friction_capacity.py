@@ -110,6 +110,13 @@ def test_a_start_beyond_the_friction_is_refused() -> None:
         assert "\n" not in str(refusal.value)
 
 
+def test_branches_and_series_do_not_take_the_system_of_a_line_that_rubs() -> None:
+    system = tn.periodic_response(loaded(), SPEED, compare=False).orbit.system
+    for analysis in (tn.periodic_branch, tn.harmonic_balance):
+        with pytest.raises(tn.InputError, match="clutch slider 1: has dry friction, whose sliders change"):
+            analysis(system, "Disk 1.excitation 1 frequency", 55.0, 70.0)
+
+
 def test_a_line_beyond_its_friction_slips_away_in_time() -> None:
     """From rest J q″ = −(M − T) once the slider has reached where it slips: no torque is beyond T."""
     line = loaded(spring=0.0, damping=0.0, holds=3.0, series=4e3, load=5.0, force=0.0)

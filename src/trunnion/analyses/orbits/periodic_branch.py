@@ -124,6 +124,11 @@ def system_over(
 
 
 def _of_system(system: System, name: str, first: float, width: float) -> SystemOver:
+    if system.sliders:
+        raise InputError(
+            f"has dry friction, {NOT_FOLLOWED}", element=system.sliders[0],
+            remedy="find single motions with periodic_response",
+        )  # fmt: skip
     if system.with_parameters({name: first}).forcing_period is None:
         raise InputError(
             "is autonomous; only motions of a forced period are followed", element=system.name, key="period",
