@@ -91,7 +91,10 @@ def test_a_spring_that_ends_holds_what_it_ends_at() -> None:
             ]
         )
 
-    assert tn.piecewise_orbit(line(6.5)).outcome.ok
+    # Within the ends of the spring the slider stands at its lower end at most, beyond them the twist has no end.
+    (one,) = tn.piecewise_orbit(line(6.5)).continuum
+    swing = 0.2 / abs(4800.0 - INERTIA * OMEGA**2 + 0.5j * OMEGA)
+    assert one.twist_low == -np.inf and one.twist_high == pytest.approx(-(3.5 + 4e3 * swing) / 800.0, rel=1e-5)
     with pytest.raises(tn.InputError, match="more than the 7 N·m that its friction and its spring hold.*above 3.5 N"):
         tn.piecewise_orbit(line(7.5))
 
@@ -188,6 +191,45 @@ def test_the_continuum_ends_where_a_slider_comes_to_slip(beyond: float) -> None:
         else:
             assert abs(offset) > 1e-5
     assert tried
+
+
+def test_the_continuum_of_a_clutch_with_stages_ends_in_another_stage() -> None:
+    """One end lies in the middle stage, 800 N m/rad, the other all in the outer one, 2000 N m/rad beyond 30 mrad."""
+    clutch = tn.Clutch(
+        breakpoints=[-0.03, 0.03], stiffnesses=[2000.0, SPRING, 2000.0], damping=DAMPING, name="clutch",
+        friction=[{"torque": HOLDS, "stiffness": SERIES}],
+    )  # fmt: skip
+    line = tn.Driveline([tn.ConstantSpeed(), clutch, loaded().elements[2]])
+    outer = 0.03 + (LOAD + HOLDS - SERIES * _amplitude(2000.0 + SERIES) - 0.03 * SPRING) / 2000.0
+    inner = (HOLDS - SERIES * _amplitude(SPRING + SERIES) - LOAD) / SPRING
+    for found in (tn.piecewise_orbit(line), tn.periodic_response(line, SPEED, compare=False)):
+        (one,) = found.continuum
+        np.testing.assert_allclose([one.twist_low, one.twist_high], [-outer, inner], rtol=1e-5)
+
+
+@pytest.mark.parametrize("angle", ["0 deg", "8 deg"])
+def test_motions_from_other_starts_lie_within_the_continuum_and_reach_its_ends(angle: str) -> None:
+    """Bent joints and a torque by order make the motions of the continuum differ. A slider that starts at its end under
+    the torque that it then leaves to the spring slips until it just sticks: at the end of the continuum."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.HookeJoint(angle=angle),
+            *loaded().elements[1:2],
+            tn.Disk(inertia=INERTIA, load_torque=LOAD, excitation=[{"order": 1, "amplitude": FORCE}]),
+        ]
+    )
+    means = []
+    for share in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        start = [-(LOAD + share * HOLDS) / SPRING, 0.0, share * HOLDS / SERIES]
+        found = tn.periodic_response(line, OMEGA, compare=False, start=start)
+        (one,) = found.continuum
+        assert found.verdict.name == "STABLE"
+        means.append((one.twist_low, one.twist_mean, one.twist_high))
+    low, mean, high = np.array(means).T
+    assert np.ptp(low) < 1e-7 and np.ptp(high) < 1e-7
+    assert mean.min() == pytest.approx(low[0], abs=1e-7) and mean.max() == pytest.approx(high[0], abs=1e-7)
+    assert len(np.unique(np.round(mean, 5))) >= 3
 
 
 def test_without_a_spring_a_stuck_clutch_stands_anywhere() -> None:

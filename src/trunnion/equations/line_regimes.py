@@ -22,7 +22,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import beyond_capacity, sliders
 from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
 from trunnion.errors import InputError
-from trunnion.laws.stages import GUARDS, SLIDER_STAGES, STICKS, Stages, stages_of
+from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.regimes import SLACK, Regimes
 from trunnion.systems.user_functions import CFunction
@@ -172,7 +172,7 @@ class LineRegimes(Regimes):
 
     def holding(self, which: Integers, numbers: Array) -> Array:
         more = numbers.copy()
-        self._numbers(more)[which, self._core.REACH] *= 2
+        self._numbers(more)[which, self._core.REACH] *= HELD
         return more
 
     @property

@@ -34,7 +34,7 @@ from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.steady_base import imbalance, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
-from trunnion.laws.stages import Stages
+from trunnion.laws.stages import HELD, Stages
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
 Clock = Literal["speed", "frequency", "both", "none"]
@@ -128,9 +128,9 @@ class StagedLine:
         return found
 
     def holding(self, stuck: Sequence[int], value: float) -> StagedFlow:
-        """The flow at a value of the clock with the sliders in the rows ``stuck`` holding twice as much."""
+        """The flow at a value of the clock with the sliders in the rows ``stuck`` kept from slipping."""
         flow, guards = self.flow(value), self.guards.copy()
-        guards[list(stuck), :, :, 2] *= 2
+        guards[list(stuck), :, :, 2] *= HELD
         return replace(flow, guards=guards)
 
     @property

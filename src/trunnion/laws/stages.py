@@ -24,6 +24,8 @@ GUARDS = 3
 SLIPS_BACK, STICKS, SLIPS_ON = range(3)
 """Stages of a slider: slips with falling twist, sticks, slips with rising twist."""
 SLIDER_STAGES = 3
+HELD = 1e6
+"""Times what it holds, that a slider is given where it is not to slip: more than any motion asks of it."""
 
 
 @dataclass(frozen=True)

@@ -110,7 +110,7 @@ class Regimes:
         return np.zeros((0, slopes.shape[1] - 1))
 
     def holding(self, which: Integers, numbers: Array) -> Array:
-        """The numbers with which the sliders ``which`` hold twice as much."""
+        """The numbers with which the sliders ``which`` are kept from slipping."""
         return numbers
 
     def compiled(

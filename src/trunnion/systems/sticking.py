@@ -26,7 +26,7 @@ def conserved(system: System, time: float, state: Array, stuck: Integers) -> Arr
 
 
 def holding(system: System, stuck: Integers) -> System:
-    """The system in which sliders that are ``stuck`` hold twice as much, so that rounding lets none of them slip."""
+    """The system in which sliders that are ``stuck`` are kept from slipping, which rounding could let them."""
     assert system.regimes is not None
     numbers = system.regimes.holding(stuck, system.numbers)
     return system.with_fields(numbers_of=lambda values: numbers)

@@ -140,8 +140,8 @@ class LineMap(ExactMap):
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
     the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
     throughout: what it has beside the twist comes back whatever it is, and ``stuck`` holds (row, that [rad]) of each.
-    Such a slider holds twice as much here, so that rounding does not let it slip; whether it stays within what it holds
-    is asked of the motion found.
+    Such a slider is kept from slipping here, which rounding could let it; the motion found is asked whether it stays
+    within what it holds.
     """
 
     line: StagedLine

@@ -39,6 +39,13 @@ CONTACT = ("none", "upper", "lower", "both")
 """Sides touched, by the code of the measurement."""
 SETTLED = 100
 """Periods after which a motion shows which sliders stick."""
+FLAT, LONGER, MOST_FLAT = -1e-9, 4.0, 12
+"""Slope above which a spring takes up nothing of a shift; growth of the steps there, and how many are taken until it is
+taken to go on without end."""
+TRIES = 40
+"""Motions in which an end of the continuum is looked for."""
+REACHED = 1e-9
+"""Room that a slider may have left there, over the deflection at which it slips."""
 CHANCES = 2
 """Motions in which a slider is tried as one that sticks: the first may begin before the motion has settled."""
 UNDETERMINED = "not determined"
@@ -274,7 +281,7 @@ def _orbit_of_line(place: LineMap, part: Array, iterations: int) -> ExactOrbit:
     run = passage.run
     closes = float(np.max(np.abs(passage.state - part) / place.scale(start)))
     seen, rates = run.seen[:count], run.events[run.events[:, 1] < count, 4]
-    return ExactOrbit(
+    found = ExactOrbit(
         line=line,
         value=place.value,
         start=start,
@@ -294,18 +301,55 @@ def _orbit_of_line(place: LineMap, part: Array, iterations: int) -> ExactOrbit:
         slowest_crossing=float(np.abs(rates).min()) if len(rates) else float("inf"),
         iterations=iterations,
         outcome=Outcome(True, "found", f"closes to {closes:.1e} after {iterations} iterations"),
-        continuum=_continuum(place, run),
     )
+    return replace(found, continuum=_continuum(place, found, run)) if place.stuck else found
 
 
-def _continuum(place: LineMap, run: StagedPassage) -> tuple[StuckClutch, ...]:
+def _continuum(place: LineMap, orbit: ExactOrbit, run: StagedPassage) -> tuple[StuckClutch, ...]:
     """The clutches with sliders that never slip in a watched passage."""
-    line, k = place.line, kernel()
-    rows, stuck = list(line.slider_rows), [row - len(line.springs) for row, _ in place.stuck]
-    mean = run.seen[: len(line.springs), k.TWIST_SUM] / place.length
+    line, k, first = place.line, kernel(), len(place.line.springs)
+    rows, stuck = list(line.slider_rows), [row - first for row, _ in place.stuck]
+    staged = any(line.counts[line.source[row]] > 1 for row, _ in place.stuck)
+
+    def ends(own: list[int]) -> tuple[float, float]:
+        rows = [first + i for i in own]
+        return _end(place, orbit, run, rows, k.HIGH), _end(place, orbit, run, rows, k.LOW)
+
     return stuck_clutches(
-        line.assembly, line.placed, stuck, run.seen[rows, k.LOW], run.seen[rows, k.HIGH], mean
+        line.assembly, line.placed, stuck, run.seen[rows, k.LOW], run.seen[rows, k.HIGH], orbit.twist_mean,
+        ends if staged else None,
     )  # fmt: skip
+
+
+def _end(place: LineMap, orbit: ExactOrbit, run: StagedPassage, rows: list[int], side: int) -> float:
+    """Mean twist [rad] of a clutch where its sliders, in ``rows``, all just reach where they slip at the highest or the
+    lowest twist of the motion (``side``); NaN where none is found.
+
+    They do where that twist is h and they stand at ± their reach − h beside it. How far the twist then lies above h
+    falls with h, as the spring of the clutch takes up what the sliders no longer carry: by secants.
+    """
+    line, clutch, sign = place.line, int(place.line.source[rows[0]]), 1.0 if side == kernel().HIGH else -1.0
+    others = tuple((row, beside) for row, beside in place.stuck if row not in rows)
+    state, h, slope, before, flat = orbit.start, float(run.seen[clutch, side]), -1.0, (np.nan, np.nan), 0
+    for _ in range(TRIES):
+        own = tuple((row, sign * line.knots[row] - h) for row in rows)
+        tried = replace(place, stuck=tuple(sorted(others + own)))
+        root = ExactClosing(tried, tried.scale(state)).solve(state[tried.kept])
+        if not root.converged:
+            break
+        state, seen = tried.whole(root.x), tried.watched(root.x).seen
+        above = float(seen[clutch, side] - h)
+        if abs(above) <= REACHED * min(line.knots[row] for row in rows):
+            return float(seen[clutch, kernel().TWIST_SUM] / tried.length)
+        last = slope
+        if np.isfinite(before[0]):
+            slope = (above - before[1]) / (h - before[0])
+        if slope > FLAT:  # a stage in which the spring takes up nothing
+            slope, flat = last / LONGER, flat + 1
+        if flat > MOST_FLAT:
+            return -sign * np.inf
+        before, h = (h, above), h - above / slope
+    return float("nan")
 
 
 def contacts_of(place: LineMap, start: Array, run: StagedPassage) -> tuple[SpringContact, ...]:

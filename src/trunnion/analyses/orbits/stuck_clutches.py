@@ -3,12 +3,13 @@
 A slider that never slips keeps whatever deflection it came to stick at, and each makes another periodic motion: they
 form a continuum. Where the spring of the clutch has one stiffness k and the joints are straight, all have the same
 torques. A slider of stiffness kᵢ whose deflection may still move up by uᵢ and down by dᵢ until it slips then shifts the
-mean twist by −kᵢuᵢ/k to +kᵢdᵢ/k; without a spring beside it the clutch may stand at any twist.
+mean twist by −kᵢuᵢ/k to +kᵢdᵢ/k; without a spring beside it the clutch may stand at any twist. Elsewhere the motions of
+the continuum are followed to its ends.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +32,7 @@ class StuckClutch:
     """A clutch of which sliders never slip in a periodic motion, one of a continuum.
 
     sliders: their names; twist_mean: mean twist [rad] of the motion found; twist_low, twist_high: least and greatest of
-    all motions of the continuum, infinite where any twist will do, NaN where ``unknown`` says why they are not known.
+    all motions of the continuum, infinite where any twist will do, NaN where the search for them found no end.
     """
 
     clutch: str
@@ -39,15 +40,14 @@ class StuckClutch:
     twist_mean: float
     twist_low: float
     twist_high: float
-    unknown: str = ""
 
     def __str__(self) -> str:
         one = len(self.sliders) == 1
         verb, whose = ("sticks", "its multiplier 1 is") if one else ("stick", "their multipliers 1 are")
         names = ", ".join(self.sliders)
         words = f"{names} {verb} throughout ({whose} set aside), so that this motion is one of a continuum"
-        if self.unknown:
-            return f"{words}, whose range of mean twist is not known: {self.unknown}"
+        if np.isnan([self.twist_low, self.twist_high]).any():
+            return f"{words}, the end of which was not found"
         if np.isinf(self.twist_low):
             return f"{words}: {self.clutch} may stand at any mean twist"
         return (
@@ -63,7 +63,7 @@ def stuck_clutches(
     low: Array,
     high: Array,
     twist_mean: Array,
-    unknown: str = "",
+    search: Callable[[list[int]], tuple[float, float]] | None = None,
 ) -> tuple[StuckClutch, ...]:
     """The clutches with sliders that never slip.
 
@@ -72,7 +72,8 @@ def stuck_clutches(
     rubbing : all sliders of the line; stuck : places among them of those that never slip.
     low, high : least and greatest deflection of every slider (slider,) [rad] in the motion found.
     twist_mean : mean twist of every compliance [rad].
-    unknown : why a shift of the mean twist changes the motion otherwise; "" where it does not.
+    search : sliders → least and greatest mean twist [rad] of their clutch, where a shift of the mean twist changes the
+        motion otherwise; None where it does not.
     """
     found = []
     for e in dict.fromkeys(rubbing[i].compliance for i in stuck):
@@ -81,14 +82,14 @@ def stuck_clutches(
         clutch, mean = assembly.line.elements[place], float(twist_mean[e])
         assert isinstance(clutch, Clutch)
         spring = assembly.packed.values[assembly.packed.column(place, "stiffness 1")]
-        why = unknown or ("its spring has stages" if clutch.breakpoints else "")
-        up, down = np.nan, np.nan
-        if not why:
+        if search is not None:
+            ends = search(own)
+        else:
             up = sum(rubbing[i].stiffness * max(rubbing[i].reach + low[i], 0.0) for i in own)
             down = sum(rubbing[i].stiffness * max(rubbing[i].reach - high[i], 0.0) for i in own)
-            up, down = (part / spring if spring else np.inf for part in (up, down))
+            ends = (mean - down / spring, mean + up / spring) if spring else (-np.inf, np.inf)
         names = tuple(rubbing[i].name for i in own)
-        found.append(StuckClutch(assembly.line.names[place], names, mean, mean - down, mean + up, why))
+        found.append(StuckClutch(assembly.line.names[place], names, mean, *ends))
     return tuple(found)
 
 
