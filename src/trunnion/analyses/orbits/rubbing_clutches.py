@@ -27,6 +27,8 @@ TRIES = 20
 """Steps in which an end of the continuum is looked for."""
 REACHED = 1e-7
 """Room that a slider may have left there, over the deflection at which it slips."""
+UNDRIVEN = 1e-7
+"""Singular value of the closing condition, over its largest, that counts as none."""
 WAITED = 100
 """Periods after which a clutch shows whether it slips on."""
 
@@ -117,7 +119,11 @@ class _Sticking:
         """The motion of the continuum whose stuck sliders stand higher by ``room`` (slider,) [rad], to first order."""
         scale = np.asarray(self.place.system.scale)
         closes = self.run.final[1:].T * scale / scale[:, None] - np.eye(len(scale))
-        alike = scale[:, None] * np.linalg.svd(closes)[2][-len(self.stuck) :].T
+        _, sizes, directions = np.linalg.svd(
+            closes
+        )  # those that nothing drives, of a free line its rotation among them
+        count = max(len(self.stuck), int(np.sum(sizes <= UNDRIVEN * sizes[0])))
+        alike = scale[:, None] * directions[-count:].T
         shown = alike[len(scale) - len(room) + self.stuck]
         step = alike @ np.linalg.lstsq(shown, room[self.stuck], rcond=None)[0]
         root = closing_of(self.place).solve(self.start + step)
