@@ -232,6 +232,23 @@ def test_motions_from_other_starts_lie_within_the_continuum_and_reach_its_ends(a
     assert len(np.unique(np.round(mean, 5))) >= 3
 
 
+def test_a_line_that_starts_free_sticks_alike() -> None:
+    """Integrated, torques by order act where the twist has turned them, and a drive keeps the speed."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=0.3, drive_share=1, name="motor"),
+            *loaded().elements[1:2],
+            tn.Disk(inertia=INERTIA, load_torque=LOAD, excitation=[{"order": 1, "amplitude": FORCE}]),
+        ]
+    )
+    swing = FORCE / INERTIA / abs((SPRING + SERIES + 1j * OMEGA * DAMPING) * (1 / 0.3 + 1 / INERTIA) - OMEGA**2)
+    ends = (-LOAD - SERIES * np.array([1, -1]) * (HOLDS / SERIES - swing)) / SPRING
+    for found in (tn.periodic_response(line, OMEGA, compare=False), tn.piecewise_orbit(line, speed=OMEGA)):
+        (one,) = found.continuum
+        assert found.verdict.name == "STABLE"
+        np.testing.assert_allclose([one.twist_low, one.twist_high], ends, rtol=1e-3)
+
+
 def test_without_a_spring_a_stuck_clutch_stands_anywhere() -> None:
     for found in (
         tn.periodic_response(loaded(spring=0.0, load=10.0), SPEED, compare=False),

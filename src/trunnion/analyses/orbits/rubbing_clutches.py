@@ -119,9 +119,8 @@ class _Sticking:
         """The motion of the continuum whose stuck sliders stand higher by ``room`` (slider,) [rad], to first order."""
         scale = np.asarray(self.place.system.scale)
         closes = self.run.final[1:].T * scale / scale[:, None] - np.eye(len(scale))
-        _, sizes, directions = np.linalg.svd(
-            closes
-        )  # those that nothing drives, of a free line its rotation among them
+        # Directions that nothing drives: of a line that starts free its rotation is one as well.
+        _, sizes, directions = np.linalg.svd(closes)
         count = max(len(self.stuck), int(np.sum(sizes <= UNDRIVEN * sizes[0])))
         alike = scale[:, None] * directions[-count:].T
         shown = alike[len(scale) - len(room) + self.stuck]
