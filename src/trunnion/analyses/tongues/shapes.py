@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.analyses.tongues.bracketing import bracketed
-from trunnion.analyses.tongues.joining import Strand
+from trunnion.analyses.tongues.joining import Search, Strand
 from trunnion.analyses.tongues.region import FAINT, Region
 from trunnion.analyses.tongues.ridges import TIP, ridge, tips
 from trunnion.arrays import Array, Places
@@ -18,6 +19,10 @@ Point = tuple[float, float]
 NEAR_TIP = (1 / 64, 1 / 16, 1 / 4)
 """Shares of the way from a tip to the next row at which its edges are solved for: edges part there like a square
 root."""
+AT_TIP = 1e-9
+"""How far from 1 beyond its error ρ may be at a tip, whose place is solved for to as much."""
+ACROSS_TIP = 0.02
+"""Share of the way between two rows by which the rows stand above and below a tip that confirm it."""
 
 
 @dataclass
@@ -37,13 +42,22 @@ class Shape:
     inside: Array
 
 
-def shapes(region: Region, strands: list[Strand]) -> list[Shape]:
-    """Close every strand that ends inside the box at its tip."""
+class Lost(NamedTuple):
+    """An end of a strand without a tip: its last row, the next one, without it, and its interval in u on the last."""
+
+    last: float
+    beyond: float
+    low: float
+    high: float
+
+
+def shapes(region: Region, search: Search, strands: list[Strand]) -> list[Shape]:
+    """Close every strand that ends inside the box at its tip, where rows on either side confirm it."""
     ends = [(strand, end) for strand in strands for end in (0, -1) if _ends_alone(strand, end)]
     undamped = dict(zip(ends, _undamped(region, ends), strict=True))
     # Without damping one that was cut off by a side of the box before leaves through it.
     fades = {(s, end): faint and not any(s.held[end].clipped) for (s, end), faint in undamped.items()}
-    found = dict(zip(ends, _tips(region, ends), strict=True))
+    found = dict(zip(ends, _confirmed(region, search, ends, _tips(region, ends)), strict=True))
     found |= {end: None for end in ends if undamped[end] and not fades[end]}
     closed = {end: tip for end, tip in found.items() if tip is not None}
     at_sides = [end for end in ends if found[end] is None]
@@ -60,17 +74,17 @@ def shapes(region: Region, strands: list[Strand]) -> list[Shape]:
     return [shape for shape in every if not _too_faint(region, shape)]
 
 
-def lost(shaped: list[Shape]) -> Array:
-    """Rows between those where a strand ends inside the box and those next to it, where no tip was found there: it is
-    another tongue, joined or parted, that stands in its place."""
-    between = []
+def lost(shaped: list[Shape]) -> list[Lost]:
+    """Ends of strands inside the box at which no tip was found: the region goes on beyond, or is another one, joined or
+    parted, that stands in its place. A row between tells."""
+    found = []
     for shape in shaped:
         for end in (0, -1):
             last, missing = shape.strand.held[end], shape.strand.beyond[end]
             closes = shape.tips[end] is not None or shape.fades[end] or any(last.clipped)
             if missing is not None and _ends_alone(shape.strand, end) and not closes:
-                between.append((last.v + missing.v) / 2)
-    return np.unique(between)
+                found.append(Lost(last.v, missing.v, last.low, last.high))
+    return found
 
 
 def _undamped(region: Region, ends: list[End]) -> list[bool]:
@@ -111,6 +125,33 @@ def _tips(region: Region, ends: list[End]) -> list[Point | None]:
     edge = 1e-9 * (region.box.u1 - region.box.u0)
     good &= (u > region.box.u0 + edge) & (u < region.box.u1 - edge)
     return [(a, b) if ok else None for a, b, ok in zip(u.tolist(), v.tolist(), good.tolist(), strict=True)]
+
+
+def _confirmed(region: Region, search: Search, ends: list[End], found: list[Point | None]) -> list[Point | None]:
+    """Tips at which ρ is 1 to within its error, and above and below which rows differ by one interval.
+
+    A ridge that leans more than its last rows tell may leave the stretch in which the tip is looked for: what is found
+    there then is no tip, the region goes on, and a row beyond it still has the interval.
+    """
+    places = [k for k, tip in enumerate(found) if tip is not None]
+    if not places:
+        return found
+    u, v = np.array([found[k] for k in places], dtype=float).T
+    at = region.judged(u, v)
+    touches = np.abs(at.radius - 1) <= at.error + AT_TIP
+    beyond = np.array([_step_beyond(*ends[k]) for k in places])
+    either = [len(row) for row in search(np.concatenate([v - ACROSS_TIP * beyond, v + ACROSS_TIP * beyond]))]
+    inside, outside = np.array(either).reshape(2, -1)
+    good = touches & (inside > outside)
+    confirmed = {k for k, kept in zip(places, good.tolist(), strict=True) if kept}
+    return [tip if k in confirmed else None for k, tip in enumerate(found)]
+
+
+def _step_beyond(strand: Strand, end: int) -> float:
+    """From the last row of a strand to the next row, in which it is missing."""
+    missing = strand.beyond[end]
+    assert missing is not None
+    return missing.v - strand.held[end].v
 
 
 def _corners(region: Region, ends: list[End]) -> list[Array]:

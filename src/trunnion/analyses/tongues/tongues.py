@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from trunnion.analyses.charts.stability_chart import Task, chart_task
 from trunnion.analyses.linear.resonance_speeds import Resonance
 from trunnion.analyses.tongues.from_resonances import followed, in_words
 from trunnion.analyses.tongues.joining import HALVINGS, Search, Strand, joined
+from trunnion.analyses.tongues.levels import levels_of, own_value
 from trunnion.analyses.tongues.naming import resonances
 from trunnion.analyses.tongues.region import FAINT, Region, patched
 from trunnion.analyses.tongues.result import Tongue, Tongues, Unknown
@@ -75,23 +76,50 @@ def tongues(
     task = task_of(line, x, y, speed, statically_twisted, "tongues")
     workers, tell = threads or os.cpu_count() or 1, progress or (lambda share: None)
     region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
-    levels = np.sort(task.family.to_patch(np.linspace(task.y.values[0], task.y.values[-1], int(rows)), False))
+    own = own_value(task.family.assembly, task.y) if isinstance(task.family, LineFamily) else None
+    levels = np.sort(task.family.to_patch(levels_of(task.y, int(rows), own), False))
     search, words = _search(region)
-    strands, searched = joined(search, levels, lambda s: tell(0.3 + 0.5 * s))
-    shaped = shapes(region, strands)
+    regions = regions_on(region, search, levels, lambda s: tell(0.3 + 0.6 * s))
+    found = described(task, region, search, regions, words)
+    tell(1.0)
+    return found
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Regions as strands closed at their tips, and all ``rows`` that were searched for them."""
+
+    shaped: list[Shape]
+    rows: list[Row]
+
+
+def regions_on(
+    region: Region, search: Search, levels: Array, tell: Progress, known: Sequence[Row] = ()
+) -> Regions:
+    """Regions that meet the rows ``levels`` or those ``known``, with as many rows between as it takes to close them."""
+    strands, rows = joined(search, levels, lambda s: tell(0.9 * s), known)
+    shaped = shapes(region, search, strands)
     for _ in range(HALVINGS):
-        if not len(between := lost(shaped)):
+        if not len(open_ends := lost(shaped)):
             break
-        strands, searched = joined(search, between, lambda s: None, searched)
-        shaped = shapes(region, strands)
-    tell(0.9)
+        between = np.unique([(end.last + end.beyond) / 2 for end in open_ends])
+        strands, rows = joined(search, between, lambda s: None, rows)
+        shaped = shapes(region, search, strands)
+    tell(1.0)
+    return Regions(shaped, rows)
+
+
+def described(
+    task: Task, region: Region, search: Search, regions: Regions, words: Callable[[list[Strand]], str]
+) -> Tongues:
+    """The result: names, growth rates and what was searched."""
+    shaped, searched = regions.shaped, regions.rows
     places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
     growths, names = _growths(region, shaped), _names(region, shaped)
     find = _finder(region, search)
     found = [_tongue(task, region, find, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
-    tell(1.0)
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
-    unknown = _unknown(region, searched)
+    untold, open_ends = _unknown(region, searched), _open_ends(region, shaped)
     unit = speed_unit(task.line) if task.line else None
     across, up = (parameter_axis(axis.label, axis.unit, unit) for axis in (task.x, task.y))
     return Tongues(
@@ -105,12 +133,13 @@ def tongues(
         "1/s" if task.line is not None else "1",
         len(searched),
         float(np.abs(steps).max()),
-        region.by_coefficients and not region.uncovered,
+        region.by_coefficients and not region.uncovered and not untold and not open_ends,
         _search_words(region, len(searched), up.number(float(np.abs(steps).max()), 3))
         + words([shape.strand for shape in shaped])
         + _faint_words(shaped)
-        + _unknown_words(unknown, across, up),
-        unknown,
+        + _unknown_words(untold, across, up)
+        + _open_words(open_ends, up),
+        tuple(sorted((*untold, *open_ends), key=lambda place: (place.y, place.x))),
         task.line,
         task.remarks,
         find,
@@ -171,6 +200,23 @@ def _faint_words(shaped: list[Shape]) -> str:
     if not any(any(shape.fades) for shape in shaped):
         return ""
     return f"; without damping, what grows by less than {FAINT:g} a period cannot be told from what does not grow"
+
+
+def _open_ends(region: Region, shaped: list[Shape]) -> tuple[Unknown, ...]:
+    """Ends of regions that were not found: between their last row and the next nothing is known."""
+    found = []
+    for end in lost(shaped):
+        y, beyond = (float(region.y(np.array(v))) for v in (end.last, end.beyond))
+        ((low, high),) = region.in_x(np.array([end.low]), np.array([end.high])).tolist()
+        found.append(Unknown(y, (low, high), (min(y, beyond), max(y, beyond))))
+    return tuple(found)
+
+
+def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
+    if not open_ends:
+        return ""
+    first, many = open_ends[0], "1 region" if len(open_ends) == 1 else f"{len(open_ends)} regions"
+    return f"; where {many} end was not found, first between {up.said(np.array(first.between))}"
 
 
 def _search(region: Region) -> tuple[Search, Callable[[list[Strand]], str]]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.analyses.tongues.levels import DAMPING
 from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.tongues import ROWS, tongues
 from trunnion.arrays import Array
@@ -26,8 +27,6 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.speeds import show_speed
 
 Progress = Callable[[float], None]
-DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
-"""Numbers of a description that damp."""
 UNKNOWN = "no answer"
 """Region of an end beyond which it could not be told whether the motion grows."""
 
