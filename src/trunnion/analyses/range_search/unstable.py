@@ -94,9 +94,9 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> Unstab
         low = high
     even = np.linspace(low, high, points)
     octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
-    met, damping, width = _meetings(span, low, high)
+    met, damping, width = meetings(span, low, high)
     along = judge(np.unique(np.concatenate([even, octaves, met])))
-    along = _beside_meetings(along, judge, met, damping, width, (low, high))
+    along = _beside_met(along, judge, met, damping, width, (low, high))
     for _ in range(ROUNDS):
         wanted = _rising(along)
         if not len(wanted):
@@ -121,7 +121,7 @@ def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
     return slow, (Gap(max(slow, span.low), least, why),), begin
 
 
-def _meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
+def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
     """Speeds (meeting,) at which two exponents meet, the decay of the slower mode [1/s] there, and half of the stretch
     [rad/s] over which they can grow."""
     modes, none = Modes.of(span), np.zeros(0)
@@ -191,7 +191,7 @@ def _unevenness(span: Span) -> float:
     return joints + sum(float(np.abs(wave.share).sum(axis=1).max()) for wave in coefficients.waves)
 
 
-def _beside_meetings(
+def _beside_met(
     along: StabilityAlong, judge: Judge, met: Array, decay: Array, width: Array, ends: tuple[float, float]
 ) -> StabilityAlong:
     """With two speeds beside every meeting at which growth stands out."""

@@ -12,6 +12,8 @@ LOOKS = 9
 """Points across the window in each round."""
 ROUNDS = 3
 """Rounds of looking, each a quarter as wide as the one before."""
+SMOOTH, ROUNDING = 1e-7, 1e-13
+"""Looking closer ends where a quartic fits to this share of what heights differ by, and to their rounding."""
 TIP = 1e-13
 """How closely the height of a tip is solved, as a share of the box."""
 ASIDE = 1e-3
@@ -35,7 +37,15 @@ def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Arr
         known = np.where(np.isfinite(height - error), height - error, -np.inf)
         here = known.argmax(axis=1)[:, None]
         best, top = np.take_along_axis(u, here, 1)[:, 0], np.take_along_axis(known, here, 1)[:, 0]
+        if np.all(_misfit(height) < SMOOTH * np.ptp(height, axis=1) + ROUNDING):
+            break
     return _fitted(u, height, np.take_along_axis(error, here, 1)[:, 0], best, top, centre, half)
+
+
+def _misfit(height: Array) -> Array:
+    """How far a quartic passes by points (ridges, LOOKS) at most; infinite where one is not known."""
+    off = height - np.where(np.isfinite(height), height, 0.0) @ (np.vander(_T, 5, increasing=True) @ _FIT).T
+    return np.asarray(np.where(np.isfinite(off), np.abs(off), np.inf).max(axis=1))
 
 
 def _fitted(

@@ -92,7 +92,7 @@ def unstable_intervals(region: Region, v: Array) -> list[Row]:
     v = np.atleast_1d(np.asarray(v, dtype=float))
     found = (_zeros(piece) if region.by_coefficients else _sampled(region, piece) for piece in region.pieces(v))
     row, at, close_row, close = (np.concatenate(part) for part in zip(*chain.from_iterable(found), strict=True))
-    return _settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
+    return settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
 
 
 def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
@@ -103,8 +103,7 @@ def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[R
     ends = [np.concatenate([rows[k].low[~rows[k].clipped[:, 0]], rows[k].high[~rows[k].clipped[:, 1]]]) for k in known]
     peaks, close = [rows[k].inside for k in known], [stretches[k] for k in known]
     v = np.array([rows[k].v for k in known])
-    settled = _settled(region, v, _of_rows(ends), _of_rows(peaks), _of_rows(close))
-    found = dict(zip(known, settled, strict=True))
+    found = dict(zip(known, settled(region, v, _of_rows(ends), _of_rows(peaks), _of_rows(close)), strict=True))
     return [replace(found[k], unknown=row.unknown) if k in found else row for k, row in enumerate(rows)]
 
 
@@ -168,7 +167,7 @@ def _multipliers(region: Region, entries: Array) -> Complex:
     return values
 
 
-def _settled(
+def settled(
     region: Region, v: Array, marks: tuple[Places, Array], peaks: tuple[Places, Array], close: tuple[Places, Array]
 ) -> list[Row]:
     """Verdicts of the gaps between marks, then edges where they change.

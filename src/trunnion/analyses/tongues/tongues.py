@@ -35,6 +35,8 @@ from trunnion.systems.family import PeriodicLinearFamily
 
 Range = Sequence[object]
 Progress = Callable[[float], None]
+Words = Callable[[str, list[Strand]], str]
+"""How rows were searched, from how many there are and how far apart, and from the strands found."""
 
 ROWS = 65
 PATCH_TOLERANCE = 1e-11
@@ -93,9 +95,7 @@ class Regions:
     rows: list[Row]
 
 
-def regions_on(
-    region: Region, search: Search, levels: Array, tell: Progress, known: Sequence[Row] = ()
-) -> Regions:
+def regions_on(region: Region, search: Search, levels: Array, tell: Progress, known: Sequence[Row] = ()) -> Regions:
     """Regions that meet the rows ``levels`` or those ``known``, with as many rows between as it takes to close them."""
     strands, rows = joined(search, levels, lambda s: tell(0.9 * s), known)
     shaped = shapes(region, search, strands)
@@ -109,9 +109,7 @@ def regions_on(
     return Regions(shaped, rows)
 
 
-def described(
-    task: Task, region: Region, search: Search, regions: Regions, words: Callable[[list[Strand]], str]
-) -> Tongues:
+def described(task: Task, region: Region, search: Search, regions: Regions, words: Words) -> Tongues:
     """The result: names, growth rates and what was searched."""
     shaped, searched = regions.shaped, regions.rows
     places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
@@ -134,8 +132,10 @@ def described(
         len(searched),
         float(np.abs(steps).max()),
         region.by_coefficients and not region.uncovered and not untold and not open_ends,
-        _search_words(region, len(searched), up.number(float(np.abs(steps).max()), 3))
-        + words([shape.strand for shape in shaped])
+        words(
+            f"{len(searched)} rows, at most {up.number(float(np.abs(steps).max()), 3)} apart,",
+            [shape.strand for shape in shaped],
+        )
         + _faint_words(shaped)
         + _unknown_words(untold, across, up)
         + _open_words(open_ends, up),
@@ -162,8 +162,8 @@ def task_of(
     return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis)
 
 
-def _search_words(region: Region, rows: int, step: str) -> str:
-    apart = f"{rows} rows, at most {step} apart,"
+def rows_in_words(region: Region, apart: str) -> str:
+    """How rows ``apart`` were searched."""
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
         return (
@@ -219,17 +219,20 @@ def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
     return f"; where {many} end was not found, first between {up.said(np.array(first.between))}"
 
 
-def _search(region: Region) -> tuple[Search, Callable[[list[Strand]], str]]:
+def _search(region: Region) -> tuple[Search, Words]:
     """How rows are searched, and what there is to say of it when tongues are known."""
     alone = ""
     if not region.by_coefficients:
         found = followed(region)
         if found is not None:
-            return found.rows, lambda strands: "; " + in_words(found, [s.by for s in strands])
+            return (
+                found.rows,
+                lambda apart, strands: f"{rows_in_words(region, apart)}; {in_words(found, [s.by for s in strands])}",
+            )
         line = isinstance(region.family, LineFamily)
         why = "x is no speed" if line else "a family of your own has no straight line"
         alone = f"; resonances were not followed, as {why}"
-    return lambda v: unstable_intervals(region, v), lambda strands: alone
+    return lambda v: unstable_intervals(region, v), lambda apart, strands: rows_in_words(region, apart) + alone
 
 
 def _finder(region: Region, search: Search) -> Callable[[float], Array]:

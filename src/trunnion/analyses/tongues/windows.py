@@ -14,12 +14,14 @@ import numpy as np
 
 from trunnion.analyses.tongues.levels import DAMPING
 from trunnion.analyses.tongues.result import Tongue, Tongues
-from trunnion.analyses.tongues.tongues import ROWS, tongues
+from trunnion.analyses.tongues.tongues import task_of
+from trunnion.analyses.tongues.window_search import UNKNOWN, Seen, searched
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import one_number
+from trunnion.driveline.arguments import one_number, quantity, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter, Term
+from trunnion.driveline.quantities import SPEED
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remarks
@@ -27,8 +29,6 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.speeds import show_speed
 
 Progress = Callable[[float], None]
-UNKNOWN = "no answer"
-"""Region of an end beyond which it could not be told whether the motion grows."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,8 @@ class StableWindows(Result):
     """Ranges ``windows`` (windows, 2) of ``parameter``, rising, in which every speed of ``speeds`` [rad/s] is stable.
 
     ends: what begins beyond each end of each window; low, high: the range searched; margin: by which share the speeds
-    asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it.
+    asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it;
+    confirmed (speed,) [rad/s]: speeds at each of which the whole range was searched, and the windows found stable.
     """
 
     parameter: str
@@ -59,6 +60,7 @@ class StableWindows(Result):
     search: str
     speed_unit: str
     tongues: Tongues
+    confirmed: Array
 
     @property
     def largest(self) -> float | None:
@@ -131,7 +133,7 @@ def stable_windows(
     speeds: tuple[float, float],
     *,
     margin: float = 0.0,
-    rows: int = ROWS,
+    rows: int | None = None,
     statically_twisted: bool = True,
     progress: Progress | None = None,
 ) -> StableWindows:
@@ -140,9 +142,9 @@ def stable_windows(
     Parameters
     ----------
     parameter, low, high : as of a chart's axis, SI units.
-    speeds : (lowest, highest) input speed [rad/s].
+    speeds : (lowest, highest) input speed [rad/s], or texts as ("300 rpm", "2400 rpm").
     margin : share by which the speeds are widened at either end, 0.1 for 10 %.
-    rows : values of the parameter searched to begin with; see ``tongues``.
+    rows : values of the parameter searched to begin with; by default 65, of lines of more than three unknowns 17.
 
     Raises
     ------
@@ -150,17 +152,19 @@ def stable_windows(
     """
     if not 0 <= one_number(margin, "margin", "0.1 for 10 %") < 0.9:
         raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
-    _require_speeds(speeds)
+    asked = _read_speeds(speeds)
     assembly = assemble(line)
-    span = (speeds[0] * (1 - margin), speeds[1] * (1 + margin))
-    found = tongues(
-        assembly, ("speed", *span), (parameter, low, high),
-        rows=rows, statically_twisted=statically_twisted, progress=progress,
-    )  # fmt: skip
-    windows, ends = _free_of(found)
+    span = (asked[0] * (1 - margin), asked[1] * (1 + margin))
+    task = task_of(assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues")
+    found, columns = searched(
+        task, None if rows is None else whole_number(rows, "rows", 3), progress or (lambda share: None)
+    )
+    windows, ends = _free_of(found, columns)
+    # A range that reaches below the slowest turn that can be computed was searched from there on.
+    begin = asked[0] if found.x_range[0] <= span[0] * (1 + 1e-12) else found.x_range[0]
     return StableWindows(
-        found.y_label, found.y_unit, windows, ends, (float(speeds[0]), float(speeds[1])), float(margin),
-        *found.y_range, found.search, speed_unit(assembly.line), found,
+        found.y_label, found.y_unit, windows, ends, (begin, asked[1]), float(margin),
+        *found.y_range, found.search, speed_unit(assembly.line), found, np.sort([column.x for column in columns]),
     )  # fmt: skip
 
 
@@ -171,7 +175,7 @@ def minimum_damping(
     damping: str | Parameter | None = None,
     maximum: float = 100.0,
     margin: float = 0.0,
-    rows: int = ROWS,
+    rows: int | None = None,
     progress: Progress | None = None,
 ) -> StableWindows:
     """All ranges of damping, up to ``maximum``, that keep every speed from one to another stable.
@@ -222,21 +226,23 @@ def _why(end: End | None, unit: str) -> str:
     return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, unit)})"
 
 
-def _require_speeds(speeds: object) -> None:
-    good = isinstance(speeds, tuple | list) and len(speeds) == 2 and all(isinstance(s, int | float) for s in speeds)
-    if not good or not 0 < speeds[0] < speeds[1]:  # type: ignore[index]
-        raise InputError(
-            "must be two rising positive speeds", key="speeds", value=speeds, remedy="(tn.rpm(300), tn.rpm(2400))"
-        )
+def _read_speeds(speeds: object) -> tuple[float, float]:
+    if isinstance(speeds, tuple | list) and len(speeds) == 2:
+        low, high = (quantity(speed, SPEED, "speeds") for speed in speeds)
+        if 0 < low < high:
+            return low, high
+    raise InputError(
+        "must be two rising positive speeds", key="speeds", value=speeds, remedy="(tn.rpm(300), tn.rpm(2400))"
+    )
 
 
-def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:
-    """What of the range no tongue covers and is known, and what ends each part."""
+def _free_of(found: Tongues, columns: list[Seen]) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:
+    """What of the range no tongue and no unstable range of a column covers and is known, and what ends each part."""
     low, high = found.y_range
     windows: list[tuple[float, float]] = []
     ends: list[tuple[End | None, End | None]] = []
     at, below = low, None
-    for begin, end, first, last in sorted(_unfit(found), key=lambda part: part[0]):
+    for begin, end, first, last in sorted([*_unfit(found), *_seen(columns)], key=lambda part: part[0]):
         if begin > at:
             windows.append((at, begin))
             ends.append((below, first))
@@ -246,6 +252,13 @@ def _free_of(found: Tongues) -> tuple[Array, tuple[tuple[End | None, End | None]
         windows.append((at, high))
         ends.append((below, None))
     return np.array(windows).reshape(-1, 2), tuple(ends)
+
+
+def _seen(columns: list[Seen]) -> Iterator[tuple[float, float, End, End]]:
+    """Unstable and unknown ranges of columns that regions leave out."""
+    for column in columns:
+        for begin, end, name in column.left_out:
+            yield begin, end, End(column.x, name), End(column.x, name)
 
 
 def _unfit(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
