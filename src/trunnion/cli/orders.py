@@ -125,9 +125,11 @@ def stable_limit(
     ] = "HookeJoint *.angle",
     speeds: Speeds = None,
     margin: Annotated[
-        float | None,
-        typer.Option("--margin", help="Also every speed between, the range widened by this share; 0.1 for 10 %."),
-    ] = None,
+        float, typer.Option("--margin", help="Share by which the speeds between are widened, 0.1 for 10 %.")
+    ] = 0.0,
+    between: Annotated[
+        bool, typer.Option("--between/--listed", help="Every speed between too, or those listed alone.")
+    ] = True,
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
@@ -144,7 +146,9 @@ def stable_limit(
     at = _speeds(line, speeds, unit, points=FEW, even=True)
     check_places(to)
     with output.progress("stable limit") as advance:
-        result = tn.stable_limit(line, label, at, low=low, high=high, margin=margin, scan=points - 1, progress=advance)
+        result = tn.stable_limit(
+            line, label, at, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=advance
+        )
     deliver(
         "stable-limit", file, result, to, as_json,
         draw=lambda: result.plot(unit=unit, operating=line.operation), table=_in_unit(result.data, unit),

@@ -233,7 +233,7 @@ def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[
     cases = [place.line, *(place.line.with_load(c.name) for c in (operation.load_cases if operation else ()))]
     speeds = np.unique(np.linspace(*span, LIMIT_SPEEDS))
     speeds = speeds[speeds > 0]
-    found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1]).limit for case in cases]
+    found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1], between=False).limit for case in cases]
     return float(np.min(np.concatenate(found)))  # unknown at one of them is unknown
 
 

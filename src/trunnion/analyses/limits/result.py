@@ -57,8 +57,8 @@ class StableLimit(Described):
     of ``LimitKind``; unstable: of each speed its unstable ranges (ranges, 2), rising; low, high: the range searched;
     complete: whether every zero of the boundary functions was found, which ``search`` puts in words; others: limits of
     the description, and ``others_search`` how they were looked for; whole: the same for every speed between the
-    lowest and the highest, where a margin was asked for; ``findings`` say what of the line is left out; speed_unit:
-    that speeds are printed in.
+    lowest and the highest, None of a single speed and where the listed ones alone were asked for; ``findings`` say what
+    of the line is left out; speed_unit: that speeds are printed in.
     """
 
     parameter: str

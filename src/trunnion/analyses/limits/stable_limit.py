@@ -49,7 +49,8 @@ def stable_limit(
     *,
     low: float = 0.0,
     high: float = HIGHEST,
-    margin: float | None = None,
+    margin: float = 0.0,
+    between: bool = True,
     scan: int = SCAN,
     tolerance: float = PATCH_TOLERANCE,
     progress: Progress | None = None,
@@ -61,8 +62,9 @@ def stable_limit(
     parameter : as for a chart: "HookeJoint 1.angle", "HookeJoint *.angle", "factor of Shaft *.stiffness".
     speeds : one or more input speeds [rad/s].
     low, high : range that is searched, SI units; by default 0 to 60° for angles.
-    margin : asks for the stable ranges of every speed between the lowest and the highest too, widened by this share at
-        either end (``whole`` in the result; see ``stable_windows``).
+    margin : share by which the range from the lowest to the highest speed is widened at either end for ``between``.
+    between : answers for every speed between the lowest and the highest too (``whole`` in the result; see
+        ``stable_windows``); False for the speeds alone.
     scan : steps of the grid on which the limits of the description are compared.
     tolerance : of the patches that tell where to look; edges are solved for by themselves.
 
@@ -99,11 +101,12 @@ def stable_limit(
     at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
     rows = _rows(region, at)
     tell(0.7)
-    end = 1.0 if margin is None else 0.8
+    every = between and len(at) > 1
+    end = 0.8 if every else 1.0
     span = float(task.x.values[0]), float(task.x.values[-1])
     others = other_limits(assembly, task.x.columns, at, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s))
     whole = None
-    if margin is not None:
+    if every:
         whole = stable_windows(
             assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
         )

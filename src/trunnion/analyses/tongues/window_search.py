@@ -30,10 +30,8 @@ from trunnion.analyses.tongues.tongues import (
     ROWS,
     Progress,
     Regions,
-    Words,
     described,
     regions_on,
-    rows_in_words,
 )
 from trunnion.arrays import Array
 
@@ -42,8 +40,8 @@ ROUNDS = 6
 EVENLY, SAMPLED = 17, 9
 """Columns at equal steps of the speed, and those of lines whose columns are sampled."""
 ROWS_OF_LONG_LINES = 17
-AT_LEVELS = 8
-"""Every so many levels each resonance that may open has a column."""
+AT_LEVELS = 4
+"""Every so many levels the resonances that may open are looked for; every other time each has a column."""
 APART = 1e-4
 """Columns at resonances nearer to each other than this share of the box are one."""
 FINER = 2
@@ -70,7 +68,7 @@ class _Ways:
     region: Region
     rows: Search
     columns: ColumnSearch
-    words: Words
+    words: Callable[[str, int], str]
 
 
 def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, list[Seen]]:
@@ -82,12 +80,13 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
     values = levels_of(task.y, rows, own_value(family.assembly, task.y))
     levels = np.sort(family.to_patch(values, False))
     ways = _ways(task, family, levels, lambda s: tell(0.3 * s))
-    met = [AlongRows(family).met(float(y)) for y in ways.region.y(levels)]
+    some = np.unique(np.append(levels[::AT_LEVELS], levels[-1]))
+    met = [AlongRows(family).met(float(y)) for y in ways.region.y(some)]
     # A sampled column costs far more than a row, and such rows look at every meeting themselves.
     resonances = np.concatenate(
         [speed for speed, _ in met[::AT_LEVELS] if ways.region.by_coefficients] or [np.zeros(0)]
     )
-    levels = np.unique(np.concatenate([levels, tops(levels, met)]))
+    levels = np.unique(np.concatenate([levels, tops(some, met)]))
     regions = regions_on(ways.region, ways.rows, levels, lambda s: tell(0.3 + 0.3 * s))
     columns: list[Column] = []
     for k in range(ROUNDS):
@@ -98,7 +97,8 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
         if not len(wanted):
             break
         regions = regions_on(ways.region, ways.rows, wanted, lambda s: None, regions.rows)
-    found = described(task, ways.region, ways.rows, regions, ways.words)
+    words = ways.words
+    found = described(task, ways.region, ways.rows, regions, lambda apart, strands: words(apart, len(columns)))
     tell(1.0)
     return found, [_seen(ways.region, regions, column) for column in columns]
 
@@ -110,13 +110,20 @@ def _ways(task: Task, family: LineFamily, levels: Array, tell: Callable[[float],
         finer = np.interp(np.arange(FINER * (len(levels) - 1) + 1) / FINER, np.arange(len(levels)), levels)
         return _Ways(
             region, rows_by_meetings(region, family), sampled_columns(region, finer),
-            lambda apart, strands: f"{apart} {WORDS}",
+            lambda apart, columns: f"{apart} {WORDS}; columns were sampled at {columns} speeds",
         )  # fmt: skip
     region = patched(family, task.x.values, task.y.values, PATCH_TOLERANCE, threads, tell)
     return _Ways(
         region, partial(unstable_intervals, region), complete_columns(region),
-        lambda apart, strands: rows_in_words(region, apart),
+        lambda apart, columns: _in_words(region, apart, columns),
     )  # fmt: skip
+
+
+def _in_words(region: Region, apart: str, columns: int) -> str:
+    both = f"{apart} and columns at {columns} speeds"
+    if region.uncovered:
+        return f"{both} were searched; {region.uncovered} parts of the box resisted and were sampled"
+    return f"{both} were searched completely; a region that meets neither is not listed"
 
 
 def _places(region: Region, regions: Regions, resonances: Array) -> Array:
@@ -136,7 +143,9 @@ def _left_out(region: Region, regions: Regions, column: Column) -> list[tuple[fl
     sliver = SLIVER * (region.box.v1 - region.box.v0)
     known = [(low - sliver, high + sliver) for low, high in _covered(regions)]
     parts = [(a, b, UNNAMED) for a, b in column.unstable.tolist()]
-    parts += [(a, b, UNKNOWN) for a, b in column.unknown.tolist()]
+    # Between two zeros the verdict does not change: a row that crosses there has told it, or is unknown itself.
+    heights = np.array([row.v for row in regions.rows])
+    parts += [(a, b, UNKNOWN) for a, b in column.unknown.tolist() if not np.any((heights >= a) & (heights <= b))]
     return [(a, b, name) for begin, end, name in parts for a, b in _without(begin, end, known)]
 
 

@@ -46,7 +46,8 @@ class StableWindows(Result):
 
     ends: what begins beyond each end of each window; low, high: the range searched; margin: by which share the speeds
     asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it;
-    confirmed (speed,) [rad/s]: speeds at each of which the whole range was searched, and the windows found stable.
+    confirmed (speed,) [rad/s]: speeds at each of which the whole range was searched, and the windows found stable;
+    complete: whether every row and column was searched for every zero and told everywhere, and every tip confirmed.
     """
 
     parameter: str
@@ -61,6 +62,7 @@ class StableWindows(Result):
     speed_unit: str
     tongues: Tongues
     confirmed: Array
+    complete: bool
 
     @property
     def largest(self) -> float | None:
@@ -93,7 +95,11 @@ class StableWindows(Result):
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
             begin = f"{self._value(low)}{_why(below, unit)}"
             parts.append(f"from {begin} to {self._value(high)}{_why(above, unit)}")
-        return f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}."
+        how = "confirmed" if self.complete else "checked"
+        return (
+            f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}; "
+            f"{how} at {len(self.confirmed)} speeds."
+        )
 
     def _value(self, value: float) -> str:
         if self.unit == "rad":
@@ -114,6 +120,8 @@ class StableWindows(Result):
             margin=self.margin,
             range=[self.low, self.high],
             search=self.search,
+            complete=int(self.complete),
+            confirmed=self.confirmed.tolist(),
             sentence=self.sentence,
         )
 
@@ -165,6 +173,7 @@ def stable_windows(
     return StableWindows(
         found.y_label, found.y_unit, windows, ends, (begin, asked[1]), float(margin),
         *found.y_range, found.search, speed_unit(assembly.line), found, np.sort([column.x for column in columns]),
+        found.complete and not any(column.left_out for column in columns),
     )  # fmt: skip
 
 

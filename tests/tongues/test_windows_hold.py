@@ -1,0 +1,87 @@
+"""Windows of random lines against radii integrated without the package: none holds an unstable point, every end has
+radius one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from two_disks import TwoDisks
+
+import trunnion as tn
+from trunnion.analyses.tongues.window_search import UNKNOWN, UNNAMED
+
+PLACES = {
+    "Shaft 1.damping": "c1",
+    "Shaft 2.damping": "c2",
+    "Shaft 1.stiffness": "k1",
+    "Shaft 2.stiffness": "k2",
+    "Disk 1.inertia": "j1",
+    "Disk 2.inertia": "j2",
+    "HookeJoint 1.angle": "angle",
+}
+POINTS = 1000
+KNOWN = 1e-7
+"""To which radii of the integration here are compared."""
+
+
+def random_box(seed: int) -> tuple[TwoDisks, str, float, float, tuple[float, float]]:
+    """A line, a parameter with its range, and a wide or narrow range of speeds at one of the line's resonances."""
+    rng = np.random.default_rng(seed)
+    k1, k2, j1, j2 = (10 ** rng.uniform(-0.5, 0.5, 4)).tolist()
+    share = (10 ** rng.uniform(-4, -1.5, 2)).tolist()
+    line = TwoDisks(k1, share[0] * np.sqrt(k1 * j1), j1, float(rng.uniform(0.1, 0.7)), k2, share[1] * k2, j2)
+    name = str(rng.choice(list(PLACES)))
+    own = getattr(line, PLACES[name])
+    low, high = {"damping": (0.01 * own, 100 * own), "angle": (0.0, 1.1)}.get(name.split(".")[1], (own / 3, 3 * own))
+    first, second = line.frequencies()
+    middle = rng.choice([first, second, (first + second) / 2, first / 2, second / 2]) * rng.uniform(0.97, 1.03)
+    wide = rng.uniform(0.1, 0.6) if seed % 2 else 10 ** rng.uniform(-4, -1.5)
+    return line, name, float(low), float(high), (float(middle * (1 - wide)), float(middle * (1 + wide)))
+
+
+def points_in(found: tn.analyses.tongues.windows.StableWindows, rng: np.random.Generator) -> tuple[np.ndarray, ...]:
+    """Speeds and values (points,) in the windows: all over, near their ends, and at both ends of the speeds."""
+    low, high = found.windows[rng.integers(len(found.windows), size=POINTS)].T
+    share = np.where(rng.random(POINTS) < 0.5, rng.random(POINTS), 10 ** rng.uniform(-6, 0, POINTS))
+    share = np.where(rng.random(POINTS) < 0.5, share, 1 - share)
+    speed = rng.uniform(*found.speeds, POINTS)
+    at_end = rng.random(POINTS) < 0.2
+    return np.where(at_end, rng.choice(found.speeds, POINTS), speed), low + share * (high - low)
+
+
+def radii(line: TwoDisks, name: str, speed: np.ndarray, value: np.ndarray) -> np.ndarray:
+    return line.radius(speed, **{PLACES[name]: value})
+
+
+def check(seed: int) -> tuple[int, int, int]:
+    """How many windows and ends are stated, and how many of either are named unknown."""
+    line, name, low, high, speeds = random_box(seed)
+    found = tn.stable_windows(line.line(), name, low, high, speeds)
+    rng = np.random.default_rng(seed)
+    if len(found.windows):
+        speed, value = points_in(found, rng)
+        over = radii(line, name, speed, value) - 1
+        worst = int(over.argmax())
+        assert over[worst] < KNOWN, (seed, name, found.sentence, speed[worst], value[worst], over[worst])
+    ends = [
+        (e, value) for w, pair in zip(found.windows, found.ends, strict=True) for e, value in zip(pair, w, strict=True)
+    ]
+    known = [(e.speed, value) for e, value in ends if e is not None and e.region not in (UNKNOWN, UNNAMED)]
+    if known:
+        speed, value = np.array(known).T
+        off = np.abs(radii(line, name, speed, value) - 1)
+        assert off.max() < KNOWN, (seed, name, found.sentence, off)
+    return len(found.windows), len(known), sum(e is not None for e, _ in ends) - len(known)
+
+
+# For a plain look at what they are like: 2 and 7 are narrow and wide boxes of a damping, 1 of a stiffness.
+@pytest.mark.parametrize("seed", range(8))
+def test_random_windows_hold(seed: int) -> None:
+    check(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.study
+@pytest.mark.parametrize("seed", range(100, 400))
+def test_many_random_windows_hold(seed: int) -> None:
+    check(seed)
