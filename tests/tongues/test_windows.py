@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import two_shafts
+from two_disks import TwoDisks
 
 import trunnion as tn
 from trunnion.analyses.limits.result import LimitKind
 from trunnion.analyses.tongues.region import Region
-from trunnion.analyses.tongues.windows import UNKNOWN
+from trunnion.analyses.tongues.window_search import UNKNOWN
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +72,70 @@ def test_no_window_at_all() -> None:
     line = tn.catalogue("two-shaft-cardan", angle=0.5)
     found = tn.minimum_damping(line, (1.5, 1.6), maximum=2.0, rows=5)
     assert len(found.windows) == 0 and found.smallest is None and "No factor" in found.sentence
+
+
+FAINT = TwoDisks(1.0, 1e-4, 1.0, 0.3, 1.0, 0.005, 1.0)
+
+
+@pytest.mark.parametrize("maximum", [0.1, 100.0])
+def test_damping_is_searched_over_decades(maximum: float) -> None:
+    """Unstable from 0.00033 to 0.0135, which is less than a step of 65 even rows up to 100; its ends lie at the lowest
+    speed."""
+    found = tn.minimum_damping(FAINT.line(), (1.12774, 1.2), damping="Shaft 2.damping", maximum=maximum)
+    assert found.complete and len(found.windows) == 2 and found.windows[-1, 1] == maximum
+    ends = np.array([found.windows[0, 1], found.windows[1, 0]])
+    assert ends == pytest.approx([0.00033, 0.0135], rel=0.01)
+    assert FAINT.radius(np.full(2, 1.12774), c2=ends) == pytest.approx([1.0, 1.0], abs=1e-8)
+    inside = FAINT.radius(np.full(3, 1.12774), c2=np.array([0.0004, 0.005, 0.01]))
+    assert np.all(inside > 1 + 1e-6)
+    assert f"; confirmed at {len(found.confirmed)} speeds." in found.sentence
+
+
+def test_a_region_that_crosses_few_speeds_between_two_rows() -> None:
+    """A box a thousandth wide: the region runs through it from side to side within half a row."""
+    line = TwoDisks(1.0, 1e-3, 1.0, 0.2, 1.0, 1e-3, 1.0)
+    found = tn.stable_windows(line.line(), "Shaft 2.stiffness", 0.3, 3.0, (1.1, 1.1011))
+    (_, first), (second, _) = found.windows
+    assert found.ends[0][1].speed == 1.1 and found.ends[1][0].speed == 1.1011
+    assert line.radius(np.array([1.1, 1.1011]), k2=np.array([first, second])) == pytest.approx([1, 1], abs=1e-8)
+    assert line.radius(np.array([1.1005]), k2=np.array([(first + second) / 2]))[0] > 1 + 1e-3
+
+
+@pytest.mark.parametrize("rows", [17, 33])
+def test_a_leaning_region_is_followed_to_its_tip(rows: int) -> None:
+    """Its ridge leans by more than its width from row to row, so that the stretch about the last row's loses it."""
+    line = TwoDisks(2.4188, 0.00932267, 0.476885, 0.3, 0.8158147, 0.00314435, 1.5236)
+    found = tn.stable_windows(line.line(), "Shaft 2.stiffness", 0.2447, 2.4474, (0.3, 1.2), rows=rows)
+    end = found.ends[0][1]
+    assert end is not None and found.largest == pytest.approx(0.25479, abs=1e-5)
+    assert line.radius(np.array([end.speed]), k2=np.array([found.largest]))[0] == pytest.approx(1.0, abs=1e-8)
+    speeds = np.linspace(end.speed * 0.999, end.speed * 1.001, 401)
+    above, below = (line.radius(speeds, k2=np.full(401, found.largest * (1 + k))).max() for k in (1e-4, -1e-4))
+    assert below < 1 < above
+
+
+def test_speeds_may_be_texts() -> None:
+    found = tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 0.1, ("1.3 rad/s", "1.4 rad/s"), rows=3)
+    assert found.speeds == (1.3, 1.4)
+
+
+@pytest.mark.slow
+def test_a_long_line_takes_seconds() -> None:
+    """Six unknowns, without patches: the least damping is where ``stability`` changes, at the speed named."""
+    line = tn.load(EXAMPLES / "truck.toml")
+    found = tn.minimum_damping(line, ("300 rpm", "2400 rpm"))
+    end, needed = found.ends[0][0], found.smallest
+    assert end is not None and needed is not None and not found.complete
+    assert f"; checked at {len(found.confirmed)} speeds." in found.sentence
+
+    def radius(factor: float) -> float:
+        damps = {
+            name: {key: getattr(e, key) * factor for key in ("damping", "loss_factor") if getattr(e, key, None)}
+            for name, e in zip(line.names, line.elements, strict=True)
+        }
+        return tn.stability(line.replace_all(damps), end.speed, tolerance=1e-12).spectral_radius
+
+    assert radius(needed * 0.99) > 1 > radius(needed * 1.01)
 
 
 BAD = [

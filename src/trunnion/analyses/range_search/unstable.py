@@ -125,7 +125,7 @@ def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
     """Speeds (meeting,) at which two exponents meet, the decay of the slower mode [1/s] there, and half of the stretch
     [rad/s] over which they can grow."""
     modes, none = Modes.of(span), np.zeros(0)
-    if not modes.value.shape[1] or low >= high:
+    if not modes.value.shape[1] or low >= high or not span.assembly.topology.rates:
         return none, none, none
     fed, sides = min(_unevenness(span), 1.0), SideOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
