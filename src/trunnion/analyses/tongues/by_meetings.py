@@ -76,14 +76,14 @@ def tops(v: Array, met: list[tuple[Array, Array]]) -> Array:
     for k in range(1, len(v) - 1):
         for speed, growth in zip(*met[k], strict=True):
             beside = [_nearest(met[j], speed) for j in (k - 1, k + 1)]
-            if growth <= 0 and None not in beside and max(beside) <= growth and min(beside) < (1 + RISES) * growth:
+            if growth <= 0 and max(beside) <= growth and min(beside) < (1 + RISES) * growth:
                 found.append(_vertex(v[k - 1 : k + 2], np.array([beside[0], growth, beside[1]])))
     return np.unique(found)
 
 
-def _nearest(met: tuple[Array, Array], speed: float) -> float | None:
-    """The growth rate at the meeting nearest to a speed."""
-    return float(met[1][np.abs(met[0] - speed).argmin()]) if len(met[0]) else None
+def _nearest(met: tuple[Array, Array], speed: float) -> float:
+    """The growth rate at the meeting nearest to a speed; NaN where there is none."""
+    return float(met[1][np.abs(met[0] - speed).argmin()]) if len(met[0]) else np.nan
 
 
 def _vertex(x: Array, y: Array) -> float:
