@@ -1,0 +1,95 @@
+"""The periodic motion of a bent line that starts free, by collocation of Lagrange's equations at even angles.
+
+a_i = R_i Ωt + level_i + y_i(Ωt), y of the joints' period, its mean zero for the first mass; one more unknown is the torque
+that the first mass drives with beyond the balance of the loads.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from oracles.steady_orders import Base, Steady
+
+Array = NDArray[np.float64]
+STEPS, CLOSED = 30, 1e-12
+"""Newton's steps, and the share of the elastic torque at which a motion is found."""
+
+
+def derivatives(times: int) -> tuple[Array, Array]:
+    """First and second derivative of periodic samples over 2π, (times, times)."""
+    order = np.fft.fftfreq(times, 1 / times)
+    first = np.where(2 * np.abs(order) == times, 0.0, 1j * order)
+    wave = np.fft.fft(np.eye(times), axis=0)
+    return tuple(np.fft.ifft(part[:, None] * wave, axis=0).real for part in (first, -(order**2)))  # type: ignore[return-value]
+
+
+def moved(line: Steady, speed: Array, turned: Array, y: Array) -> Base:
+    """The base of deviations y (speed, time, mass) from even rotation."""
+    from oracles.steady_orders import Base
+
+    one, two = derivatives(len(turned))
+    rate = float(line.step) * speed[:, None, None]
+    ratio = np.array([float(r) for r in line.mean_ratio])
+    a = line.level + turned[:, None] * ratio + y
+    v = speed[:, None, None] * ratio + rate * np.einsum("ts,csn->ctn", one, y)
+    w = rate**2 * np.einsum("ts,csn->ctn", two, y)
+    r, r1, torque = (np.zeros((*y.shape[:2], len(line.links))) for _ in range(3))
+    (k, c, _), bends = line.springs(), line.bends(speed)
+    for e, (far, link) in enumerate(line.links):
+        n, r[..., e], r1[..., e] = line.passed(link, e, a[..., link.near], bends)
+        torque[..., e] = k[e] * (a[..., far] - n - link.fork) + c[e] * (v[..., far] - r[..., e] * v[..., link.near])
+    return Base(a, v, w, r, r1, torque, line.level)
+
+
+def twists(line: Steady, base: Base) -> Array:
+    """Elastic twist (speed, time, spring)."""
+    k, c, _ = line.springs()
+    found = np.zeros_like(base.torque)
+    for e, (far, link) in enumerate(line.links):
+        rate = base.rate[..., far] - base.ratio[..., e] * base.rate[..., link.near]
+        found[..., e] = (base.torque[..., e] - c[e] * rate) / k[e]
+    return found
+
+
+def orbit(line: Steady, speed: Array, turned: Array) -> Base:
+    """The motion at every speed; NaN where it is not found."""
+    times, n = len(turned), line.n
+    start = line.rigid(speed, turned)
+    ratio = np.array([float(r) for r in line.mean_ratio])
+    y = start.angle - line.level - turned[:, None] * ratio
+    y = np.ascontiguousarray(y - y[..., :1].mean(axis=1, keepdims=True))
+    one, two = derivatives(times)
+    extra = np.zeros(len(speed))
+    inertia = np.array([m.inertia for m in line.line.masses])
+    constant = line.constant_loads(speed)[:, None]
+    scale = line.springs()[0].max()
+    open_ones = np.arange(len(speed))
+    for _ in range(STEPS):
+        now = speed[open_ones]
+        base = moved(line, now, turned, y[open_ones])
+        damping, stiffness, left = line.equations(base)
+        left = left - constant[open_ones]
+        left[..., 0] += extra[open_ones, None]
+        rate = (float(line.step) * now)[:, None, None, None, None]
+        size = times * n
+        jacobian = rate * damping[:, :, :, None, :] * one[:, None, :, None]
+        jacobian += rate**2 * (np.diag(inertia)[:, None, :] * two[:, None, :, None])
+        jacobian[:, np.arange(times), :, np.arange(times), :] += np.moveaxis(stiffness, 1, 0)
+        more = np.zeros((len(now), size + 1, size + 1))
+        more[:, :size, :size] = jacobian.reshape(len(now), size, size)
+        more[:, :size:n, size] = -scale
+        more[:, size, :size:n] = scale / times
+        right = np.concatenate([left.reshape(len(now), size), np.zeros((len(now), 1))], axis=1)
+        step = np.linalg.solve(more, right[..., None])[..., 0]
+        y[open_ones] += step[:, :size].reshape(-1, times, n)
+        extra[open_ones] += step[:, size] * scale
+        large = np.abs(step[:, :size]).max(axis=1) > CLOSED
+        open_ones = open_ones[large]
+        if not len(open_ones):
+            break
+    y[open_ones] = np.nan
+    return moved(line, speed, turned, y)
