@@ -210,7 +210,9 @@ class _Drawn:
     def shakes(self, most: int, orders: tuple[Any, ...] = (0.5, 1, 1.5, 2, 3, 4)) -> tuple[Shake, ...]:
         chosen = self.rng.choice(len(orders), int(self.rng.integers(most + 1)), replace=False)
         return tuple(
-            Shake(Fraction(str(orders[k])), self.between(5, 60), self.between(-3, 3), over=self.one_of("", "", "square"))
+            Shake(
+                Fraction(str(orders[k])), self.between(5, 60), self.between(-3, 3), over=self.one_of("", "", "square")
+            )
             if self.rng.random() < 0.3
             else Shake(Fraction(str(orders[k])), self.between(5, 60), self.between(-3, 3))
             for k in chosen

@@ -137,7 +137,9 @@ class Steady:
     def loads(self, speed: Array) -> Array:
         """Torque (speed, mass) that resists at mean speed; of the first mass of a free line what drives, negative."""
         v = speed[:, None] * self.turning
-        found = np.stack([m.load + (m.viscous + m.quadratic * v[:, i]) * v[:, i] for i, m in enumerate(self.line.masses)], 1)
+        found = np.stack(
+            [m.load + (m.viscous + m.quadratic * v[:, i]) * v[:, i] for i, m in enumerate(self.line.masses)], 1
+        )
         if self.line.free:
             found[:, 0] -= found @ self.turning
         return found
@@ -177,10 +179,10 @@ class Steady:
 
     # The base motion
 
-    def base(self, speed: Array) -> Base:
-        """What the response is taken about."""
+    def base(self, speed: Array, *, rigid: bool = False) -> Base:
+        """What the response is taken about; ``rigid``: of a line that moves by itself too without its vibration."""
         turned = 2 * np.pi / float(self.step) * np.arange(self.samples) / self.samples
-        if self.moves:
+        if self.moves and not rigid:
             from oracles.own_orbits import orbit
 
             return orbit(self, speed, turned)
@@ -306,7 +308,7 @@ class Steady:
             h = order / self.step
             if h.denominator == 1 and 2 * abs(h) < max(values.shape[1], 1):
                 part = found[:, int(h) % values.shape[1]]
-                if np.abs(part).max() > 1e-17 * np.abs(found).max():
+                if np.nanmax(np.abs(part), initial=0.0) > 1e-17 * np.nanmax(np.abs(found), initial=0.0):
                     kept[order] = part
         return kept
 
@@ -328,10 +330,10 @@ def size_of(line: Steady, mass: int, shake: Shake, speed: Array) -> Array:
 class _Solved:
     """A line at some speeds, its equations as series over ``orders``."""
 
-    def __init__(self, steady: Steady, speed: Array, orders: list[Fraction]) -> None:
+    def __init__(self, steady: Steady, speed: Array, orders: list[Fraction], *, rigid: bool = False) -> None:
         self.steady, self.speed, self.orders = steady, speed, orders
         self.n, self.springs = steady.n, steady.springs()
-        base = self.base = steady.base(speed)
+        base = self.base = steady.base(speed, rigid=rigid)
         damping, stiffness, left = steady.equations(base)
         left = left - steady.constant_loads(speed)[:, None]
         steps = sorted({a - b for a in orders for b in orders})
@@ -373,7 +375,9 @@ class _Solved:
                 found[:, h, i, h, i] += s[:, h] ** 2 * self.inertia[i]
             for e in np.flatnonzero(self.springs[2]):
                 out = self.steady.pattern(e)
-                found[:, h, :, h, :] += 1j * self.springs[2][e] * np.sign(s[:, h].imag)[:, None, None] * np.outer(out, out)
+                found[:, h, :, h, :] += (
+                    1j * self.springs[2][e] * np.sign(s[:, h].imag)[:, None, None] * np.outer(out, out)
+                )
         return found.reshape(len(s), count * n, count * n)
 
     def slope(self, s: Complex) -> Complex:
@@ -451,7 +455,9 @@ class _Solved:
     def _add_base(self) -> None:
         """How the base motion turns, and of a line that moves by itself how its springs twist."""
         steady, k = self.steady, self.springs[0]
-        period = [m * self.steady.step for m in range(-self.base.angle.shape[1] // 2 + 1, self.base.angle.shape[1] // 2)]
+        period = [
+            m * self.steady.step for m in range(-self.base.angle.shape[1] // 2 + 1, self.base.angle.shape[1] // 2)
+        ]
         turned = steady.series(self.base.angle - steady.level - self._uniform, period)
         for order, part in turned.items():
             if order:

@@ -1,0 +1,92 @@
+"""Whether a disturbance of a ``ScannedLine`` grows: multipliers over one period, by Magnus steps of fourth order."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oracles.steady_orders import Steady, _Solved, common
+
+Array = NDArray[np.float64]
+PER_RADIAN, MOST_STEPS = 1.5, 1000
+TERMS = 10
+"""Of the series of an exponential."""
+RESOLVED = log(1e14)
+"""Budget of the series of the equations themselves: steps as small as rounding are left out."""
+
+
+def growth(line: Steady, speed: Array) -> Array:
+    """ln of the largest multiplier over its period (speed,) [1/s], what a free line keeps for ever left out; NaN where a
+    period takes too many steps."""
+    if not len(speed):
+        return np.zeros(0)
+    rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]
+    step = common(rates) if rates else Fraction(1)
+    found = np.full(len(speed), np.nan)
+    for start in range(0, len(speed), 64):
+        part = slice(start, start + 64)
+        found[part] = _growth(line, speed[part], step)
+    return found
+
+
+def _growth(line: Steady, speed: Array, step: Fraction) -> Array:
+    n = line.n
+    span = 2 * max(1, ceil(max(line.joint_rates, default=Fraction(0)) / line.step) * 8)
+    orders = [m * line.step for m in range(-span // 2, span // 2 + 1)]
+    solved = _Solved(line, speed, orders)
+    period = 2 * np.pi / (float(step) * speed)
+    k0 = np.abs(np.einsum("sii->si", solved.stiffness[Fraction(0)])) / solved.inertia
+    fastest = np.sqrt(2 * k0.max(axis=1))
+    rates = max((abs(float(o)) for o in (*solved.stiffness, *solved.damping)), default=0.0) * speed
+    steps = np.ceil(PER_RADIAN * np.maximum(fastest, rates / 4) * period)
+    count = int(np.nanmin([np.nanmax(steps), MOST_STEPS]))
+    good = steps <= MOST_STEPS
+    if not good.any():
+        return np.full(len(speed), np.nan)
+    h = period[good] / count
+    product = np.broadcast_to(np.eye(2 * n), (int(good.sum()), 2 * n, 2 * n)).copy()
+    off = np.sqrt(3) / 6
+    for j in range(count):
+        first, last = (_rates(solved, good, speed[good], (j + 0.5 + shift) * h) for shift in (-off, off))
+        both = h[:, None, None] / 2 * (first + last)
+        both += np.sqrt(3) / 12 * (h**2)[:, None, None] * (last @ first - first @ last)
+        product = _exponential(both) @ product
+    values = np.linalg.eigvals(np.where(np.isfinite(product), product, 0.0))
+    if line.line.free:
+        near = np.argsort(np.abs(values - 1), axis=1)[:, 2:]
+        values = np.take_along_axis(values, near, axis=1)
+    found = np.full(len(speed), np.nan)
+    found[good] = np.log(np.abs(values).max(axis=1)) / period[good]
+    found[good] = np.where(np.isfinite(product).all(axis=(1, 2)), found[good], np.nan)
+    return found
+
+
+def _rates(solved: _Solved, good: Array, speed: Array, time: Array) -> Array:
+    """A (speed, 2n, 2n) of x′ = Ax, x = (δ, δ̇), at a ``time`` (speed,) [s]."""
+    n = solved.n
+    parts = []
+    for series in (solved.stiffness, solved.damping):
+        total = np.zeros((len(speed), n, n))
+        for order, part in series.items():
+            if order >= 0:  # of a real matrix the coefficients at −h are conjugates
+                turn = np.exp(1j * float(order) * speed * time)[:, None, None]
+                total += (2.0 if order else 1.0) * (part[good] * turn).real
+        parts.append(total / solved.inertia[:, None])
+    a = np.zeros((len(speed), 2 * n, 2 * n))
+    a[:, :n, n:] = np.eye(n)
+    a[:, n:, :n], a[:, n:, n:] = -parts[0], -parts[1]
+    return a
+
+
+def _exponential(a: Array) -> Array:
+    """Of small matrices, their entries of one size first: rotations times 100, as frequencies are some hundred."""
+    unit = np.ones(a.shape[1])
+    unit[: len(unit) // 2] = 100.0
+    scaled = a * unit[:, None] / unit
+    total = np.broadcast_to(np.eye(a.shape[1]), a.shape).copy()
+    for k in range(TERMS, 0, -1):
+        total = np.eye(a.shape[1]) + scaled @ total / k
+    return total / unit[:, None] * unit
