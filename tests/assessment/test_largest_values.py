@@ -1,8 +1,8 @@
 """The largest values that ``assess`` finds, against dense scans of 1 000 random lines by equations of their own.
 
-Straight, bent, free, geared, branched and slow lines, schedules and load cases; damping ratios from 0.05 % to 5 %. Of each
-value: no less than the scan's by more than its stated error, no more than the scan's by more than what lies between two
-of its speeds, and at its speed what the other equations give. Of unstable ranges: their ends by multipliers computed
+Straight, bent, free, geared, branched and slow lines, schedules and load cases; damping ratios from 0.05 % to 5 %. Each
+value: no less than the scan's by more than its stated error, no more than the scan's by more than what lies between
+two of its speeds, and at its speed what the other equations give. Unstable ranges: their ends by multipliers computed
 apart, and that nothing grows elsewhere.
 """
 

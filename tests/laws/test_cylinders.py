@@ -101,8 +101,9 @@ def test_amplitudes_over_speed_behind_bent_joints_are_those_of_each_speed_by_its
     """Many speeds of a bent line share its equations, but not what shakes it from a table."""
     line = tn.Driveline(
         [
-            tn.ConstantSpeed(), tn.Shaft(stiffness=5e3, damping=5.0), tn.Disk(inertia=0.2, excitation=[{"order": 3} | keys]),
-            tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=5e3, damping=5.0), tn.Disk(inertia=0.3, load_torque=20.0),
+            tn.ConstantSpeed(), tn.Shaft(stiffness=5e3, damping=5.0),
+            tn.Disk(inertia=0.2, excitation=[{"order": 3} | keys]), tn.HookeJoint(angle=0.2),
+            tn.Shaft(stiffness=5e3, damping=5.0), tn.Disk(inertia=0.3, load_torque=20.0),
         ]
     )  # fmt: skip
     speeds = np.linspace(30.0, 90.0, 7)

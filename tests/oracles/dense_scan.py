@@ -1,8 +1,8 @@
 """The largest values of a ``ScannedLine`` over its speeds, by looking closely everywhere.
 
-Poles come from the line's own matrices: those of their mean, then by inverse iteration of Hill's. Wherever a pole meets an
-order that acts, 40 speeds lie within its half-power width; a plain grid covers the rest. A scan with few harmonics finds
-the places, the values there are computed with many.
+Poles come from the line's own matrices: those of their mean, then by inverse iteration of Hill's. Wherever a pole meets
+an order that acts, 40 speeds lie within its half-power width; a plain grid covers the rest. A scan with few harmonics
+finds the places, the values there are computed with many.
 """
 
 from __future__ import annotations
@@ -242,7 +242,7 @@ class Scan:
         return {abs(order) for order in orders} - {Fraction(0)}
 
     def poles(self, speed: Array) -> tuple[Complex, Complex]:
-        """Of the mean matrices, those that swing: (speed, pole) [1/s] by rising frequency, and shapes (speed, n, pole)."""
+        """Of the mean matrices, those that swing: (speed, pole) [1/s] by frequency, and shapes (speed, n, pole)."""
         solved, n = _Solved(self.steady, speed, [Fraction(0)], rigid=True), self.steady.n
         a = np.zeros((len(speed), 2 * n, 2 * n), dtype=complex)
         zero = np.zeros((len(speed), n, n))

@@ -19,8 +19,8 @@ RESOLVED = log(1e14)
 
 
 def growth(line: Steady, speed: Array) -> Array:
-    """ln of the largest multiplier over its period (speed,) [1/s], what a free line keeps for ever left out; NaN where a
-    period takes too many steps."""
+    """ln of the largest multiplier over its period (speed,) [1/s], without what a free line keeps for ever; NaN where
+    a period takes too many steps."""
     if not len(speed):
         return np.zeros(0)
     rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]

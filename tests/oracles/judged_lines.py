@@ -18,7 +18,6 @@ from oracles.dense_scan import Scan
 from oracles.growth import growth
 from oracles.scanned_lines import ScannedLine
 
-
 Array = NDArray[np.float64]
 Ranges = tuple[tuple[float, float], ...]
 ROUNDING, ALIKE, SCANNED = 1e-9, 1e-6, 2e-3

@@ -1,7 +1,7 @@
 """The periodic motion of a bent line that starts free, by collocation of Lagrange's equations at even angles.
 
-a_i = R_i Ωt + level_i + y_i(Ωt), y of the joints' period, its mean zero for the first mass; one more unknown is the torque
-that the first mass drives with beyond the balance of the loads.
+a_i = R_i Ωt + level_i + y_i(Ωt), y of the joints' period, its mean zero for the first mass; one more unknown is the
+torque that the first mass drives with beyond the balance of the loads.
 """
 
 from __future__ import annotations

@@ -23,8 +23,8 @@ SMALL = 1e-6
 
 @dataclass(frozen=True)
 class Shake:
-    """A torque A cos(order · own rotation + phase), or of a ``frequency`` [rad/s]; ``over`` "speed" or "torque": a table
-    of ``points`` and ``amplitudes`` for A, "square": A over the square of the mass's speed."""
+    """A torque A cos(order · own rotation + phase), or of a ``frequency`` [rad/s]; ``over`` "speed" or "torque": a
+    table of ``points`` and ``amplitudes`` for A, "square": A over the square of the mass's speed."""
 
     order: Fraction
     amplitude: float

@@ -6,9 +6,9 @@ r′ = dr/da_n and the elastic twist x_e (the error of the teeth over the driven
 
     J_i ä_i = −M_i + Σ_near r f − Σ_far f + torques,   f = k w x + c ẋ   (w: the uneven stiffness of a mesh)
 
-About a base motion: δ_i, x = δ_f − r δ_n, ẋ = δ̇_f − r δ̇_n − r′ ȧ_n δ_n, and the near end gets r f̃ + r′ f̄ δ_n. The base of
-a driven line turns without vibrating, its springs twisted by the mean torque; what it leaves over shakes the line. A bent
-line that starts free is taken about its periodic motion, found by collocation.
+About a base motion: δ_i, x = δ_f − r δ_n, ẋ = δ̇_f − r δ̇_n − r′ ȧ_n δ_n, and the near end gets r f̃ + r′ f̄ δ_n. The
+base of a driven line turns without vibrating, its springs twisted by the mean torque; what it leaves over shakes the
+line. A bent line that starts free is taken about its periodic motion, found by collocation.
 
 Everything is a series e^{i(K + h)Ωt}, h in the lattice of the joints' and teeth's rates, K the order that shakes.
 """
@@ -51,8 +51,8 @@ def hooke(chi: Array, angle: Array) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True)
 class Base:
-    """A motion at samples of the joints' period: a, ȧ, ä (speed, time, mass); r, r′ (speed, time, link) and the torque
-    of every spring (speed, time, link) without what uneven teeth add; ``level`` (mass,): a at no rotation, untwisted."""
+    """A motion at samples of the joints' period: a, ȧ, ä (speed, time, mass); r, r′ and the torque of every spring
+    (speed, time, link) without what uneven teeth add; ``level`` (mass,): a at no rotation, untwisted."""
 
     angle: Array
     rate: Array
@@ -301,7 +301,7 @@ class Steady:
             budget *= 0.9
 
     def series(self, values: NDArray[np.generic], orders: list[Fraction]) -> dict[Fraction, Complex]:
-        """Fourier coefficients (speed, …) of samples (speed, time, …) at those of ``orders`` that the samples resolve."""
+        """Fourier coefficients (speed, …) of samples (speed, time, …), at those of ``orders`` that they resolve."""
         found = np.fft.fft(values, axis=1) / values.shape[1]
         kept: dict[Fraction, Complex] = {}
         for order in orders:
