@@ -203,6 +203,8 @@ class Scan:
     def __init__(self, line: ScannedLine, low: float, high: float, left_out: tuple[tuple[float, float], ...]) -> None:
         self.line, self.steady, self.low, self.high, self.left_out = line, Steady(line), low, high, left_out
         self.quantities = list(quantities(line))
+        self.lost = np.zeros(0)
+        """Speeds [rad/s] of the last scan at which a line that moves by itself has no motion that is found."""
 
     def respond(self, speed: Array, effort: tuple[float, int] = FEW) -> Response:
         """In parts that fit the memory."""
@@ -317,6 +319,7 @@ class Scan:
         steps = np.arange(-round(PER_WIDTH * BESIDE), round(PER_WIDTH * BESIDE) + 1) / PER_WIDTH
         more = np.setdiff1d(self.kept((close[:, None] + width[:, None] * steps).ravel()), rough)
         seen = _joined([seen, self.respond(more)]) if len(more) else seen
+        self.lost = np.sort(seen.speed[np.isnan(seen.mean_torque).any(axis=1)])
         tops = {one.name: self._tops(one, seen) for one in self.quantities}
         wanted = np.unique(np.concatenate(list(tops.values())))
         exact = self.respond(seen.speed[wanted], MANY)

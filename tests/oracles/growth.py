@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil, log
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,41 +11,41 @@ from numpy.typing import NDArray
 from oracles.steady_orders import Steady, _Solved, common
 
 Array = NDArray[np.float64]
-PER_RADIAN, MOST_STEPS = 1.5, 1000
+COARSE, FINE = 1.5, 6.0
+"""Steps per radian of the fastest mode: to look around, and where growth is nearly none."""
+NEARLY = 0.1
+"""Growth [1/s] below the size of which it is computed with fine steps."""
+MOST_STEPS = 4000
 TERMS = 10
 """Of the series of an exponential."""
-RESOLVED = log(1e14)
-"""Budget of the series of the equations themselves: steps as small as rounding are left out."""
 
 
 def growth(line: Steady, speed: Array) -> Array:
     """ln of the largest multiplier over its period (speed,) [1/s], without what a free line keeps for ever; NaN where
     a period takes too many steps."""
-    if not len(speed):
-        return np.zeros(0)
-    rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]
-    step = common(rates) if rates else Fraction(1)
     found = np.full(len(speed), np.nan)
-    for start in range(0, len(speed), 64):
-        part = slice(start, start + 64)
-        found[part] = _growth(line, speed[part], step)
+    for per_radian in (COARSE, FINE):
+        which = np.arange(len(speed)) if per_radian == COARSE else np.flatnonzero(np.abs(found) < NEARLY)
+        for start in range(0, len(which), 64):
+            part = which[start : start + 64]
+            found[part] = _growth(line, speed[part], per_radian)
     return found
 
 
-def _growth(line: Steady, speed: Array, step: Fraction) -> Array:
+def _growth(line: Steady, speed: Array, per_radian: float) -> Array:
     n = line.n
+    rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]
     span = 2 * max(1, ceil(max(line.joint_rates, default=Fraction(0)) / line.step) * 8)
-    orders = [m * line.step for m in range(-span // 2, span // 2 + 1)]
-    solved = _Solved(line, speed, orders)
-    period = 2 * np.pi / (float(step) * speed)
-    k0 = np.abs(np.einsum("sii->si", solved.stiffness[Fraction(0)])) / solved.inertia
-    fastest = np.sqrt(2 * k0.max(axis=1))
-    rates = max((abs(float(o)) for o in (*solved.stiffness, *solved.damping)), default=0.0) * speed
-    steps = np.ceil(PER_RADIAN * np.maximum(fastest, rates / 4) * period)
-    count = int(np.nanmin([np.nanmax(steps), MOST_STEPS]))
+    solved = _Solved(line, speed, [m * line.step for m in range(-span // 2, span // 2 + 1)])
+    period = 2 * np.pi / (float(common(rates)) * speed)
+    fastest = np.sqrt(2 * np.abs(np.einsum("sii->si", solved.stiffness[Fraction(0)])) / solved.inertia).max(axis=1)
+    turning = max(abs(float(o)) for o in (*solved.stiffness, *solved.damping)) * speed
+    steps = np.ceil(per_radian * np.maximum(fastest, turning / 4) * period)
     good = steps <= MOST_STEPS
+    found = np.full(len(speed), np.nan)
     if not good.any():
-        return np.full(len(speed), np.nan)
+        return found
+    count = int(steps[good].max())
     h = period[good] / count
     product = np.broadcast_to(np.eye(2 * n), (int(good.sum()), 2 * n, 2 * n)).copy()
     off = np.sqrt(3) / 6
@@ -54,13 +54,13 @@ def _growth(line: Steady, speed: Array, step: Fraction) -> Array:
         both = h[:, None, None] / 2 * (first + last)
         both += np.sqrt(3) / 12 * (h**2)[:, None, None] * (last @ first - first @ last)
         product = _exponential(both) @ product
-    values = np.linalg.eigvals(np.where(np.isfinite(product), product, 0.0))
-    if line.line.free:
-        near = np.argsort(np.abs(values - 1), axis=1)[:, 2:]
-        values = np.take_along_axis(values, near, axis=1)
-    found = np.full(len(speed), np.nan)
-    found[good] = np.log(np.abs(values).max(axis=1)) / period[good]
-    found[good] = np.where(np.isfinite(product).all(axis=(1, 2)), found[good], np.nan)
+    finite = np.isfinite(product).all(axis=(1, 2))
+    values = np.linalg.eigvals(np.where(finite[:, None, None], product, 0.0))
+    if line.line.free:  # a shift of its phase, and a change of its speed where no torque goes with that
+        kept = 1 if any(m.viscous or m.quadratic for m in line.line.masses) else 2
+        values = np.take_along_axis(values, np.argsort(np.abs(values - 1), axis=1)[:, kept:], axis=1)
+    with np.errstate(divide="ignore"):
+        found[good] = np.where(finite, np.log(np.abs(values).max(axis=1)) / period[good], np.nan)
     return found
 
 
