@@ -20,19 +20,23 @@ TERMS = 10
 """Of the series of an exponential."""
 
 
-def growth(line: Steady, speed: Array) -> Array:
-    """ln of the largest multiplier over its period (speed,) [1/s], without what a free line keeps for ever; NaN where
-    a period takes too many steps."""
+def growth(line: Steady, speed: Array, *, of_speed: bool) -> Array:
+    """ln of the largest multiplier over its period (speed,) [1/s], a shift of the phase of a free line left out; NaN
+    where a period takes too many steps.
+
+    Where no torque depends on the speed, that of the mean speed is stated by itself: real and positive, but near a
+    resonance no one can say which of several it is. Without ``of_speed`` all such multipliers are left out.
+    """
     found = np.full(len(speed), np.nan)
     for per_radian in (COARSE, FINE):
         which = np.arange(len(speed)) if per_radian == COARSE else np.flatnonzero(np.abs(found) < NEARLY)
         for start in range(0, len(which), 64):
             part = which[start : start + 64]
-            found[part] = _growth(line, speed[part], per_radian)
+            found[part] = _growth(line, speed[part], per_radian, of_speed)
     return found
 
 
-def _growth(line: Steady, speed: Array, per_radian: float) -> Array:
+def _growth(line: Steady, speed: Array, per_radian: float, of_speed: bool) -> Array:
     n = line.n
     rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]
     span = 2 * max(1, ceil(max(line.joint_rates, default=Fraction(0)) / line.step) * 8)
@@ -56,9 +60,10 @@ def _growth(line: Steady, speed: Array, per_radian: float) -> Array:
         product = _exponential(both) @ product
     finite = np.isfinite(product).all(axis=(1, 2))
     values = np.linalg.eigvals(np.where(finite[:, None, None], product, 0.0))
-    if line.line.free:  # a shift of its phase, and a change of its speed where no torque goes with that
-        kept = 1 if any(m.viscous or m.quadratic for m in line.line.masses) else 2
-        values = np.take_along_axis(values, np.argsort(np.abs(values - 1), axis=1)[:, kept:], axis=1)
+    if line.line.free:
+        values = np.take_along_axis(values, np.argsort(np.abs(values - 1), axis=1)[:, 1:], axis=1)
+        if not of_speed and not any(m.viscous or m.quadratic for m in line.line.masses):
+            values = np.where((np.abs(values.imag) < 1e-9) & (values.real > 0), 0.0, values)
     with np.errstate(divide="ignore"):
         found[good] = np.where(finite, np.log(np.abs(values).max(axis=1)) / period[good], np.nan)
     return found

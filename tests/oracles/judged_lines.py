@@ -92,7 +92,8 @@ def judged(line: ScannedLine) -> Judged:
         known = [one[name] for one in there[check.speed] if np.isfinite(one[name])]
         if known and min(abs(own / one - 1) for one in known) > ALIKE:
             found.faults.append(f"{says} is none there: {', '.join(f'{one:.12g}' for one in known)}")
-    found.faults += _of_ranges(scans, found.unstable, line)
+    if checks[NAME].judged:
+        found.faults += _of_ranges(scans, found.unstable, line)
     found.scan_time = time.process_time() - begin - found.own_time
     return found
 
@@ -106,23 +107,23 @@ def _of_ranges(scans: dict[str, Scan], unstable: Ranges, line: ScannedLine) -> I
     inside = [(a + b) / 2 for a, b in wide]
     inside += [a * (1 + EDGE) for a, _ in wide] + [b * (1 - EDGE) for _, b in wide]
     if inside:
-        grows = _fastest(scans, np.array(inside))
+        grows = _fastest(scans, np.array(inside), of_speed=True)
         yield from (f"stable at {s:.9g} rad/s" for s, g in zip(inside, grows, strict=True) if g <= 0)
     ends = [a * (1 - EDGE) for a, _ in unstable if a > line.low * (1 + EDGE)]
     ends += [b * (1 + EDGE) for _, b in unstable if b < line.high * (1 - EDGE)]
     plain = scans[""].kept(np.concatenate([np.linspace(line.low, line.high, PLAIN), _pairs(scans[""])]))
     outside = np.array([s for s in (*ends, *plain) if not any(a <= s <= b for a, b in unstable)])
-    grows = _fastest(scans, outside)
+    grows = _fastest(scans, outside, of_speed=False)
     yield from (f"grows at {s:.12g} rad/s, by {g:.3g} 1/s" for s, g in zip(outside, grows, strict=True) if g > 1e-7)
 
 
-def _fastest(scans: dict[str, Scan], speed: Array) -> Array:
+def _fastest(scans: dict[str, Scan], speed: Array, *, of_speed: bool) -> Array:
     """Growth [1/s] of whichever of the lines grows fastest, each where it is scanned; −∞ where it is not known."""
     found = np.full(len(speed), -np.inf)
     for scan in scans.values():
         here = np.flatnonzero((speed >= scan.low * (1 - 2 * EDGE)) & (speed <= scan.high * (1 + 2 * EDGE)))
         if len(here):
-            own = growth(scan.steady, speed[here])
+            own = growth(scan.steady, speed[here], of_speed=of_speed)
             found[here] = np.maximum(found[here], np.where(np.isnan(own), -np.inf, own))
     return found
 
