@@ -15,8 +15,9 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
+from oracles.line_equations import Steady, common
 from oracles.scanned_lines import ScannedLine
-from oracles.steady_orders import Order, Response, Steady, _Solved, common
+from oracles.steady_orders import Order, Response, Solved, response
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -212,7 +213,7 @@ class Scan:
         size = (len(steady.lattice(*effort)) * steady.n) ** 2 + steady.samples * steady.n**2
         size += (steady.samples * steady.n) ** 2 * 3 if steady.moves else 0
         many = max(1, BATCH // size)
-        parts = [steady.response(speed[i : i + many], *effort) for i in range(0, len(speed), many)]
+        parts = [response(steady, speed[i : i + many], *effort) for i in range(0, len(speed), many)]
         return _joined(parts)
 
     def kept(self, speed: Array) -> Array:
@@ -245,7 +246,7 @@ class Scan:
 
     def poles(self, speed: Array) -> tuple[Complex, Complex]:
         """Of the mean matrices, those that swing: (speed, pole) [1/s] by frequency, and shapes (speed, n, pole)."""
-        solved, n = _Solved(self.steady, speed, [Fraction(0)], rigid=True), self.steady.n
+        solved, n = Solved(self.steady, speed, [Fraction(0)], rigid=True), self.steady.n
         a = np.zeros((len(speed), 2 * n, 2 * n), dtype=complex)
         zero = np.zeros((len(speed), n, n))
         stiffness = solved.stiffness[Fraction(0)] + sum(
@@ -292,7 +293,7 @@ class Scan:
         found = value.copy()
         for begin in range(0, len(speed), 40):
             part = slice(begin, begin + 40)
-            solved = _Solved(self.steady, speed[part], orders)
+            solved = Solved(self.steady, speed[part], orders)
             turning = np.array([float(order) for order in orders]) * speed[part, None]
             s = value[part].copy()
             u = np.zeros((len(s), len(orders), n), dtype=complex)

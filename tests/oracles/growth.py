@@ -8,7 +8,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from oracles.steady_orders import Steady, _Solved, common
+from oracles.line_equations import Steady, common
+from oracles.steady_orders import Solved
 
 Array = NDArray[np.float64]
 COARSE, FINE = 1.5, 6.0
@@ -40,7 +41,7 @@ def _growth(line: Steady, speed: Array, per_radian: float, of_speed: bool) -> Ar
     n = line.n
     rates = [*line.joint_rates, *(line.teeth[e] * o for e, (_, one) in enumerate(line.links) for _, o, _ in one.waves)]
     span = 2 * max(1, ceil(max(line.joint_rates, default=Fraction(0)) / line.step) * 8)
-    solved = _Solved(line, speed, [m * line.step for m in range(-span // 2, span // 2 + 1)])
+    solved = Solved(line, speed, [m * line.step for m in range(-span // 2, span // 2 + 1)])
     period = 2 * np.pi / (float(common(rates)) * speed)
     fastest = np.sqrt(2 * np.abs(np.einsum("sii->si", solved.stiffness[Fraction(0)])) / solved.inertia).max(axis=1)
     turning = max(abs(float(o)) for o in (*solved.stiffness, *solved.damping)) * speed
@@ -69,7 +70,7 @@ def _growth(line: Steady, speed: Array, per_radian: float, of_speed: bool) -> Ar
     return found
 
 
-def _rates(solved: _Solved, good: Array, speed: Array, time: Array) -> Array:
+def _rates(solved: Solved, good: Array, speed: Array, time: Array) -> Array:
     """A (speed, 2n, 2n) of x′ = Ax, x = (δ, δ̇), at a ``time`` (speed,) [s]."""
     n = solved.n
     parts = []

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from oracles.steady_orders import Base, Steady
+    from oracles.line_equations import Base, Steady
 
 Array = NDArray[np.float64]
 STEPS, CLOSED = 30, 1e-12
@@ -29,7 +29,7 @@ def derivatives(times: int) -> tuple[Array, Array]:
 
 def moved(line: Steady, speed: Array, turned: Array, y: Array) -> Base:
     """The base of deviations y (speed, time, mass) from even rotation."""
-    from oracles.steady_orders import Base
+    from oracles.line_equations import Base
 
     one, two = derivatives(len(turned))
     rate = float(line.step) * speed[:, None, None]
