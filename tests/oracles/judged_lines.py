@@ -82,7 +82,7 @@ def judged(line: ScannedLine) -> Judged:
         says = f"{name}: {own:.12g} ± {check.error / over:.2g} at {check.speed:.12g} rad/s"
         if not own + check.error / over >= value * (1 - ROUNDING):
             found.faults.append(f"{says} is low: {value:.12g} at {speed:.12g} rad/s")
-        if any(abs(check.speed / end - 1) < BESIDE_EDGE for pair in found.unstable for end in pair):
+        if any(a * (1 - BESIDE_EDGE) < check.speed < b * (1 + BESIDE_EDGE) for a, b in found.unstable):
             continue
         found.largest = max(found.largest, own / value - 1)
         if own > value * (1 + SCANNED):
