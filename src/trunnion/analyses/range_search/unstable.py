@@ -28,6 +28,7 @@ from trunnion.analyses.range_search.slow import slow_enough
 from trunnion.analyses.range_search.span import Gap, Piece, Span
 from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.coefficients import joint_laws
+from trunnion.equations.steady_base import moves_by_itself
 from trunnion.results.verdict import Verdict
 
 POINTS = 65
@@ -127,7 +128,9 @@ def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
     modes, none = Modes.of(span), np.zeros(0)
     if not modes.value.shape[1] or low >= high or not span.assembly.topology.rates:
         return none, none, none
-    fed, sides = min(_unevenness(span), 1.0), SideOrders.of(span.assembly)
+    # A line that moves by itself may swing far more than its joints: there any meeting may open.
+    fed = 1.0 if moves_by_itself(span.assembly) else min(_unevenness(span), 1.0)
+    sides = SideOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
     every = {step / sides.turns: k for step, k in offsets(rates, ORDERS[min(len(rates), 2) - 1]).items() if step > 0}
     found = [_of_cycles(span, modes, sides, cycles, FED * fed**k) for cycles, k in every.items()]
