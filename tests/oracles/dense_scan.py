@@ -29,6 +29,8 @@ WORTH = 0.6
 """Share of the largest value above which a meeting is looked at closely: at the meeting itself it is near its top."""
 FEW, MANY = (log(1e4), 15), (log(1e13), 61)
 """Budgets and most orders of the lattice, of the scan and of the values."""
+FINE = 64
+"""Samples of a joint's cycle of the motion of a line that moves by itself, of the values."""
 BATCH = 2_000_000
 FREE_FREQUENCY = 20 * np.pi
 """10 Hz, up to which S_f is 1."""
@@ -209,7 +211,7 @@ class Scan:
 
     def respond(self, speed: Array, effort: tuple[float, int] = FEW) -> Response:
         """In parts that fit the memory."""
-        steady = self.steady
+        steady = self.steady if effort is FEW else Steady(self.line, FINE)
         size = (len(steady.lattice(*effort)) * steady.n) ** 2 + steady.samples * steady.n**2
         size += (steady.samples * steady.n) ** 2 * 3 if steady.moves else 0
         many = max(1, BATCH // size)

@@ -62,8 +62,8 @@ class Base:
 class Steady:
     """One line, under one load case."""
 
-    def __init__(self, line: ScannedLine) -> None:
-        self.line, self.n = line, len(line.masses)
+    def __init__(self, line: ScannedLine, of_orbits: int = OF_ORBITS) -> None:
+        self.line, self.n, self.of_orbits = line, len(line.masses), of_orbits
         self.links = [(i, link) for i, link in enumerate(line.links) if link is not None]
         self.over = [self._over(link) for _, link in self.links]
         self.sense = np.array([1.0 if r > 0 else -1.0 for r in self.mean_ratio])
@@ -108,7 +108,7 @@ class Steady:
     def samples(self) -> int:
         """Over the joints' period."""
         fastest = max((r / self.step for r in self.joint_rates), default=Fraction(1))
-        return (OF_ORBITS if self.moves else PER_CYCLE) * int(fastest) if self.joint_rates else 1
+        return (self.of_orbits if self.moves else PER_CYCLE) * int(fastest) if self.joint_rates else 1
 
     @property
     def moves(self) -> bool:
