@@ -343,7 +343,7 @@ def test_the_take_off_grows_unstable_where_it_is_raised() -> None:
     assert found.sentence.startswith("exceeded over 4 places: parametric stability binds at hitch 500 mm")
 
 
-SLOW = ("4x4-free", "marine")
+SLOW = ("4x4-free", "car", "marine")
 """Bent lines that start free: every speed takes a motion of its own."""
 
 
@@ -360,7 +360,10 @@ def test_lines_of_first_users_say_what_is_missing(path: Path) -> None:
     line = tn.load(path)
     found = tn.assess(line)
     missing = {check.name: check.because for check in found.checks if check.missing}
-    assert set(missing) <= {"torque without limit"}
+    assert set(missing) <= {"torque without limit"} and all("; " in because for because in missing.values())
+    low, high = line.operation.speed_range or 2 * (line.operation.speed,)
+    covered = [check.covered for check in found.checks if check.covered]
+    assert all(one[0][0] <= low * (1 + 1e-9) and one[-1][1] >= high * (1 - 1e-9) for one in covered)
     named = missing["torque without limit"].partition(": ")[0].split(", ") if missing else []
     whole = line.but(limits=[*line.limits, *(tn.Limit(of=name, max_torque=1e7) for name in named)])
     judged = tn.assess(whole)

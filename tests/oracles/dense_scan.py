@@ -141,7 +141,7 @@ def quantities(line: ScannedLine) -> Iterator[Quantity]:
         if link.kind == "coupling":
             yield Quantity(f"rating: nominal torque of {name}", "number", _mean(e, 1.3))
             yield Quantity(f"rating: maximum torque of {name}", "peak", _torque(e, 1.3 * 1.1))
-            yield Quantity(f"rating: rated torque of {name}", "number", _rated(e, 1.3))
+            yield Quantity(f"rating: rated torque of {name}", "number", _rated(e))
             yield Quantity(f"rating: heat rating of {name}", "number", _heat(e, 1.3, c[e], loss[e]))
     for i in range(len(line.masses)):
         yield Quantity(f"max speed fluctuation of m{i}", "swing", _motion(i, 1))
@@ -170,13 +170,13 @@ def _mean(e: int, scale: float) -> Callable[[Response], Sum]:
     return lambda r: Sum(scale * np.abs(r.mean_torque[:, e]), {})
 
 
-def _rated(e: int, scale: float) -> Callable[[Response], Sum]:
+def _rated(e: int) -> Callable[[Response], Sum]:
     def number(r: Response) -> Sum:
         sizes = [
             np.sqrt(np.maximum(np.abs(_nu(r, o)), FREE_FREQUENCY) / FREE_FREQUENCY) * np.abs(part[:, e])
             for o, part in r.torque.items()
         ]
-        return Sum(scale * sum(sizes, np.zeros(len(r.speed))), {})
+        return Sum(sum(sizes, np.zeros(len(r.speed))), {})
 
     return number
 

@@ -17,11 +17,13 @@ import numpy as np
 from trunnion.analyses.assessment.measures import (
     OF_LIMITS,
     RATINGS,
+    allowed_by,
     name_of,
     of_limit,
     of_rating,
     rating_name,
     required_of,
+    service_factors,
 )
 from trunnion.analyses.limits.result import OtherLimit
 from trunnion.analyses.orders.response import response_of_table
@@ -89,7 +91,8 @@ def demands_of(assembly: Assembly) -> list[Demand]:
             if rating is None:
                 continue
             unit, look = "W" if key == "heat_rating" else "N*m", partial(_of_rating, assembly, name, key)
-            found.append(Demand(rating_name(name, key), rating * (1 - required_of(assembly, name)), unit, look))
+            allowed = allowed_by(rating, key, service_factors(assembly, name)[0]) * (1 - required_of(assembly, name))
+            found.append(Demand(rating_name(name, key), allowed, unit, look))
     return found
 
 

@@ -21,9 +21,11 @@ import numpy as np
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.analyses.orders.groups import offsets
+from trunnion.analyses.orders.response import response_of_spectrum
+from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.range_search.exponents import SideOrders, meeting_exponents
 from trunnion.analyses.range_search.largest import parabola
-from trunnion.analyses.range_search.resonances import BESIDE, Modes
+from trunnion.analyses.range_search.resonances import BESIDE, Modes, resonances
 from trunnion.analyses.range_search.slow import slow_enough
 from trunnion.analyses.range_search.span import Gap, Piece, Span
 from trunnion.arrays import Array, Flags, Places
@@ -128,8 +130,7 @@ def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
     modes, none = Modes.of(span), np.zeros(0)
     if not modes.value.shape[1] or low >= high or not span.assembly.topology.rates:
         return none, none, none
-    # A line that moves by itself may swing far more than its joints: there any meeting may open.
-    fed = 1.0 if moves_by_itself(span.assembly) else min(_unevenness(span), 1.0)
+    fed = min(_unevenness(span) + _swing(span), 1.0)
     sides = SideOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
     every = {step / sides.turns: k for step, k in offsets(rates, ORDERS[min(len(rates), 2) - 1]).items() if step > 0}
@@ -192,6 +193,17 @@ def _unevenness(span: Span) -> float:
     coefficients = span.assembly.coefficients(table, any_frequency=True)
     joints = sum(4 * float(np.max(law.spread)) for law in joint_laws(span.assembly, table))
     return joints + sum(float(np.abs(wave.share).sum(axis=1).max()) for wave in coefficients.waves)
+
+
+def _swing(span: Span) -> float:
+    """How far the inputs of joints swing [rad] in the own motion of a line that has one, at its resonances too, by
+    linear theory: what it feeds beside the joints' unevenness."""
+    if not moves_by_itself(span.assembly):
+        return 0.0
+    speed = np.unique(np.concatenate([np.linspace(span.start, span.high, POINTS), resonances(span).speed]))
+    table = span.table(speed) if span.put else None
+    found = response_of_spectrum(span.assembly, order_spectrum(span.assembly, speed, table=table, rough=True))
+    return float(np.nan_to_num(found.joint_rotation, nan=1.0, posinf=1.0).max(initial=0.0))
 
 
 def _beside_met(
