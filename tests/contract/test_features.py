@@ -47,7 +47,7 @@ RUN = {
     "stability": lambda line: tn.stability(line, SPEED),
     "stability_chart": lambda line: tn.stability_chart(line, ("speed", 300, 330, 3), ("load.inertia", 0.15, 0.25, 3)),
     "stable_limit": lambda line: tn.stable_limit(
-        line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4
+        line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4, between=False
     ),
     "tongues": lambda line: tn.tongues(line, ("speed", 140.0, 150.0), ("joint 2.angle", 0.9, 1.4), rows=3),
     "stable_windows": lambda line: tn.stable_windows(line, "joint 2.angle", 0.2, 1.4, (140.0, 150.0), rows=5),

@@ -24,6 +24,8 @@ ROUNDING, ALIKE, SCANNED = 1e-9, 1e-6, 2e-3
 """Shares: of a value, what both compute at one speed, what lies between two speeds of the scan."""
 EDGE, BESIDE_EDGE = 1e-5, 1e-3
 """How closely ends of unstable ranges are checked, and within which values there are without bound; of the speed."""
+FREE_EDGE = 1e-4
+"""Of lines that move by themselves: both motions about which growth is computed are known less closely."""
 PLAIN, MOST_MEETINGS = 30, 40
 """Speeds at which growth is computed where the line is said to be stable."""
 NAME, NO_MOTION = "parametric stability", "no own motion of the free line was found"
@@ -68,7 +70,7 @@ def judged(line: ScannedLine) -> Judged:
     for name in largest[""]:
         value, speed = max(one[name] for one in largest.values())
         check = checks.get(name)
-        if check is not None and NO_MOTION in check.because and any(len(scan.lost) for scan in scans.values()):
+        if check is not None and NO_MOTION in check.because:  # said, and not judged
             found.unanswered += 1
             continue
         if check is None or not check.judged:
@@ -103,14 +105,15 @@ def _of_ranges(scans: dict[str, Scan], unstable: Ranges, line: ScannedLine) -> I
     first = scans[""].steady
     if not first.joint_rates and not any(one.waves for _, one in first.links):
         return
-    wide = [(a, b) for a, b in unstable if b / a - 1 > 4 * EDGE]
+    edge = FREE_EDGE if line.free else EDGE
+    wide = [(a, b) for a, b in unstable if b / a - 1 > 4 * edge]
     inside = [(a + b) / 2 for a, b in wide]
-    inside += [a * (1 + EDGE) for a, _ in wide] + [b * (1 - EDGE) for _, b in wide]
+    inside += [a * (1 + edge) for a, _ in wide] + [b * (1 - edge) for _, b in wide]
     if inside:
         grows = _fastest(scans, np.array(inside), of_speed=True)
         yield from (f"stable at {s:.9g} rad/s" for s, g in zip(inside, grows, strict=True) if g <= 0)
-    ends = [a * (1 - EDGE) for a, _ in unstable if a > line.low * (1 + EDGE)]
-    ends += [b * (1 + EDGE) for _, b in unstable if b < line.high * (1 - EDGE)]
+    ends = [a * (1 - edge) for a, _ in unstable if a > line.low * (1 + edge)]
+    ends += [b * (1 + edge) for _, b in unstable if b < line.high * (1 - edge)]
     plain = scans[""].kept(np.concatenate([np.linspace(line.low, line.high, PLAIN), _pairs(scans[""])]))
     outside = np.array([s for s in (*ends, *plain) if not any(a <= s <= b for a, b in unstable)])
     grows = _fastest(scans, outside, of_speed=False)

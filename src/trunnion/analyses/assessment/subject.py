@@ -51,6 +51,8 @@ class Effort:
 WHOLE = Effort(65, 1e-6, 33)
 QUICK = Effort(25, 1e-2, 9)
 """To look around."""
+OF_OWN_MOTIONS = 3e-6
+"""Share of a value that may be missing because an own motion, about which it is computed, is known no more closely."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +191,10 @@ class Case:
 
     def _error(self, measure: Measure) -> float:
         place = next((i for i, one in enumerate(self.measures) if one.name == measure.name), -1)
-        return float(self.searched.error[place]) if place >= 0 else np.nan
+        if place < 0:
+            return np.nan
+        own = OF_OWN_MOTIONS * self.searched.value[place] if self.costly and not self.rough else 0.0
+        return float(self.searched.error[place] + own)
 
     def largest_torque(self, word: str, spring: int) -> tuple[float, float]:
         """Largest "peak" or "vibratory" torque [N m] of a spring that is among ``torques``, infinite where there is no
