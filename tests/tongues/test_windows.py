@@ -120,6 +120,25 @@ def test_speeds_may_be_texts() -> None:
 
 
 @pytest.mark.slow
+def test_short_lines_of_stiff_shafts_need_no_patches() -> None:
+    """A spindle that turns slowly: hundreds of cycles a turn, of which patches took minutes."""
+    line = tn.load(EXAMPLES / "rolling-mill-spindle.toml")
+    found = tn.minimum_damping(line, (tn.rpm(20), tn.rpm(120)))
+    assert found.windows[0] == pytest.approx([1e-4, 100.0]) and not found.complete and "checked at" in found.sentence
+    for factor in (1e-4, 0.02, 1.0, 80.0):
+        damped = line.replace_all(
+            {
+                name: {key: factor * value}
+                for name, one in zip(line.names, line.elements, strict=True)
+                for key in ("damping", "loss_factor", "relative_damping")
+                if (value := getattr(one, key, None))
+            }
+        )
+        for speed in (2.5, 5.1, 9.3, 12.5):
+            assert tn.stability(damped, speed).spectral_radius <= 1 + 1e-9
+
+
+@pytest.mark.slow
 def test_a_long_line_takes_seconds() -> None:
     """Six unknowns, without patches: the least damping is where ``stability`` changes, at the speed named."""
     line = tn.load(EXAMPLES / "truck.toml")

@@ -14,6 +14,7 @@ from functools import partial
 
 import numpy as np
 
+from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.analyses.charts.stability_chart import Task
 from trunnion.analyses.tongues.boundaries import MOST
@@ -40,6 +41,8 @@ ROUNDS = 6
 EVENLY, SAMPLED = 17, 9
 """Columns at equal steps of the speed, and those of lines whose columns are sampled."""
 ROWS_OF_LONG_LINES = 17
+QUICK_TURNS = 10.0
+"""Times the slowest speed of charts from which boxes of short lines are patched."""
 AT_LEVELS = 4
 """Every so many levels the resonances that may open are looked for; every other time each has a column."""
 APART = 1e-4
@@ -76,7 +79,7 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
     family = task.family
     assert isinstance(family, LineFamily)
     if rows is None:
-        rows = ROWS if 2 * family.size <= MOST else ROWS_OF_LONG_LINES
+        rows = ROWS if _completely(task, family) else ROWS_OF_LONG_LINES
     values = levels_of(task.y, rows, own_value(family.assembly, task.y))
     levels = np.sort(family.to_patch(values, False))
     ways = _ways(task, family, levels, lambda s: tell(0.3 * s))
@@ -103,9 +106,16 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
     return found, [_seen(ways.region, regions, column) for column in columns]
 
 
+def _completely(task: Task, family: LineFamily) -> bool:
+    """Whether the box is patched, in which rows and columns are searched for every zero: of short lines whose shafts are
+    not so stiff that a slow turn spans many of their cycles, which takes minutes."""
+    slowest = float(np.min(task.x.values))
+    return 2 * family.size <= MOST and slowest >= QUICK_TURNS * lowest_speed(family.assembly)
+
+
 def _ways(task: Task, family: LineFamily, levels: Array, tell: Callable[[float], None]) -> _Ways:
     threads = os.cpu_count() or 1
-    if 2 * family.size > MOST:
+    if not _completely(task, family):
         region = unpatched(family, task.x.values, task.y.values, threads)
         finer = np.interp(np.arange(FINER * (len(levels) - 1) + 1) / FINER, np.arange(len(levels)), levels)
         return _Ways(
