@@ -107,8 +107,8 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
 
 
 def _completely(task: Task, family: LineFamily) -> bool:
-    """Whether the box is patched, in which rows and columns are searched for every zero: of short lines whose shafts are
-    not so stiff that a slow turn spans many of their cycles, which takes minutes."""
+    """Whether the box is patched, in which rows and columns are searched for every zero: of short lines whose shafts
+    are not so stiff that a slow turn spans many of their cycles, which takes minutes."""
     slowest = float(np.min(task.x.values))
     return 2 * family.size <= MOST and slowest >= QUICK_TURNS * lowest_speed(family.assembly)
 
