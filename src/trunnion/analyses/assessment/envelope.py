@@ -29,8 +29,8 @@ from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import show_speed
 
 POINTS = 5
-LIMIT_SPEEDS = 60
-"""Speeds of the range at which a stable limit is solved for."""
+LIMIT_SPEEDS = 9
+"""Speeds of the range at which a stable limit is solved for, beside the answer for all between."""
 
 
 @dataclass(frozen=True)
@@ -233,8 +233,9 @@ def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[
     cases = [place.line, *(place.line.with_load(c.name) for c in (operation.load_cases if operation else ()))]
     speeds = np.unique(np.linspace(*span, LIMIT_SPEEDS))
     speeds = speeds[speeds > 0]
-    found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1], between=False).limit for case in cases]
-    return float(np.min(np.concatenate(found)))  # unknown at one of them is unknown
+    found = [stable_limit(case, parameter, speeds, low=ends[0], high=ends[1]) for case in cases]
+    every = [ends[0] if one.whole.largest is None else one.whole.largest for one in found if one.whole is not None]
+    return float(np.min(np.concatenate([*(one.limit for one in found), every])))  # unknown at one of them is unknown
 
 
 def _not_reached(line: Driveline, first: Assessment) -> Iterator[str]:
