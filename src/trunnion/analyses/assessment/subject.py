@@ -49,7 +49,7 @@ class Effort:
 
 
 WHOLE = Effort(65, 1e-6, 33)
-QUICK = Effort(25, 1e-2, 9)
+QUICK = Effort(25, 1e-4, 9)
 """To look around."""
 OF_OWN_MOTIONS = 3e-6
 """Share of a value that may be missing because an own motion, about which it is computed, is known no more closely."""

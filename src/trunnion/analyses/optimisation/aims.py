@@ -10,8 +10,8 @@ from math import inf, isfinite, nan
 import numpy as np
 
 from trunnion.analyses.assessment.assess import checks_of, subject_of
-from trunnion.analyses.assessment.check import Check, Status
-from trunnion.analyses.assessment.subject import QUICK, WHOLE, Case, Effort, Subject, with_torques
+from trunnion.analyses.assessment.check import Check, Status, below
+from trunnion.analyses.assessment.subject import WHOLE, Case, Effort, Subject, with_torques
 from trunnion.analyses.kinetostatics.chain import chain
 from trunnion.analyses.kinetostatics.phasing import irregularity_of
 from trunnion.analyses.linear.forced_response import shaft_names
@@ -94,9 +94,10 @@ class Question:
                 subject = replace(subject, cases=tuple(c for c in subject.cases if c.name in self.cases))
         checks = checks_of(subject) if subject is not None and self.checking else ()
         values = tuple(_value(aim, line, subject, checks) for aim in self.aims)
-        judged = [c for c in checks if self._must_hold(c) and c.judged]
-        broken = [c for c in judged if c.status is Status.EXCEEDED]
-        violation = sum(min(-c.spare, WORST) for c in broken)
+        asked = [c for c in checks if self._must_hold(c)]
+        judged = [c for c in asked if c.judged or _unsettled(c)]
+        broken = [c for c in judged if c.status is Status.EXCEEDED or _unsettled(c)]
+        violation = sum(min(abs(c.spare), WORST) for c in broken)
         return Answer(values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf))
 
     @property
@@ -110,10 +111,10 @@ class Question:
         asked = tuple((aim.word, springs.index(aim.spring)) for aim in self.aims if aim.word)
         return replace(subject, cases=tuple(with_torques(subject.cases, asked))) if asked else subject
 
-    def near_cases(self, line: Driveline) -> frozenset[str]:
+    def near_cases(self, line: Driveline, effort: Effort = WHOLE) -> frozenset[str]:
         """Names of the load cases whose torques come near the largest; none where nothing can be computed."""
         try:
-            subject = self._subject(line, QUICK)
+            subject = self._subject(line, effort)
             torques = [_torques(aim, subject) for aim in self.aims if aim.word]
         except (InputError, ComputationError):
             return frozenset()
@@ -173,6 +174,13 @@ def _aim(line: Driveline, given: object) -> Aim:
             return aim
     remedy = f'{nearest(str(given), [aim.name for aim in known])}; "margin of CHECK", or a function of a line'
     raise InputError("is no aim", key="aims", value=given, remedy=remedy)
+
+
+def _unsettled(check: Check) -> bool:
+    """Whether a check holds by less than its value may be low by: not judged, and no design to end at."""
+    return (
+        not check.judged and check.error > 0 and below(check.value + check.error, check.limit) < check.required_margin
+    )
 
 
 def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[Check]) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.analyses.assessment.assess import assess, subject_of
+from trunnion.analyses.assessment.subject import QUICK
 from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, aims_of
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
@@ -167,7 +168,7 @@ def _near_cases(space: Space, question: Question, seed: int) -> frozenset[str]:
     shares = np.random.default_rng(seed).random((LOOKS, len(space.free)))
     shares[0] = space.start
     lines = [line for one in shares if (line := space.line(one)) is not None]
-    return frozenset[str]().union(*(question.near_cases(line) for line in lines))
+    return frozenset[str]().union(*(question.near_cases(line, QUICK) for line in lines))
 
 
 def _there(space: Space, one: Tried) -> Driveline:
