@@ -29,15 +29,11 @@ def number(text: str) -> float:
     return float(re.split(r"[±%(]", text)[0])
 
 
-SHOWN = 5e-6
-"""Half of the last figure that a page shows of a spectral radius."""
-
-
 def agrees(look: Look, x: float, y: float) -> None:
     """What the page shows of the point x rpm, y deg is what ``stability`` gives."""
     look.page.locator("td[data-value='speed']", has_text=re.compile(rf"^{re.escape(f'{x:.6g}')} rpm$")).wait_for()
     there = tn.stability(line().replace("HookeJoint 1", angle=f"{y!r} deg"), speed=tn.rpm(x))
-    assert number(value(look, "spectral radius")) == pytest.approx(there.spectral_radius, abs=SHOWN)
+    assert number(value(look, "spectral radius")) == pytest.approx(there.spectral_radius, abs=1e-8)
     assert value(look, "verdict") == str(there.verdict)
     shown = sorted(float(v) for v in value(look, "moduli of the multipliers").split(","))
     assert shown == pytest.approx(sorted(np.abs(there.multipliers)), abs=1e-8)
@@ -129,7 +125,7 @@ def test_exported_python_gives_the_numbers_on_screen(look: Look, tmp_path: Path)
     program = saved(look, "stability/view.py", tmp_path).read_text(encoding="utf-8")
     there: dict[str, Any] = {}
     exec(program, there)
-    assert number(value(look, "spectral radius")) == pytest.approx(there["point"].spectral_radius, abs=SHOWN)
+    assert number(value(look, "spectral radius")) == pytest.approx(there["point"].spectral_radius, abs=1e-9)
     chart = tn.load_chart(saved(look, "stability/chart.nc", tmp_path))
     assert np.abs(chart.spectral_radius - there["chart"].spectral_radius).max() < 1e-10
     text = saved(look, "stability/chart.csv", tmp_path).read_text(encoding="utf-8")

@@ -55,7 +55,7 @@ class Point:
             {
                 "speed": f"{data['speed'] * factor:.6g} {unit}",
                 "verdict": data["verdict"],
-                "spectral radius": with_error(data["radius"], data["error"], beside=1.0),
+                "spectral radius": with_error(data["radius"], data["error"], most=10, beside=1.0),
                 "growth per turn": f"{100 * data['per_turn']:.5g} %",
                 "growth rate": f"{data['growth']:.6g} 1/s",
                 "resonance": data["resonance"] or "none",
