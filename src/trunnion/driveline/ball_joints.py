@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.joints import Joint
-from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless
+from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Maybe, Tables, optional
 from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
 
@@ -37,8 +37,8 @@ class Ripple(Record):
 
     order: Dimensionless = Field(description="cycles per turn of the joint's shaft")
     amplitude: Angle = Field(description="by which the output runs ahead")
-    phase: Angle = Field(default=0.0, description="where the joint's first ball stands in the joint plane")
-    growth: Dimensionless = Field(default=1.0, description="power of tan(angle) with which the amplitude grows")
+    phase: Angle = optional(default=0.0, description="where the joint's first ball stands in the joint plane")
+    growth: Dimensionless = optional(default=1.0, description="power of tan(angle) with which the amplitude grows")
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -66,12 +66,12 @@ class RzeppaJoint(Joint):
 
     example: ClassVar[str] = 'angle = "8 deg" and ripple = [{ order = 6, amplitude = "0.01 deg" }]'
 
-    angle: Angle = Field(default=0.0, description="bend angle between the two shafts")
-    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
-    ripple: Annotated[tuple[Ripple, ...], BeforeValidator(listed(Ripple, "harmonic"))] = Field(
+    angle: Angle = optional(default=0.0, description="bend angle between the two shafts")
+    plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
+    ripple: Annotated[Tables[Ripple], BeforeValidator(listed(Ripple, "harmonic"))] = optional(
         default=(), description="harmonics of the output over a turn"
     )
-    reference_angle: Angle | None = Field(default=None, description="bend angle at which the amplitudes hold")
+    reference_angle: Maybe[Angle] = optional(default=None, description="bend angle at which the amplitudes hold")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

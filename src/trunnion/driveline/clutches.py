@@ -14,8 +14,12 @@ from trunnion.driveline.quantities import (
     Angle,
     Frequency,
     Kind,
+    Maybe,
+    Several,
     Stiffness,
+    Tables,
     Torque,
+    optional,
     parse,
 )
 from trunnion.driveline.record import Record, listed
@@ -89,16 +93,16 @@ class Clutch(PiecewiseShaft):
     fewest_breakpoints: ClassVar[int] = 0
     slack: ClassVar[bool] = True
 
-    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(quantities)] = Field(
+    breakpoints: Annotated[Several[Angle], BeforeValidator(quantities)] = optional(
         default=(), description="twists at which the stiffness of the spring changes, rising; none by default"
     )
-    friction: Annotated[tuple[Slider, ...], BeforeValidator(_sliders)] = Field(
+    friction: Annotated[Tables[Slider], BeforeValidator(_sliders)] = Field(
         description="sliders in parallel with the spring, each with a spring of its own"
     )
-    linear_amplitude: Angle | None = Field(
+    linear_amplitude: Maybe[Angle] = optional(
         default=None, description="swing at which linear analyses take its mean stiffness and loss"
     )
-    linear_frequency: Frequency | None = Field(default=None, description="of that swing")
+    linear_frequency: Maybe[Frequency] = optional(default=None, description="of that swing")
 
     @model_validator(mode="after")
     def _linear_at_one_motion(self) -> Self:

@@ -27,8 +27,11 @@ from trunnion.driveline.quantities import (
     Inertia,
     Length,
     Mass,
+    Maybe,
     QuadraticLoad,
+    Several,
     Torque,
+    optional,
 )
 from trunnion.driveline.record import Name, Record, as_tuple, is_name
 from trunnion.errors import InputError, InputRemark
@@ -114,26 +117,26 @@ class Disk(Element):
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
 
-    inertia: Inertia | None = Field(default=None, description="polar moment of inertia; or give the geometry")
-    outer_diameter: Length | None = Field(default=None, description="of the disk")
-    inner_diameter: Length | None = Field(default=None, description="of its bore; 0 by default")
-    thickness: Length | None = Field(default=None, description="of the disk")
+    inertia: Maybe[Inertia] = optional(default=None, description="polar moment of inertia; or give the geometry")
+    outer_diameter: Maybe[Length] = optional(default=None, description="of the disk")
+    inner_diameter: Maybe[Length] = optional(default=None, description="of its bore; 0 by default")
+    thickness: Maybe[Length] = optional(default=None, description="of the disk")
     material: str | None = Field(
         default=None, json_schema_extra={"enum": list(MATERIALS)}, description='"steel", say, instead of the density'
     )
-    density: Density | None = Field(default=None, description="of its material; steel 7850 kg/m^3")
-    mass: Mass | None = Field(default=None, description="of a vehicle on wheels, instead of an inertia")
-    radius: Length | None = Field(default=None, description="rolling radius of the wheels that move the mass")
-    load_torque: Torque = Field(default=0.0, description="outer torque; positive resists rotation")
-    viscous_load: Damping = Field(default=0.0, description="outer torque per speed; positive resists rotation")
-    quadratic_load: QuadraticLoad = Field(
+    density: Maybe[Density] = optional(default=None, description="of its material; steel 7850 kg/m^3")
+    mass: Maybe[Mass] = optional(default=None, description="of a vehicle on wheels, instead of an inertia")
+    radius: Maybe[Length] = optional(default=None, description="rolling radius of the wheels that move the mass")
+    load_torque: Torque = optional(default=0.0, description="outer torque; positive resists rotation")
+    viscous_load: Damping = optional(default=0.0, description="outer torque per speed; positive resists rotation")
+    quadratic_load: QuadraticLoad = optional(
         default=0.0, description="outer torque per square of the speed; positive resists rotation"
     )
-    drive_share: Dimensionless = Field(
+    drive_share: Dimensionless = optional(
         default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
     )
-    excitation: Excitations = Field(default=(), description="harmonic torques, in time or in the disk's rotation")
-    firing_angles: Annotated[tuple[Angle, ...], BeforeValidator(_ANGLES)] = Field(
+    excitation: Excitations = optional(default=(), description="harmonic torques, in time or in the disk's rotation")
+    firing_angles: Annotated[Several[Angle], BeforeValidator(_ANGLES)] = optional(
         default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
     )
     misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire, from 1")
@@ -213,7 +216,7 @@ class Ratio(Element):
 
     example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"
 
-    ratio: Dimensionless | None = Field(default=None, description="input speed over output speed; negative reverses")
+    ratio: Maybe[Dimensionless] = optional(default=None, description="input speed over output speed; negative reverses")
     teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
     teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
 

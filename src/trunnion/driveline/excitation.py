@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Annotated, ClassVar, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
 from trunnion.driveline.quantities import (
     SPEED,
@@ -13,9 +13,13 @@ from trunnion.driveline.quantities import (
     Angle,
     Dimensionless,
     Frequency,
+    Maybe,
     QuadraticLoad,
+    Several,
     Speed,
+    Tables,
     Torque,
+    optional,
     shown,
 )
 from trunnion.driveline.record import Record, as_tuple, listed
@@ -47,23 +51,23 @@ class Excitation(Record):
     what: ClassVar[str] = "excitation"
     example: ClassVar[str] = 'order = 2 and amplitude = "40 N*m"'
 
-    amplitude: Torque | None = Field(default=None, description="of the torque; positive drives")
-    order: Dimensionless | None = Field(default=None, description="cycles per turn of the disk")
-    frequency: Frequency | None = Field(default=None, description="in time, instead of an order")
-    phase: Angle = Field(default=0.0, description="at zero rotation or time")
-    quadratic_amplitude: QuadraticLoad | None = Field(
+    amplitude: Maybe[Torque] = optional(default=None, description="of the torque; positive drives")
+    order: Maybe[Dimensionless] = optional(default=None, description="cycles per turn of the disk")
+    frequency: Maybe[Frequency] = optional(default=None, description="in time, instead of an order")
+    phase: Angle = optional(default=0.0, description="at zero rotation or time")
+    quadratic_amplitude: Maybe[QuadraticLoad] = optional(
         default=None, description="amplitude over the square of the disk's speed, instead"
     )
-    speeds: Annotated[tuple[Speed, ...], BeforeValidator(_LISTS)] = Field(
+    speeds: Annotated[Several[Speed], BeforeValidator(_LISTS)] = optional(
         default=(), description="of the disk, where a table of amplitudes has its points"
     )
-    torques: Annotated[tuple[Torque, ...], BeforeValidator(_LISTS)] = Field(
+    torques: Annotated[Several[Torque], BeforeValidator(_LISTS)] = optional(
         default=(), description="mean torques that the disk drives with, instead of speeds"
     )
-    amplitudes: Annotated[tuple[Torque, ...], BeforeValidator(_LISTS)] = Field(
+    amplitudes: Annotated[Several[Torque], BeforeValidator(_LISTS)] = optional(
         default=(), description="at the points of the table"
     )
-    phases: Annotated[tuple[Angle, ...], BeforeValidator(_LISTS)] = Field(
+    phases: Annotated[Several[Angle], BeforeValidator(_LISTS)] = optional(
         default=(), description="at the points of the table"
     )
 
@@ -150,4 +154,4 @@ def _tables(value: object) -> tuple[Excitation, ...]:
     return _READ(value)
 
 
-Excitations = Annotated[tuple[Excitation, ...], BeforeValidator(_tables)]
+Excitations = Annotated[Tables[Excitation], BeforeValidator(_tables)]

@@ -15,8 +15,11 @@ from trunnion.driveline.quantities import (
     Angle,
     Dimensionless,
     Length,
+    Maybe,
     MeshDamping,
     MeshStiffness,
+    Tables,
+    optional,
 )
 from trunnion.driveline.record import Record, listed, one_of
 from trunnion.errors import InputError
@@ -35,8 +38,8 @@ STEEPEST = 45 * DEGREE
 class _MeshHarmonic(Record):
     """A harmonic of the mesh: amplitude · cos(order · mesh phase + phase); the phase grows by a turn per tooth."""
 
-    order: Dimensionless = Field(default=1.0, description="cycles per tooth")
-    phase: Angle = Field(default=0.0, description="at zero rotation")
+    order: Dimensionless = optional(default=1.0, description="cycles per tooth")
+    phase: Angle = optional(default=0.0, description="at zero rotation")
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -107,26 +110,30 @@ class GearPair(Element):
 
     teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
     teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
-    module: Length | None = Field(default=None, description="pitch diameter over teeth")
-    pressure_angle: Angle = Field(default=20 * DEGREE, description="of the teeth; 20 deg by default")
-    base_radius_in: Length | None = Field(default=None, description="base circle of the driving gear, instead of teeth")
-    base_radius_out: Length | None = Field(default=None, description="base circle of the driven gear, instead of teeth")
+    module: Maybe[Length] = optional(default=None, description="pitch diameter over teeth")
+    pressure_angle: Angle = optional(default=20 * DEGREE, description="of the teeth; 20 deg by default")
+    base_radius_in: Maybe[Length] = optional(
+        default=None, description="base circle of the driving gear, instead of teeth"
+    )
+    base_radius_out: Maybe[Length] = optional(
+        default=None, description="base circle of the driven gear, instead of teeth"
+    )
     mesh_stiffness: MeshStiffness = Field(description="along the line of action")
-    mesh_damping: MeshDamping = Field(default=0.0, description="along the line of action")
+    mesh_damping: MeshDamping = optional(default=0.0, description="along the line of action")
     damping_law: DampingLaw = Field(
         default="always", description='when it damps: "always", "in contact" or "never pulling"'
     )
-    backlash: Length = Field(default=0.0, description="play along the line of action")
-    angular_backlash: Angle = Field(default=0.0, description="play of the driven gear instead, the driving one held")
-    stiffness_ratio: Dimensionless = Field(
+    backlash: Length = optional(default=0.0, description="play along the line of action")
+    angular_backlash: Angle = optional(default=0.0, description="play of the driven gear instead, the driving one held")
+    stiffness_ratio: Dimensionless = optional(
         default=0.0, description="slope inside the backlash over that outside; 0: free play, as by default"
     )
-    transmission_error: Annotated[
-        tuple[TransmissionError, ...], BeforeValidator(listed(TransmissionError, "harmonic"))
-    ] = Field(default=(), description="harmonics of the transmission error in the mesh phase")
+    transmission_error: Annotated[Tables[TransmissionError], BeforeValidator(listed(TransmissionError, "harmonic"))] = (
+        optional(default=(), description="harmonics of the transmission error in the mesh phase")
+    )
     stiffness_variation: Annotated[
-        tuple[StiffnessVariation, ...], BeforeValidator(listed(StiffnessVariation, "harmonic"))
-    ] = Field(default=(), description="harmonics of the mesh stiffness over its mean")
+        Tables[StiffnessVariation], BeforeValidator(listed(StiffnessVariation, "harmonic"))
+    ] = optional(default=(), description="harmonics of the mesh stiffness over its mean")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

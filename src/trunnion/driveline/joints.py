@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, positive
-from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Length
+from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Length, Maybe, optional
 from trunnion.driveline.record import one_of
 from trunnion.errors import InputError
 
@@ -76,7 +76,7 @@ class HookeJoint(Joint):
     example: ClassVar[str] = 'angle = "12 deg"'
 
     angle: Angle = Field(description="bend angle between the two shafts")
-    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+    plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
 
     @property
     def orders(self) -> tuple[int, ...]:
@@ -99,8 +99,8 @@ class IdealJoint(Joint):
     plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
     """
 
-    angle: Angle = Field(default=0.0, description="bend angle, for drawings and secondary couples")
-    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+    angle: Angle = optional(default=0.0, description="bend angle, for drawings and secondary couples")
+    plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
 
 
 class TripodJoint(Joint):
@@ -120,7 +120,7 @@ class TripodJoint(Joint):
     angle: Angle = Field(description="bend angle between the two shafts")
     radius: Length = Field(description="of the rollers about the spider's centre")
     length: Length = Field(description="of the shaft that carries the spider, up to the joint at its far end")
-    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
+    plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
     spider: Annotated[
         Literal["input", "output"],
         BeforeValidator(one_of(("input", "output"), "is not a side of the joint", 'write "input" or "output"')),
@@ -159,12 +159,12 @@ class DoubleCardanJoint(Joint):
     example: ClassVar[str] = 'angle = "20 deg"'
 
     angle: Angle = Field(description="bend angle between the two shafts")
-    plane: Angle = Field(default=0.0, description="joint plane relative to the previous joint's")
-    distance_ratio: Dimensionless | None = Field(
+    plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
+    distance_ratio: Maybe[Dimensionless] = optional(
         default=None,
         description="without centring: distance of the first cross to where the axes meet over the second's",
     )
-    yoke_length: Length | None = Field(default=None, description="between the two crosses, for support forces")
+    yoke_length: Maybe[Length] = optional(default=None, description="between the two crosses, for support forces")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -28,9 +28,11 @@ from trunnion.driveline.quantities import (
     Acceleration,
     Angle,
     Dimensionless,
+    Maybe,
     Pressure,
     Speed,
     Torque,
+    optional,
     shown,
 )
 from trunnion.driveline.record import listed, one_of
@@ -96,18 +98,18 @@ class Limit(Addressed):
     what: ClassVar[str] = "limit"
     example: ClassVar[str] = 'of = "Shaft 1"'
 
-    max_torque: Torque | None = Field(default=None, description="largest torque, mean and vibratory together")
-    vibratory_torque: Torque | None = Field(default=None, description="half of peak-to-peak, continuously")
-    transient_vibratory_torque: Torque | None = Field(
+    max_torque: Maybe[Torque] = optional(default=None, description="largest torque, mean and vibratory together")
+    vibratory_torque: Maybe[Torque] = optional(default=None, description="half of peak-to-peak, continuously")
+    transient_vibratory_torque: Maybe[Torque] = optional(
         default=None, description="half of peak-to-peak, where the line passes quickly"
     )
-    max_stress: Pressure | None = Field(default=None, description="largest shear stress at the outside of a tube")
-    max_twist: Angle | None = Field(default=None, description="largest twist, mean and vibratory together")
-    max_speed_fluctuation: Speed | None = Field(default=None, description="of a disk, half of peak-to-peak")
-    max_acceleration: Acceleration | None = Field(default=None, description="of a disk, half of peak-to-peak")
-    margin: Dimensionless = Field(default=0.0, description="share of each limit here that must stay free")
-    temperature_factor: Dimensionless = Field(default=1.0, description="S_t of a coupling's ratings")
-    starting_factor: Dimensionless = Field(default=1.0, description="S_z of a coupling's ratings")
+    max_stress: Maybe[Pressure] = optional(default=None, description="largest shear stress at the outside of a tube")
+    max_twist: Maybe[Angle] = optional(default=None, description="largest twist, mean and vibratory together")
+    max_speed_fluctuation: Maybe[Speed] = optional(default=None, description="of a disk, half of peak-to-peak")
+    max_acceleration: Maybe[Acceleration] = optional(default=None, description="of a disk, half of peak-to-peak")
+    margin: Dimensionless = optional(default=0.0, description="share of each limit here that must stay free")
+    temperature_factor: Dimensionless = optional(default=1.0, description="S_t of a coupling's ratings")
+    starting_factor: Dimensionless = optional(default=1.0, description="S_z of a coupling's ratings")
     ship_shaft: Annotated[str, BeforeValidator(_FEATURES)] | None = Field(
         default=None,
         json_schema_extra={"enum": list(SHIP_SHAFTS)},

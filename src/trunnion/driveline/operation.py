@@ -15,9 +15,12 @@ from trunnion.driveline.quantities import (
     TORQUE,
     Angle,
     Kind,
+    Maybe,
+    MaybeRange,
     Speed,
     Torque,
     json_schema_of,
+    optional,
     parse,
 )
 from trunnion.driveline.record import Name, Named, Record, by_name, one_of
@@ -93,9 +96,11 @@ class Operation(Record):
 
     what: ClassVar[str] = "operation"
 
-    speed: Speed | None = Field(default=None, description="input speed")
-    speed_range: SpeedRange | None = Field(default=None, description="lowest and highest input speed")
-    angle_range: AngleRange | None = Field(default=None, description="smallest and largest joint angle of interest")
+    speed: Maybe[Speed] = optional(default=None, description="input speed")
+    speed_range: MaybeRange[SpeedRange] = optional(default=None, description="lowest and highest input speed")
+    angle_range: MaybeRange[AngleRange] = optional(
+        default=None, description="smallest and largest joint angle of interest"
+    )
     speed_unit: Annotated[
         Literal["rpm", "Hz", "rad/s"],
         BeforeValidator(one_of(SPEED_UNITS, "is not a speed unit", 'write "rpm"', near=True)),
@@ -105,11 +110,11 @@ class Operation(Record):
         json_schema_extra={"enum": list(APPLICATIONS)},
         description="what the line is, which says which guidelines decide; without it they are shown only",
     )
-    switched_off: SwitchedOffRules = Field(
+    switched_off: SwitchedOffRules = optional(
         default=(), description="rules that are not to judge this line, each with its reason"
     )
-    load_cases: tuple[LoadCase, ...] = Field(default=(), description="named sets of load torques")
-    schedules: tuple[Schedule, ...] = Field(default=(), description="angles over travel and torques over speed")
+    load_cases: tuple[LoadCase, ...] = optional(default=(), description="named sets of load torques")
+    schedules: tuple[Schedule, ...] = optional(default=(), description="angles over travel and torques over speed")
 
     @field_validator("speed")
     @classmethod

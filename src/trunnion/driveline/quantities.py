@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, partial
 from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Optional, Self, TypeAlias, TypeVar, overload
 
+from pydantic import Field
 from pydantic_core import core_schema
 
 from trunnion.errors import InputError, short
@@ -322,23 +324,84 @@ def json_schema_of(kind: Kind) -> dict[str, Any]:
     return {"anyOf": [{"type": "number"}, text], "unit": kind.unit}
 
 
-Angle = Annotated[float, Quantity(ANGLE)]
-Speed = Annotated[float, Quantity(SPEED)]
-Frequency = Annotated[float, Quantity(FREQUENCY)]
-Stiffness = Annotated[float, Quantity(STIFFNESS)]
-Damping = Annotated[float, Quantity(DAMPING)]
-QuadraticLoad = Annotated[float, Quantity(QUADRATIC)]
-MeshStiffness = Annotated[float, Quantity(MESH_STIFFNESS)]
-MeshDamping = Annotated[float, Quantity(MESH_DAMPING)]
-Inertia = Annotated[float, Quantity(INERTIA)]
-Torque = Annotated[float, Quantity(TORQUE)]
-Length = Annotated[float, Quantity(LENGTH)]
-Pressure = Annotated[float, Quantity(PRESSURE)]
-Density = Annotated[float, Quantity(DENSITY)]
-Mass = Annotated[float, Quantity(MASS)]
-Power = Annotated[float, Quantity(POWER)]
-Acceleration = Annotated[float, Quantity(ACCELERATION)]
-Dimensionless = Annotated[float, Quantity(RATIO)]
+def optional(*, default: object, **about: Any) -> Any:
+    """A pydantic field with a default, for what reads as another type than it is written in (``Stated``)."""
+    return Field(default=default, **about)
+
+
+if TYPE_CHECKING:
+    Read = TypeVar("Read")
+    Written = TypeVar("Written")
+
+    class Stated(Generic[Read, Written]):
+        """A field to a type checker: what it gives when it is read, and all that may be written."""
+
+        @overload
+        def __get__(self, owner: None, kind: object) -> Self: ...
+        @overload
+        def __get__(self, owner: object, kind: object) -> Read: ...
+        def __get__(self, owner: object | None, kind: object) -> Self | Read: ...
+        def __set__(self, owner: object, value: Written) -> None: ...
+
+    Angle: TypeAlias = Stated[float, float | str]
+    Speed: TypeAlias = Stated[float, float | str]
+    Frequency: TypeAlias = Stated[float, float | str]
+    Stiffness: TypeAlias = Stated[float, float | str]
+    Damping: TypeAlias = Stated[float, float | str]
+    QuadraticLoad: TypeAlias = Stated[float, float | str]
+    MeshStiffness: TypeAlias = Stated[float, float | str]
+    MeshDamping: TypeAlias = Stated[float, float | str]
+    Inertia: TypeAlias = Stated[float, float | str]
+    Torque: TypeAlias = Stated[float, float | str]
+    Length: TypeAlias = Stated[float, float | str]
+    Pressure: TypeAlias = Stated[float, float | str]
+    Density: TypeAlias = Stated[float, float | str]
+    Mass: TypeAlias = Stated[float, float | str]
+    Power: TypeAlias = Stated[float, float | str]
+    Acceleration: TypeAlias = Stated[float, float | str]
+    Dimensionless: TypeAlias = Stated[float, float | str]
+
+    Of = TypeVar("Of")
+
+    class Maybe(Stated[float | None, float | str | None], Generic[Of]):
+        """A quantity or None."""
+
+    class Several(Stated[tuple[float, ...], Iterable[float | str]], Generic[Of]):
+        """Quantities in a row."""
+
+    class MaybeRange(Stated[tuple[float, float] | None, Sequence[float | str] | None], Generic[Of]):
+        """The lower and the upper end, or None."""
+
+    class Tables(Stated[tuple[Of, ...], Iterable[Of | Mapping[str, Any]]], Generic[Of]):
+        """What is stated in a list of tables, each made or as in a file."""
+
+else:
+    Angle = Annotated[float, Quantity(ANGLE)]
+    Speed = Annotated[float, Quantity(SPEED)]
+    Frequency = Annotated[float, Quantity(FREQUENCY)]
+    Stiffness = Annotated[float, Quantity(STIFFNESS)]
+    Damping = Annotated[float, Quantity(DAMPING)]
+    QuadraticLoad = Annotated[float, Quantity(QUADRATIC)]
+    MeshStiffness = Annotated[float, Quantity(MESH_STIFFNESS)]
+    MeshDamping = Annotated[float, Quantity(MESH_DAMPING)]
+    Inertia = Annotated[float, Quantity(INERTIA)]
+    Torque = Annotated[float, Quantity(TORQUE)]
+    Length = Annotated[float, Quantity(LENGTH)]
+    Pressure = Annotated[float, Quantity(PRESSURE)]
+    Density = Annotated[float, Quantity(DENSITY)]
+    Mass = Annotated[float, Quantity(MASS)]
+    Power = Annotated[float, Quantity(POWER)]
+    Acceleration = Annotated[float, Quantity(ACCELERATION)]
+    Dimensionless = Annotated[float, Quantity(RATIO)]
+
+    class _Row:
+        """Written as the class that type checkers see in its place; to pydantic a tuple."""
+
+        def __class_getitem__(cls, member: Any) -> Any:
+            return tuple[member, ...]
+
+    Maybe = MaybeRange = Optional
+    Several = Tables = _Row
 
 
 def deg(angle: Number) -> Number:

@@ -23,6 +23,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field
 
+from trunnion.driveline.quantities import Tables
 from trunnion.driveline.record import Record, listed, one_of
 from trunnion.errors import InputError
 
@@ -170,7 +171,7 @@ class SwitchedOff(Record):
 
 _AS_A_LIST = f"write switched_off = [{{ {SwitchedOff.example.replace(' and ', ', ')} }}]"
 SwitchedOffRules = Annotated[
-    tuple[SwitchedOff, ...], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, _AS_A_LIST, owner="rule"))
+    Tables[SwitchedOff], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, _AS_A_LIST, owner="rule"))
 ]
 Application = Annotated[
     str, BeforeValidator(one_of(APPLICATIONS, "is not an application", f"known: {', '.join(APPLICATIONS)}"))

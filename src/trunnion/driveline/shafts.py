@@ -18,10 +18,12 @@ from trunnion.driveline.quantities import (
     Dimensionless,
     Frequency,
     Length,
+    Maybe,
     Power,
     Pressure,
     Stiffness,
     Torque,
+    optional,
 )
 from trunnion.errors import InputError
 
@@ -29,13 +31,13 @@ from trunnion.errors import InputError
 class Spring(Element):
     """What a shaft and a coupling share: one stiffness, and damping as a coefficient or as a loss factor."""
 
-    stiffness: Stiffness | None = Field(default=None, description="torsional stiffness")
-    damping: Damping = Field(default=0.0, description="viscous damping")
-    loss_factor: Dimensionless | None = Field(default=None, description="damping as a loss factor instead")
-    loss_factor_frequency: Frequency | None = Field(
+    stiffness: Maybe[Stiffness] = optional(default=None, description="torsional stiffness")
+    damping: Damping = optional(default=0.0, description="viscous damping")
+    loss_factor: Maybe[Dimensionless] = optional(default=None, description="damping as a loss factor instead")
+    loss_factor_frequency: Maybe[Frequency] = optional(
         default=None, description="at which the loss factor holds; by default at all"
     )
-    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+    fork_offset: Angle = optional(default=0.0, description="angle between the forks at the two ends; 0 is in line")
 
     @model_validator(mode="after")
     def _damped_one_way(self) -> Self:
@@ -104,18 +106,18 @@ class Shaft(Spring):
     example: ClassVar[str] = 'stiffness = "12 kN*m/rad"'
     idle: ClassVar[tuple[str, ...]] = ("tensile_strength",)
 
-    outer_diameter: Length | None = Field(default=None, description="of the tube")
-    inner_diameter: Length | None = Field(default=None, description="of the tube; 0 for a solid bar, as by default")
-    length: Length | None = Field(default=None, description="of the tube")
+    outer_diameter: Maybe[Length] = optional(default=None, description="of the tube")
+    inner_diameter: Maybe[Length] = optional(default=None, description="of the tube; 0 for a solid bar, as by default")
+    length: Maybe[Length] = optional(default=None, description="of the tube")
     material: str | None = Field(
         default=None,
         json_schema_extra={"enum": list(MATERIALS)},
         description='of the tube, "steel" say, instead of the next four',
     )
-    shear_modulus: Pressure | None = Field(default=None, description="of the tube's material; steel 79.3 GPa")
-    density: Density | None = Field(default=None, description="of the tube's material; 0: no inertia, as by default")
-    young_modulus: Pressure | None = Field(default=None, description="of the tube's material, for bending")
-    tensile_strength: Pressure | None = Field(default=None, description="of the tube's material, for checks")
+    shear_modulus: Maybe[Pressure] = optional(default=None, description="of the tube's material; steel 79.3 GPa")
+    density: Maybe[Density] = optional(default=None, description="of the tube's material; 0: no inertia, as by default")
+    young_modulus: Maybe[Pressure] = optional(default=None, description="of the tube's material, for bending")
+    tensile_strength: Maybe[Pressure] = optional(default=None, description="of the tube's material, for checks")
 
     @model_validator(mode="before")
     @classmethod
@@ -175,13 +177,13 @@ class Coupling(Spring):
     example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'
     idle: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
 
-    relative_damping: Dimensionless | None = Field(default=None, description="loss per cycle over elastic energy")
-    nominal_torque: Torque | None = Field(default=None, description="rating, carried continuously (T_KN)")
-    maximum_torque: Torque | None = Field(default=None, description="rating, carried briefly (T_Kmax)")
-    vibratory_torque: Torque | None = Field(
+    relative_damping: Maybe[Dimensionless] = optional(default=None, description="loss per cycle over elastic energy")
+    nominal_torque: Maybe[Torque] = optional(default=None, description="rating, carried continuously (T_KN)")
+    maximum_torque: Maybe[Torque] = optional(default=None, description="rating, carried briefly (T_Kmax)")
+    vibratory_torque: Maybe[Torque] = optional(
         default=None, description="rating, amplitude carried continuously at 10 Hz (T_KW)"
     )
-    heat_rating: Power | None = Field(default=None, description="rating, damping heat carried continuously (P_KV)")
+    heat_rating: Maybe[Power] = optional(default=None, description="rating, damping heat carried continuously (P_KV)")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, not_negative
-from trunnion.driveline.quantities import ANGLE, Angle, Damping, Stiffness, parse
+from trunnion.driveline.quantities import ANGLE, Angle, Damping, Several, Stiffness, optional, parse
 from trunnion.driveline.record import as_tuple, one_of
 from trunnion.errors import InputError
 
@@ -45,18 +45,18 @@ class PiecewiseShaft(Element):
     slack: ClassVar[bool] = False
     """Whether all its stiffnesses may be 0."""
 
-    breakpoints: Annotated[tuple[Angle, ...], BeforeValidator(quantities)] = Field(
+    breakpoints: Annotated[Several[Angle], BeforeValidator(quantities)] = Field(
         description="twists at which the stiffness changes, rising"
     )
-    stiffnesses: Annotated[tuple[Stiffness, ...], BeforeValidator(quantities)] = Field(
+    stiffnesses: Annotated[Several[Stiffness], BeforeValidator(quantities)] = Field(
         description="below, between and above the breakpoints"
     )
-    damping: Damping = Field(default=0.0, description="viscous damping")
+    damping: Damping = optional(default=0.0, description="viscous damping")
     damping_law: Annotated[
         Literal["always", "in contact"],
         BeforeValidator(one_of(LAWS, "is unknown", 'write "always" or "in contact"')),
     ] = Field(default="always", description='when it damps: "always", or "in contact", not in the softest stage')
-    fork_offset: Angle = Field(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+    fork_offset: Angle = optional(default=0.0, description="angle between the forks at the two ends; 0 is in line")
 
     @classmethod
     def symmetric(cls, stages: Iterable[tuple[Any, Any]], **more: Any) -> PiecewiseShaft:
