@@ -20,7 +20,7 @@ from trunnion.analyses.charts import prices
 from trunnion.cli import app
 from trunnion.studies.result import Reproduction
 
-pytest_plugins = ["served"]  # the fixtures of the browser
+pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
 
 STUDIES = {
     "test_captured_run_ups.py": "300 run-ups against a stiff integrator",

@@ -1,13 +1,12 @@
-"""A free chain with engine orders in openTorsion, where that is installed (pip install opentorsion)."""
+"""A free chain with engine orders in openTorsion."""
 
 from __future__ import annotations
 
 import numpy as np
+import opentorsion as ot
 import pytest
 
 import trunnion as tn
-
-ot = pytest.importorskip("opentorsion", reason="openTorsion is not installed: pip install opentorsion")
 
 
 def test_the_same_chain_in_open_torsion() -> None:
