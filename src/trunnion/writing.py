@@ -6,6 +6,7 @@ when it is whole.
 
 from __future__ import annotations
 
+import errno
 import os
 import platform
 import secrets
@@ -52,6 +53,7 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         with _disk_errors_about(Path(path), temporary):
             yield temporary
+            _to_disk(temporary)
             os.replace(temporary, target)
     finally:
         temporary.unlink(missing_ok=True)
@@ -83,6 +85,8 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         with _disk_errors_about(target, temporary):
             yield made
+            for path in made.rglob("*"):
+                _to_disk(path)
         if target.is_dir():
             with _disk_errors_about(target, temporary):
                 _replace_all(temporary, target)
@@ -94,6 +98,18 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
                 _refuse_output(target, f"cannot be made: {error.strerror}")
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _to_disk(path: Path) -> None:
+    """Wait until a file is on the disk, so that no loss of power leaves its new name with nothing behind it."""
+    if path.is_dir():
+        return
+    with path.open("r+b") as stream:
+        try:
+            os.fsync(stream.fileno())
+        except OSError as error:
+            if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # a disk that knows no such wait
+                raise
 
 
 def _replace_all(temporary: Path, target: Path) -> None:

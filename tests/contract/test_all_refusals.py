@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import time
+import tomllib
+
 import pytest
 
+from trunnion.driveline import files
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.files import loads
@@ -134,3 +138,51 @@ def test_keys_and_texts_with_dots_are_read():
         + '"""\n[[element]]\ntype = "Disk"\ninertia = 1'
     )
     assert len(loads(text).elements) == 1
+
+
+DOTS = ".".join("x" * 100)
+READ = {
+    "comment": f"# {DOTS} it's",
+    "comment with an open text": f'# """ {DOTS}\nname = "a" # \'\'\' {DOTS}',
+    "basic text": f'description = "a \\" {DOTS}"',
+    "literal text": f"description = '{DOTS} \\'  # {DOTS}",
+    "text with a sharp": f'description = "# {DOTS}" # "{DOTS}',
+    "texts of several lines": f'description = """{DOTS}\n\\"""{DOTS}\n"" {DOTS}"""""',
+    "literal texts of several lines": f"description = '''{DOTS}\n'' # {DOTS}\\''''' # {DOTS}",
+    "empty text of several lines": f'description = """"""  # {DOTS}',
+    "empty text": f'description = ""  # {DOTS}',
+}
+DEEP = {
+    "after a comment": f'# it is 6"\n{DOTS} = 1',
+    "after a text": f'name = "a \\" b"\n{DOTS} = 1',
+    "after a long text": f'description = """ ""\\""" """""\n{DOTS} = 1',
+    "quoted with signs": ".".join(["'#'", '"\\""'] * 50) + " = 1",
+    "spaced": " . ".join("x" * 100) + " = 1",
+    "in a header": f"[[{DOTS}]]",
+    "in a table of one line": f"name = {{ {DOTS} = 1 }}",
+}
+PARTS = ['\n\\"""', '""', "'''", '"\\', "a", "a.", "a ", "a\n", "#\n", " ", ".", '"a".', "''."]
+
+
+@pytest.mark.parametrize("head", READ.values(), ids=READ.keys())
+def test_dots_outside_keys_are_read(head):
+    assert len(loads(f'format = 1\n{head}\n[[element]]\ntype = "Disk"\ninertia = 1').elements) == 1
+
+
+@pytest.mark.parametrize("head", DEEP.values(), ids=DEEP.keys())
+def test_a_key_of_many_parts_is_refused_wherever_it_stands(head):
+    tomllib.loads(head)  # it is valid
+    (line,) = lines_of(head)
+    assert line.endswith("is not valid here: a key of more than 60 parts; remove the extra dots")
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_large_files_of_one_part_are_gone_through_once(part):
+    """Four times the size takes about four times as long, not sixteen times."""
+    times = []
+    for size in (200_000, 800_000):
+        text = "x" + part * (size // len(part))
+        begin = time.process_time()
+        files._DEEP_KEY.search(files._without_texts(text))
+        times.append(time.process_time() - begin)
+    assert times[1] < 10 * max(times[0], 0.05)

@@ -66,9 +66,9 @@ def test_without_a_home_no_folder_named_after_the_tilde_appears(tmp_path):
 
 def test_a_full_disk_costs_the_cache_only(tmp_path):
     full = (
-        "import numba.core.caching as caching\n"
+        "import pathlib\n"
         "def save(*_):\n    raise OSError(28, 'No space left on device')\n"
-        "caching.IndexDataCacheFile.save = save"
+        "pathlib.Path.write_bytes = save"
     )
     said = said_where(tmp_path, full, cache=tmp_path / "cache")
     assert len(said) == 1 and "No space left on device" in said[0]

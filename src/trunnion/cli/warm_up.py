@@ -25,9 +25,18 @@ def warm_up(
     processes: Annotated[
         int | None, typer.Option("--processes", min=1, help="How many compile side by side; default: one per core.")
     ] = None,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Compile nothing: say what is kept; exit code 2 if damaged or none."),
+    ] = False,
     part: Annotated[str | None, typer.Option("--part", hidden=True)] = None,
 ) -> None:
     """Compile ahead of time, so that no first chart or report waits for it; what is there already is kept."""
+    if check:
+        from trunnion.cli.kept import say_what_is_kept
+
+        say_what_is_kept()
+        return
     if part is not None:
         from trunnion.analyses.charts.prices import compile_at_once
 

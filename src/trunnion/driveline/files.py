@@ -49,10 +49,17 @@ FORMAT = 1
 LARGEST_FILE = 4_000_000
 """Bytes of a driveline file; examples have a few thousand."""
 DEEPEST_KEY = 60
-_QUOTED = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*+"""' r"|'''(?:[^']|'(?!''))*+'''" r'|"[^"\n]*+"' r"|'[^'\n]*+'", re.DOTALL
-)
-_DEEP_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{DEEPEST_KEY}}}")
+# No possessive quantifiers: Python before 3.11.4 reads some of them wrongly.
+_OPENING = re.compile(r"""#|\"{3}|'{3}|["']""")
+_CLOSING = {
+    "#": re.compile(r"\n"),
+    "'''": re.compile(r"'{3,5}"),
+    "'": re.compile(r"['\n]"),
+    '"""': re.compile(r'\\.|"{3,5}', re.DOTALL),
+    '"': re.compile(r'\\.|["\n]'),
+}
+"""What ends a comment or a quoted text of TOML; a backslash takes the next character with it."""
+_DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{DEEPEST_KEY}}}")
 _DAMPING = ("damping_ratio", "damping_ratio_frequency")
 TOP_KEYS = (
     "format",
@@ -161,7 +168,7 @@ def _toml(text: str) -> dict[str, Any]:
     if len(text) > LARGEST_FILE:
         raise _too_large("", len(text))
     remedy = 'write lines as key = value, with text and units in quotes: angle = "12 deg"'
-    if _DEEP_KEY.search(_QUOTED.sub("q", text)):
+    if _DEEP_KEY.search(_without_texts(text)):
         raise InputError(f"is not valid here: a key of more than {DEEPEST_KEY} parts", remedy="remove the extra dots")
     try:
         return tomllib.loads(text)
@@ -171,6 +178,17 @@ def _toml(text: str) -> dict[str, Any]:
         raise InputError("is not valid TOML: a number of thousands of digits", remedy="write 1.2e4, say") from None
     except RecursionError:
         raise InputError("is not valid TOML: nested too deeply", remedy="remove the extra brackets") from None
+
+
+def _without_texts(text: str) -> str:
+    """TOML without its comments and with q for each quoted text, whether it ends or not; the text is read once."""
+    kept, place = [], 0
+    while opening := _OPENING.search(text, place):
+        mark = opening.group()
+        kept += [text[place : opening.start()], "" if mark == "#" else "q"]
+        closing = (found for found in _CLOSING[mark].finditer(text, opening.end()) if found.group()[0] != "\\")
+        place = next((found.end() - found.group().count("\n") for found in closing), len(text))
+    return "".join([*kept, text[place:]])
 
 
 def _cut(message: str) -> str:

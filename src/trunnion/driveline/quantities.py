@@ -32,7 +32,8 @@ Number = TypeVar("Number", float, "NDArray[np.float64]")
 NUMBER_PATTERN = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(NUMBER_PATTERN)
 # Powers of one digit and no other numbers: pint would happily work out m^9^9^9^9.
-_UNIT = re.compile(r"(?:1(?=\s*/)|[A-Za-zµμ]++(?:(?:\^|\*\*)[+-]?[0-9])?|[*/()\s])+")
+# One letter at a step, and no possessive quantifiers: Python before 3.11.4 reads some of them wrongly.
+_UNIT = re.compile(r"(?:1(?=\s*/)|[A-Za-zµμ]|(?<=[A-Za-zµμ])(?:\^|\*\*)[+-]?[0-9]|\*(?!\*)|[/()\s])+")
 _SPELLINGS = {"·": "*", "⋅": "*", "×": "*", ".": "*", "²": "^2", "³": "^3", "°": "deg", "%": "percent"}
 
 

@@ -16,7 +16,7 @@ from trunnion.errors import InputRemark
 @cache
 def cache_folder(name: str) -> Path | None:
     """The folder ``name`` of the cache, made if need be; None, with one remark, where it cannot be written."""
-    chosen = _chosen()
+    chosen = chosen_folder()
     if chosen is None:
         return None
     folder = chosen / name
@@ -28,12 +28,13 @@ def cache_folder(name: str) -> Path | None:
     return folder
 
 
-def without_a_cache(error: OSError) -> None:
+def without_a_cache(error: Exception) -> None:
     """Say that machine code could not be kept because of ``error``, such as a full disk."""
-    _say_once(str(_chosen()), error.strerror or str(error))
+    _say_once(str(chosen_folder()), getattr(error, "strerror", None) or str(error))
 
 
-def _chosen() -> Path | None:
+def chosen_folder() -> Path | None:
+    """The folder of the cache, there or not; None, with one remark, where no place is known."""
     text = os.environ.get("TRUNNION_CACHE") or _of_the_user()
     if text.startswith("~"):  # no home to expand it to: a folder named "~" would appear here
         _say_once(text, "there is no home folder")
@@ -49,6 +50,8 @@ def _of_the_user() -> str:
 
 
 def _probe(folder: Path) -> None:
+    if folder.is_file():  # by this name it can only be what a failing disk left
+        folder.unlink()
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryFile(dir=folder):
         pass

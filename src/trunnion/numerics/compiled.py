@@ -8,20 +8,20 @@ cannot be written, the same text is compiled for this process alone.
 from __future__ import annotations
 
 import hashlib
-import importlib.util
-import os
 import sys
-import tempfile
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 
 import scipy
 
+from trunnion.errors import TrunnionError
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.jit import Kept, NotKept, caches_of
+from trunnion.numerics.kept_code import remove
 from trunnion.numerics.linked import link_inner_ones
 from trunnion.numerics.sources import VERSIONS
+from trunnion.writing import written_whole
 
 
 @cache
@@ -49,7 +49,7 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
     if folder is not None:
         try:
             return _kept(folder / f"{name}.py", source, full)
-        except OSError as error:
+        except (OSError, TrunnionError) as error:
             without_a_cache(error)
     module = ModuleType(full)
     sys.modules[full] = module
@@ -60,24 +60,22 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
 
 
 def _kept(path: Path, source: str, full: str) -> ModuleType:
-    if not path.exists() or path.read_text(encoding="utf-8") != source:
-        _write(path, source)
-    spec = importlib.util.spec_from_file_location(full, path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+    """The module, run from its text: Python would keep it beside the copy, in a file that is never checked."""
+    if not _holds(path, source):
+        remove(path)
+        with written_whole(path) as temporary:
+            temporary.write_text(source, encoding="utf-8", newline="")
+    module = ModuleType(full)
+    module.__file__ = str(path)
     sys.modules[full] = module
     with caches_of(Kept):
-        spec.loader.exec_module(module)
+        exec(compile(source, str(path), "exec"), vars(module))
     link_inner_ones(module)
     return module
 
 
-def _write(path: Path, source: str) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+def _holds(path: Path, source: str) -> bool:
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(source)
-        os.replace(temporary, path)
+        return path.read_bytes() == source.encode()
     except OSError:
-        os.unlink(temporary)
-        raise
+        return False

@@ -2,22 +2,27 @@
 
 numba keeps it beside the source, which an installation by somebody else does not allow, and refuses to
 compile where it finds no place at all. It also looks only at a function's own file, not at those of the functions
-that it calls: machine code is therefore kept in a folder named after all sources it may come from. A folder that
-cannot be written and a disk that is full stop nothing here: they cost the time to compile, and a remark.
+that it calls: machine code is therefore kept in a folder named after all sources it may come from. And it runs whatever
+its files hold: here a file says by its checksum whether it is whole, and one that is not is compiled anew. A folder
+that cannot be written and a disk that is full stop nothing here: they cost the time to compile, and a remark.
 """
 
 from __future__ import annotations
 
+import hashlib
+import pickle
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
 import numba
-from numba.core import caching, ccallback, dispatcher, event
+from numba.core import caching, ccallback, compiler, dispatcher, event, serialize
 
-from trunnion.numerics import shipped
+from trunnion.numerics import kept_code, shipped
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
 from trunnion.numerics.compile_lock import CompileLock, release_all
 from trunnion.numerics.linked import INNER, link_only
@@ -26,8 +31,9 @@ from trunnion.numerics.sources import SOURCES, digest_of
 # numba states no types of these.
 DECORATORS: tuple[Any, ...] = (dispatcher, ccallback)
 """Where numba's decorators find the cache that they give a function."""
-CACHE: Any = caching.FunctionCache
 NO_CACHE: Any = caching.NullCache
+COMPILED: Any = compiler.CompileResult
+DUMPS: Any = serialize.dumps
 
 
 def njit(
@@ -61,52 +67,122 @@ def at_hand(*functions: Any) -> bool:
 
 
 def _kept_in(folder: Path | None, function: Callable[..., Any]) -> Any:
-    """The cache of a function: below ``folder``, or for this process alone."""
-    if folder is None:
-        return NotKept(function)
-    config: Any = numba.config
-    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
-    try:
-        return Kept(function)
-    except RuntimeError:  # the folder went away since it was tried, or the source is no file
-        return NotKept(function)
-    finally:
-        config.CACHE_DIR = before
+    """The cache of a function: in ``folder``, or for this process alone."""
+    return NotKept(function) if folder is None or _source(function) is None else Kept(function, folder)
 
 
-class Kept(CACHE):
-    """numba's cache of one function, which looks also at what came with the installation, lets one process compile
-    while others wait, and makes of a failure to keep what it compiled a remark, not an error."""
+class NotKept(NO_CACHE):
+    """No cache of one function but what came with the installation."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """The machine code for a signature, or None."""
+        return shipped.load(self._function, signature, context)
+
+    def filled(self) -> bool:
+        """Whether anything came along."""
+        return shipped.in_use()
+
+
+class Kept(NotKept):
+    """The machine code of one function, a file a signature in ``folder``, by default that of the function's source.
+
+    It looks also at what came with the installation, lets one process compile while others wait, and makes of a failure
+    to keep what it compiled a remark, not an error.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path | None = None) -> None:
         super().__init__(function)
-        self._lock = CompileLock(Path(self.cache_path) / f"{function.__module__}.{function.__qualname__}.lock")
+        self._folder = folder or Path(function.__code__.co_filename).parent
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        line = function.__code__.co_firstlineno
+        self._stem = f"{re.sub(r'[^0-9A-Za-z_.]', '', self._name)[-80:]}-{line}"
+        self._lock = CompileLock(self._folder / f"{self._stem}.lock")
+
+    @property
+    def cache_path(self) -> str:
+        """Where it is kept."""
+        return str(self._folder)
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The machine code for a signature, or None: then the lock is held until it is saved."""
-        found = super().load_overload(signature, context)
+        found = self._read(signature, context)
         if found is None:
-            found = shipped.load(self._py_func, signature, context)
+            found = super().load_overload(signature, context)
         if found is None:
             self._lock.take()
-            found = super().load_overload(signature, context)  # whoever held it may have kept it meanwhile
+            found = self._read(signature, context)  # whoever held it may have kept it meanwhile
             if found is not None:
                 self._lock.release()
         return found
 
     def filled(self) -> bool:
         """Whether anything is kept, or came along."""
-        return bool(self._cache_file._load_index()) or shipped.in_use()
+        return any(self._folder.glob(f"{self._stem}.*{kept_code.ENDING}")) or super().filled()
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
-        """Keep what was compiled, if there is room."""
-        shipped.keep(self._py_func, signature, compiled)
+        """Keep what was compiled, if there is room and it means the same in another process."""
+        shipped.keep(self._function, signature, compiled)
         try:
-            super().save_overload(signature, compiled)
+            if _lasts(signature) and not compiled.library.has_dynamic_globals and not compiled.lifted:
+                key = self._key(signature, compiled.codegen)
+                processor = str(compiled.codegen.magic_tuple()[1])
+                kept_code.write(self._path(key), self._name, processor, DUMPS((key, compiled._reduce())))
         except OSError as error:
             without_a_cache(error)
         finally:
             self._lock.release()
+
+    def flush(self) -> None:
+        """Forget what is kept."""
+        for path in self._folder.glob(f"{self._stem}.*{kept_code.ENDING}"):
+            kept_code.remove(path)
+
+    def _read(self, signature: Any, context: Any) -> Any:
+        """What is kept for a signature; what does not come back is deleted."""
+        context.refresh()  # what the code is bound to is known only then
+        key = self._key(signature, context.codegen())
+        path = self._path(key)
+        content = kept_code.read(path) if _lasts(signature) else None
+        if content is None:
+            return None
+        try:
+            of, reduced = pickle.loads(content)
+            return COMPILED._rebuild(context, *reduced) if of == key else None
+        except Exception:  # of whatever kind: it is written anew
+            kept_code.remove(path)
+            return None
+
+    def _key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
+        """What the machine code depends on: types, processor, source, and what the function closes over."""
+        code, cells = self._function.__code__.co_code, self._function.__closure__ or ()
+        enclosed = DUMPS(tuple(cell.cell_contents for cell in cells)) if cells else b""
+        parts = (_source(self._function), *(hashlib.sha256(part).hexdigest() for part in (code, enclosed)))
+        return signature, codegen.magic_tuple(), parts
+
+    def _path(self, key: tuple[Any, ...]) -> Path:
+        word = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        return self._folder / f"{self._stem}.{word}{kept_code.ENDING}"
+
+
+def _source(function: Callable[..., Any]) -> str | None:
+    """A word for the file of a function; None where there is none."""
+    return _word_of(function.__code__.co_filename)
+
+
+@cache
+def _word_of(path: str) -> str | None:
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+def _lasts(signature: Any) -> bool:
+    """Whether types mean the same in another process: those of functions hold their address."""
+    return " at 0x" not in str(signature)
 
 
 class _Failures(event.Listener):  # type: ignore[misc]
@@ -123,21 +199,6 @@ class _Failures(event.Listener):  # type: ignore[misc]
 
 
 event.register("numba:compile", _Failures())  # type: ignore[no-untyped-call]
-
-
-class NotKept(NO_CACHE):
-    """No cache of one function but what came with the installation."""
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._function = function
-
-    def load_overload(self, signature: Any, context: Any) -> Any:
-        """The machine code for a signature, or None."""
-        return shipped.load(self._function, signature, context)
-
-    def filled(self) -> bool:
-        """Whether anything came along."""
-        return shipped.in_use()
 
 
 @contextmanager

@@ -11,7 +11,6 @@ import hashlib
 import os
 import pickle
 import platform
-import tempfile
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ import numpy as np
 from numba.core import compiler, serialize
 from numba.core.dispatcher import Dispatcher
 
+from trunnion.numerics.kept_code import unpacked, write
 from trunnion.numerics.sources import SOURCES, digest_of
 
 # Neither numba nor llvmlite states the types of these.
@@ -59,12 +59,14 @@ def load(function: Any, signature: Any, context: Any) -> Any:
     if folder is None or not in_use():
         return None
     name = _name(function, signature)
-    try:
-        payload = None if name is None else pickle.loads((folder / name).read_bytes())
-    except (OSError, EOFError, pickle.UnpicklingError):  # it is not there, or not whole
+    if name is None:
         return None
-    context.refresh()  # what the code is bound to is known only then
-    return None if payload is None else COMPILED._rebuild(context, *payload)
+    try:
+        code = unpacked((folder / name).read_bytes())
+        context.refresh()  # what the code is bound to is known only then
+        return None if code is None else COMPILED._rebuild(context, *pickle.loads(code.content))
+    except Exception:  # it is not there, or does not come back: it is compiled
+        return None
 
 
 def keep(function: Any, signature: Any, compiled: Any) -> None:
@@ -73,10 +75,7 @@ def keep(function: Any, signature: Any, compiled: Any) -> None:
     name = _name(function, signature) if folder is not None else None
     if folder is None or name is None or compiled.library.has_dynamic_globals or compiled.lifted:
         return
-    handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
-    with os.fdopen(handle, "wb") as stream:
-        stream.write(DUMPS(compiled._reduce()))
-    os.replace(temporary, folder / name)
+    write(folder / name, f"{function.__module__}.{function.__qualname__}", PLAIN, DUMPS(compiled._reduce()))
 
 
 def _name(function: Any, signature: Any) -> str | None:

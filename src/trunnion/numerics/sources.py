@@ -8,13 +8,15 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import llvmlite
 import numba
 import numpy as np
 
 SOURCES = Path(__file__).parent
 """The folder below which all functions stand that the package's ``njit`` decorates."""
-VERSIONS = " ".join(
-    (numba.__version__, np.__version__, str(sys.implementation.cache_tag), sys.platform, platform.machine())
+VERSIONS = (
+    f"numba {numba.__version__}, llvmlite {llvmlite.__version__}, numpy {np.__version__}, "
+    f"{sys.implementation.cache_tag}, {sys.platform} {platform.machine()}"
 )
 
 
