@@ -1,4 +1,4 @@
-"""Where continuous integration runs (``CI`` is set), a test that is skipped has failed, but for reasons known beforehand."""
+"""In continuous integration (``CI`` is set) a test that is skipped has failed, but for reasons known beforehand."""
 
 from __future__ import annotations
 
