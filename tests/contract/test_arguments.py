@@ -9,7 +9,7 @@ import pytest
 import trunnion as tn
 
 NAN, INF = float("nan"), float("inf")
-NO_NUMBER: tuple[Any, ...] = ("1500 rpm", True, 1j, [[1.0], [2.0, 3.0]], {})
+NO_NUMBER: tuple[Any, ...] = ("12 deg", True, 1j, [[1.0], [2.0, 3.0]], {})
 NO_LIST: tuple[Any, ...] = (3.0, True, 1j)
 
 
@@ -72,6 +72,36 @@ def refusal(call: Any, value: Any) -> str:
 def test_speeds(call: Any) -> None:
     for value in (*NO_NUMBER, [], NAN, INF, -1.0, [50.0, NAN]):
         assert "speed" in refusal(call, value), value
+
+
+TEXTS = {
+    **{name: SPEEDS[name] for name in ("sensitivity", "order_response", "campbell_diagram", "assess", "compare")},
+    "stable_limit": lambda v: tn.stable_limit(line(), ANGLE, v, high=0.3, between=False),
+    "windows": lambda v: tn.stable_windows(line(), ANGLE, 0.0, 0.3, v),
+    "speed_sweep": lambda v: tn.speed_sweep(line(), v),
+    "envelope": lambda v: tn.envelope(line(), speeds=v),
+    "chart": lambda v: tn.stability_chart(line(), ("speed", *v, 3), (ANGLE, 0.0, 0.3, 3)),
+    "tongues": lambda v: tn.tongues(line(), ("speed", *v), (ANGLE, 0.0, 0.3)),
+    "run_up": lambda v: tn.run_up(line(), *v, acceleration=500.0, steady=0),
+    "stability": lambda v: tn.stability(line(), v[0]),
+    "periodic_response": lambda v: tn.periodic_response(line(), v[0]),
+    "kinetostatics": lambda v: tn.kinetostatics(line(), v[0]),
+    "simulate": lambda v: tn.simulate(line(), speed=v[0], turns=2),
+    "linearity_check": lambda v: tn.linearity_check(line(), v[0]),
+}
+ANGLES = lambda v: tn.stability_chart(line(), ("speed", 40.0, 60.0, 3), (ANGLE, *v, 3))  # noqa: E731
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_speeds_may_be_texts(name: str) -> None:
+    low, high = tn.rpm(400), tn.rpm(600)
+    assert str(TEXTS[name](("400 rpm", "10 Hz"))) == str(TEXTS[name]((low, high)))
+
+
+def test_ends_of_other_axes_may_be_texts() -> None:
+    assert str(ANGLES(("0 deg", "17 deg"))) == str(ANGLES((0.0, tn.deg(17))))
+    with pytest.raises(tn.InputError, match="rpm is not the unit of an angle"):
+        ANGLES((0.0, "17 rpm"))
 
 
 @pytest.mark.parametrize("key", NUMBERS)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from numbers import Real
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.quantities import Kind, parse
+from trunnion.driveline.quantities import SPEED, Kind, parse
 from trunnion.errors import InputError
+
+SpeedEnds: TypeAlias = tuple[float | str, float | str]
+"""Lowest and highest speed, numbers [rad/s] or texts with a unit."""
 
 
 def one_number(value: object, key: str, remedy: str = "") -> float:
@@ -49,6 +52,53 @@ def whole_number(value: object, key: str, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise InputError(f"must be a whole number, {least} or more", key=key, value=value)
     return int(value)
+
+
+def speeds_of(values: ArrayLike, remedy: str = "", key: str = "speeds") -> Array:
+    """One speed or several [rad/s], numbers or texts with a unit ("1500 rpm"), as an array (speeds,).
+
+    Raises
+    ------
+    InputError : there is something else among them, or none.
+    """
+    if isinstance(values, str):
+        values = [values]
+    if isinstance(values, list | tuple) and any(isinstance(one, str) for one in values):
+        values = [quantity(one, SPEED, key) for one in values]
+    return numbers(values, key, remedy)
+
+
+def one_speed(value: object, key: str, remedy: str = "tn.rpm(500), say") -> float:
+    """One speed [rad/s], a number or a text with its unit.
+
+    Raises
+    ------
+    InputError : it is none.
+    """
+    return quantity(value, SPEED, key) if isinstance(value, str) else one_number(value, key, remedy)
+
+
+def running_range(speeds: Any) -> tuple[float, float]:
+    """Lowest and highest speed of a range [rad/s]; both may be the same, the lowest 0.
+
+    Raises
+    ------
+    InputError : they are not two, or fall.
+    """
+    return _ends(speeds, "must be a lowest and a highest speed", lambda low, high: 0 <= low <= high > 0)
+
+
+def rising_range(speeds: Any) -> tuple[float, float]:
+    """The same of a range of some width that begins above 0."""
+    return _ends(speeds, "must be two rising positive speeds", lambda low, high: 0 < low < high)
+
+
+def _ends(speeds: Any, problem: str, fit: Callable[[float, float], bool]) -> tuple[float, float]:
+    remedy = '(tn.rpm(300), tn.rpm(2400)) or ("300 rpm", "2400 rpm"), say'
+    ends = speeds_of(speeds, remedy).tolist()
+    if len(ends) != 2 or not np.all(np.isfinite(ends)) or not fit(*ends):
+        raise InputError(problem, key="speeds", value=_said(speeds), remedy=remedy)
+    return ends[0], ends[1]
 
 
 def numbers(values: ArrayLike, key: str, remedy: str = "") -> Array:

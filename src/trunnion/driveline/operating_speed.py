@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import SPEED, parse
 from trunnion.errors import InputError
@@ -27,8 +28,10 @@ def stated_range(line: Driveline) -> tuple[float, float] | None:
     return None if operation.speed is None else (operation.speed, operation.speed)
 
 
-def operating_speed(line: Driveline, speed: float | None) -> float:
-    """``speed``, or the operating speed the description gives [rad/s]."""
+def operating_speed(line: Driveline, speed: float | str | None) -> float:
+    """``speed``, a number or a text with its unit, or the operating speed the description gives [rad/s]."""
+    if isinstance(speed, str):
+        speed = quantity(speed, SPEED, "speed")
     if speed is None:
         speed = line.operation.speed if line.operation else None
     if speed is None:
@@ -39,7 +42,9 @@ def operating_speed(line: Driveline, speed: float | None) -> float:
             remedy='write speed = "1500 rpm", or pass a speed',
         )
     if isinstance(speed, bool) or not isinstance(speed, int | float | np.number):
-        raise InputError("must be a number in rad/s", key="speed", value=speed, remedy="write tn.rpm(1500)")
+        raise InputError(
+            "must be a number in rad/s", key="speed", value=speed, remedy='write tn.rpm(1500) or "1500 rpm"'
+        )
     if not speed > 0 or math.isinf(read := _float(speed)):
         raise InputError("must be positive and finite", key="speed", value=speed, remedy="tn.rpm(1500), say")
     try:

@@ -230,8 +230,8 @@ class PackedLine:
                 remedy=f'ask line.at_schedule("{name}", value) at each of its points, or envelope(line) for all',
             )  # fmt: skip
         known = list(self.labels)
-        kinds = {e.kind for e in self.line.elements}
-        known += [f"{k} *.{label.rpartition('.')[2]}" for k in sorted(kinds) for label in self.labels]
+        kinds = [element.kind for element in self.line.elements]
+        known += dict.fromkeys(f"{kinds[i]} *.{key}" for i, key in self.place if i >= 0)
         near = difflib.get_close_matches(path, known, n=1, cutoff=0.4)
         what = f'did you mean "{near[0]}"?' if near else f"parameters are: {', '.join(self.labels)}"
         return InputError("is not a parameter of this driveline", key=path, remedy=what)

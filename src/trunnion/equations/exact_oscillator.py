@@ -15,6 +15,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.gears import GearPair
@@ -33,7 +34,7 @@ Parts = list[tuple[float, complex]]
 """Harmonic forces by frequency [rad/s]: Re(amplitude · e^{iωt})."""
 
 
-def exact_oscillator(line: Driveline, speed: float | None = None) -> PiecewiseOscillator:
+def exact_oscillator(line: Driveline, speed: float | str | None = None) -> PiecewiseOscillator:
     """The oscillator of a line [Disk or ConstantSpeed, GearPair or PiecewiseShaft, Disk].
 
     Parameters
@@ -114,9 +115,9 @@ def _three(line: Driveline) -> tuple[Disk | ConstantSpeed, GearPair | PiecewiseS
 class Turning:
     """The mean input speed, asked for only where something depends on it."""
 
-    def __init__(self, line: Driveline, speed: float | None) -> None:
-        given = speed if speed is not None else line.operation.speed if line.operation else None
-        self.given = given
+    def __init__(self, line: Driveline, speed: float | str | None) -> None:
+        own = line.operation.speed if line.operation else None
+        self.given = own if speed is None else one_speed(speed, "speed")
 
     def speed(self, needed_by: object) -> float:
         if self.given is None or not (np.isfinite(self.given) and self.given > 0):

@@ -243,7 +243,7 @@ class StagedLine:
         return np.concatenate([np.clip(q, -reach, reach), v])
 
 
-def staged_line(line: Driveline | Assembly, speed: float | None = None) -> StagedLine:
+def staged_line(line: Driveline | Assembly, speed: float | str | None = None) -> StagedLine:
     """The line as an exact flow.
 
     Parameters

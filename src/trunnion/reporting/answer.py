@@ -70,7 +70,7 @@ class Answer:
     findings: tuple[Finding, ...]
 
 
-def answer(line: Driveline, *, speed: float | None = None, unit: str | None = None) -> Answer:
+def answer(line: Driveline, *, speed: float | str | None = None, unit: str | None = None) -> Answer:
     """Judge ``line`` over its range; see ``overview`` for the parameters.
 
     Raises

@@ -65,7 +65,7 @@ class Overview(Answer):
 def overview(
     line: Driveline,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     unit: str | None = None,
     points: tuple[int, int] | None = None,
     progress: Callable[[float], None] | None = None,

@@ -62,7 +62,7 @@ class Report:
 def report(
     line: Driveline | Overview,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     unit: str | None = None,
     points: tuple[int, int] | None = None,
     source: str | os.PathLike[str] | None = None,

@@ -19,7 +19,7 @@ from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.ship_shafts import ship_shafts
 from trunnion.analyses.assessment.subject import WHOLE, Case, Effort, Subject, cases_of
 from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
-from trunnion.driveline.arguments import numbers
+from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.operation import Operation
@@ -32,7 +32,7 @@ OF_RESPONSE = (own_limits, coupling_ratings, ship_shafts, gear_hammer)
 
 def assess(
     line: Driveline,
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     load_case: str | None = None,
     unit: str | None = None,
@@ -78,7 +78,7 @@ def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
 
 def subject_of(
     line: Driveline,
-    speeds: tuple[float, float] | None,
+    speeds: SpeedEnds | None,
     load_case: str | None,
     unit: str | None,
     effort: Effort = WHOLE,
@@ -105,15 +105,11 @@ def prepare(cases: tuple[Case, ...]) -> None:
     on_threads(Case.prepare, cases, os.cpu_count() or 1)
 
 
-def _range(line: Driveline, speeds: tuple[float, float] | None) -> tuple[float, float, float | None]:
+def _range(line: Driveline, speeds: SpeedEnds | None) -> tuple[float, float, float | None]:
     stated = line.operation.speed if line.operation else None
     if speeds is None:
         speeds = stated_range(line) or 2 * (operating_speed(line, None),)
-    ends = tuple(numbers(speeds, "speeds", "speeds=(tn.rpm(300), tn.rpm(2400)), say").tolist())
-    if len(ends) != 2 or not 0 <= ends[0] <= ends[1] or not 0 < ends[1] < float("inf"):
-        remedy = "speeds=(tn.rpm(300), tn.rpm(2400)), say"
-        raise InputError("must be a lowest and a highest speed", key="speeds", value=speeds, remedy=remedy)
-    return float(ends[0]), float(ends[1]), stated
+    return *running_range(speeds), stated
 
 
 def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Check]:

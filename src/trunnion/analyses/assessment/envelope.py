@@ -14,7 +14,7 @@ from trunnion.analyses.assessment.result import Assessment, verdict_of
 from trunnion.analyses.limits.stable_limit import HIGHEST, stable_limit
 from trunnion.analyses.range_search.span import Span
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import whole_number
+from trunnion.driveline.arguments import SpeedEnds, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
@@ -118,7 +118,7 @@ class Envelope(Result):
 
 def envelope(
     line: Driveline,
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     points: int = POINTS,
     parameter: str = "",

@@ -87,7 +87,7 @@ def bifurcation_diagram(
     directions: Sequence[str] = DIRECTIONS,
     points: int = 60,
     transient: int = 300,
-    speed: float | None = None,
+    speed: float | str | None = None,
     section: Event | None = None,
     start: ArrayLike | None = None,
     tolerance: float = 1e-9,

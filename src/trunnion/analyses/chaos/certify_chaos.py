@@ -140,7 +140,7 @@ def certify_chaos(
     periods: int | None = None,
     *,
     duration: float | None = None,
-    speed: float | None = None,
+    speed: float | str | None = None,
     start: ArrayLike | None = None,
     starts: int = 2,
     section: Event | None = None,

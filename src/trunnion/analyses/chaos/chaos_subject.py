@@ -28,7 +28,7 @@ NEIGHBOUR = 1e-2
 """How far from the first start the others are, in units of the system's scale plus the start itself."""
 
 
-def as_system(subject: System | Driveline, speed: float | None = None) -> System:
+def as_system(subject: System | Driveline, speed: float | str | None = None) -> System:
     """The system itself, or that of a driveline at ``speed`` [rad/s] (default: its operating speed).
 
     Raises

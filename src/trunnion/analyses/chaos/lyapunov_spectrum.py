@@ -65,7 +65,7 @@ def lyapunov_spectrum(
     periods: int | None = None,
     *,
     duration: float | None = None,
-    speed: float | None = None,
+    speed: float | str | None = None,
     start: ArrayLike | None = None,
     starts: int = 2,
     exponents: int | None = None,

@@ -107,7 +107,7 @@ def poincare_map(
     subject: System | Driveline,
     points: int = 2000,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     section: Event | None = None,
     every: float | None = None,
     phase: float = 0.0,

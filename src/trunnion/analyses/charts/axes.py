@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.parameters import Columns, Parameter
+from trunnion.driveline.quantities import kind_of, parse
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
@@ -61,7 +62,7 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
     """
     parameter = _parameter(request, key)
     columns = assembly.packed.resolve_axis(parameter)
-    low, high, points, scale = _range(request, columns.label)
+    low, high, points, scale = _range(request, columns.label, columns.unit)
     low, high, said = _clip(assembly, columns, low, high)
     values = _points(columns.label, low, high, points, scale)
     _check_columns(assembly, columns, values)
@@ -82,9 +83,10 @@ def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Ax
     if name not in family.parameters:
         known = ", ".join(family.parameters)
         raise InputError("is not a parameter of this family", key=str(name), remedy=f"parameters are: {known}")
-    low, high, points, scale = _range(request, str(name))
+    unit = family.units.get(str(name), "1")
+    low, high, points, scale = _range(request, str(name), unit)
     none = np.zeros(0)
-    columns = Columns(str(name), family.units.get(str(name), "1"), np.zeros(0, dtype=np.intp), none, none)
+    columns = Columns(str(name), unit, np.zeros(0, dtype=np.intp), none, none)
     return Axis(_points(str(name), low, high, points, scale), columns, scale, name)
 
 
@@ -128,8 +130,8 @@ def _parameter(request: AxisRequest, key: str) -> str | Parameter:
     return request[0]
 
 
-def _range(request: AxisRequest, label: str) -> tuple[float, float, int, str]:
-    low, high = _number(request[1], label, "low"), _number(request[2], label, "high")
+def _range(request: AxisRequest, label: str, unit: str) -> tuple[float, float, int, str]:
+    low, high = _number(request[1], label, unit, "low"), _number(request[2], label, unit, "high")
     points, scale = request[3], request[4] if len(request) == 5 else "linear"
     if isinstance(points, bool) or not isinstance(points, int | np.integer) or points < 1:
         raise InputError("must be a whole number of points, 1 or more", element=label, key="points", value=points)
@@ -148,7 +150,14 @@ def _points(label: str, low: float, high: float, points: int, scale: str) -> Arr
     return np.geomspace(low, high, points)
 
 
-def _number(value: object, label: str, key: str) -> float:
+def _number(value: object, label: str, unit: str, key: str) -> float:
+    """A number in SI units, from a text with its unit too where the unit is that of a quantity."""
+    kind = kind_of(unit)
+    if isinstance(value, str) and kind is not None:
+        try:
+            return parse(value, kind)
+        except InputError as error:
+            raise error.but(element=label, key=key) from None
     if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not np.isfinite(value):
         raise InputError(
             "must be a finite number in SI units",

@@ -14,6 +14,7 @@ from trunnion.analyses.assessment.subject import Subject, with_torques
 from trunnion.analyses.comparison.result import Comparison, Difference
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit, stated_range
@@ -30,7 +31,7 @@ Values = dict[str, tuple[str, float, str, float]]
 def compare(
     a: Driveline,
     b: Driveline,
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     load_case: str | None = None,
     unit: str | None = None,
@@ -94,11 +95,12 @@ def compare(
 
 
 def _spans(
-    a: Driveline, b: Driveline, speeds: tuple[float, float] | None
+    a: Driveline, b: Driveline, speeds: SpeedEnds | None
 ) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Range of both; None where neither has one."""
     if speeds is not None:
-        return speeds, speeds
+        asked = running_range(speeds)
+        return asked, asked
     first, second = stated_range(a), stated_range(b)
     return first or second, second or first
 

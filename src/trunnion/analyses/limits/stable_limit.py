@@ -25,7 +25,7 @@ from trunnion.analyses.tongues.rows import Row, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.analyses.tongues.windows import StableWindows, stable_windows
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import numbers, one_number
+from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter
@@ -83,7 +83,7 @@ def stable_limit(
     Stable at 1.60191 rad/s up to angle of HookeJoint 1 17.1887°, set at 1.60191 rad/s.
     """
     remedy = "tn.rpm(np.linspace(300, 3000, 200))"
-    speed = numbers(speeds, "speeds", remedy)
+    speed = speeds_of(speeds, remedy)
     if not np.all(np.isfinite(speed)) or not np.all(speed > 0):
         raise InputError("must be positive numbers", key="speeds", remedy=remedy)
     if not 0 < one_number(tolerance, "tolerance", "1e-11, say") < 1:

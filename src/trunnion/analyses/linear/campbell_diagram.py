@@ -20,7 +20,7 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.linear.forced_response import shaft_names
 from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.arrays import Array, Complex, Integers
-from trunnion.driveline.arguments import numbers, one_number
+from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
@@ -236,7 +236,7 @@ def campbell_diagram(
     """
     assembly = assemble(line, load_case)
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 101)"
-    speed = numbers(speeds, "speeds", remedy)
+    speed = speeds_of(speeds, remedy)
     if len(speed) < 2 or not np.all(np.isfinite(speed)) or not np.all(np.diff(speed) > 0):
         raise InputError("must be two or more, ascending", key="speeds", remedy=remedy)
     if not speed[0] >= 0:

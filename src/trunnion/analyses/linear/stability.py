@@ -189,7 +189,7 @@ class Stability(Judged):
 
 def stability(
     line: Driveline | Assembly | PeriodicLinearSystem,
-    speed: float | None = None,
+    speed: float | str | None = None,
     *,
     tolerance: float = 1e-10,
     statically_twisted: bool = True,

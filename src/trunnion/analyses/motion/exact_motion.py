@@ -154,7 +154,7 @@ def exact_motion(
     line: Driveline | Assembly,
     duration: float | None = None,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     start: ArrayLike | None = None,
     start_time: float = 0.0,
     times: ArrayLike | None = None,

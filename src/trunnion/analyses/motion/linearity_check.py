@@ -39,7 +39,7 @@ STUCK = 1e-9
 
 def linearity_check(
     line: Driveline,
-    speed: float | None = None,
+    speed: float | str | None = None,
     load_case: str | None = None,
     *,
     allowed: float = 0.05,

@@ -29,6 +29,7 @@ from trunnion.analyses.orbits.free_orbit import closes, kept_speed_orbit
 from trunnion.analyses.orbits.periodic_branch import periodic_branch
 from trunnion.analyses.orbits.periodic_orbit import periodic_orbit
 from trunnion.arrays import Array
+from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
@@ -50,8 +51,8 @@ LOOSER, LOOSEST = 100.0, 1e-6
 
 def run_up(
     line: Driveline | Assembly,
-    first: float,
-    last: float,
+    first: float | str,
+    last: float | str,
     *,
     acceleration: float,
     ramp: float | None = None,
@@ -62,7 +63,7 @@ def run_up(
 
     Parameters
     ----------
-    first, last : input speeds [rad/s]; a lower ``last`` runs down.
+    first, last : input speeds [rad/s], numbers or texts with a unit; a lower ``last`` runs down.
     acceleration : its magnitude [rad/s²].
     ramp : time [s] over which the acceleration sets in; by default three periods of the slowest mode, at most until
         half of the speed range is passed; 0 for at once.
@@ -80,6 +81,7 @@ def run_up(
     InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a line that
         starts free without a drive_share; more than 20 000 turns.
     """
+    first, last = one_speed(first, "first"), one_speed(last, "last")
     check(first, last, acceleration)
     if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
         raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)

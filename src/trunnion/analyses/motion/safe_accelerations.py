@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.analyses.motion.run_up import run_up
 from trunnion.arrays import Array, Flags
-from trunnion.driveline.arguments import one_number
+from trunnion.driveline.arguments import one_number, one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
@@ -167,8 +167,8 @@ class SafeAccelerations(Described):
 
 def safe_accelerations(
     line: Driveline | Assembly,
-    first: float,
-    last: float,
+    first: float | str,
+    last: float | str,
     *,
     limit: float | Mapping[str, float],
     accelerations: tuple[float, float],
@@ -192,6 +192,7 @@ def safe_accelerations(
     ------
     InputError : no positive limit, a shaft that is not there, a range that is not one, less than two points.
     """
+    first, last = one_speed(first, "first"), one_speed(last, "last")
     prepared = line_system(line, first)
     limits = _limits(limit, prepared.shafts)
     low, high = accelerations

@@ -13,7 +13,7 @@ from trunnion.analyses.optimisation.aims import Aim, Answer, OwnAim, Question, a
 from trunnion.analyses.optimisation.result import Optimum
 from trunnion.analyses.optimisation.search import Search, Tried, first, front, nondominated, thinned
 from trunnion.analyses.optimisation.space import Space
-from trunnion.driveline.arguments import whole_number
+from trunnion.driveline.arguments import SpeedEnds, running_range, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit, stated_range
 from trunnion.equations.coefficients import assemble
@@ -36,7 +36,7 @@ def optimise(
     line: Driveline,
     free: Mapping[str, Sequence[object]],
     aims: str | OwnAim | Sequence[str | OwnAim],
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     checks: bool | Iterable[str] = True,
     load_case: str | None = None,
@@ -203,8 +203,8 @@ def _found(search: Search) -> tuple[list[Tried], Tried]:
     return found, found[int(np.argmin(np.hypot(off[:, 0], off[:, 1])))]
 
 
-def _span(line: Driveline, speeds: tuple[float, float] | None, aims: Sequence[Aim]) -> tuple[float, float] | None:
-    span = stated_range(line) if speeds is None else speeds
+def _span(line: Driveline, speeds: SpeedEnds | None, aims: Sequence[Aim]) -> tuple[float, float] | None:
+    span = stated_range(line) if speeds is None else running_range(speeds)
     if span is not None:
         return span
     needing = next((aim.name for aim in aims if aim.over_range), None)

@@ -156,7 +156,7 @@ def by_modulus(matrix: Array) -> Complex:
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
-def refuse_speed(oscillator: str, speed: float | None) -> None:
+def refuse_speed(oscillator: str, speed: float | str | None) -> None:
     """Refuse a speed given beside an oscillator, which has none.
 
     Raises

@@ -78,7 +78,7 @@ def harmonic_balance(
     *,
     begin: float | None = None,
     start: ArrayLike | None = None,
-    speed: float | None = None,
+    speed: float | str | None = None,
     periods: int = 1,
     harmonics: int | None = None,
     tail: float | None = None,

@@ -260,7 +260,7 @@ class PeriodicResponse(Judged):
 
 def periodic_response(
     line: Driveline | Assembly | System,
-    speed: float | None = None,
+    speed: float | str | None = None,
     *,
     start: ArrayLike | None = None,
     period: float | None = None,

@@ -56,7 +56,7 @@ def piecewise_branch(
     *,
     begin: float | None = None,
     start: ArrayLike | None = None,
-    speed: float | None = None,
+    speed: float | str | None = None,
     periods: int = 1,
     longest_step: float = 0.01,
     most_points: int = 4000,
@@ -107,7 +107,7 @@ def _of_line(
     high: float,
     first: float,
     start: ArrayLike | None,
-    speed: float | None,
+    speed: float | str | None,
     periods: int,
     longest_step: float,
     most_points: int,
@@ -129,7 +129,7 @@ def _of_line(
     return followed(problem, begins, low, high, most_points, orbit.outcome, tolerance=1e-10, progress=progress)
 
 
-def line_over(line: Driveline | Assembly, value: float, speed: float | None) -> StagedLine:
+def line_over(line: Driveline | Assembly, value: float, speed: float | str | None) -> StagedLine:
     """The line, ready for other values of what turns its excitation, of which ``value`` is one.
 
     Raises

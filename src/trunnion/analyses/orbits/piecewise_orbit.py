@@ -80,7 +80,7 @@ def piecewise_orbit(
     oscillator: Driveline | Assembly,
     start: ArrayLike | None = None,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     periods: int = 1,
     settle: bool = True,
 ) -> ExactOrbit: ...
@@ -90,7 +90,7 @@ def piecewise_orbit(
     oscillator: PiecewiseOscillator | Driveline | Assembly,
     start: ArrayLike | None = None,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     periods: int = 1,
     settle: bool = True,
 ) -> PiecewiseOrbit | ExactOrbit:

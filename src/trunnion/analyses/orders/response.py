@@ -26,7 +26,7 @@ from trunnion.analyses.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.orders.stable_speeds import verdicts_at
 from trunnion.arrays import Array, Codes, Complex, Places
-from trunnion.driveline.arguments import numbers
+from trunnion.driveline.arguments import numbers, speeds_of
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.geometry import tube_stress
@@ -83,7 +83,8 @@ def order_response(
     [2.] 106.781
     """
     assembly = assemble(line, load_case)
-    speed = _positive(speeds, "speeds", "np.linspace(tn.rpm(300), tn.rpm(3000), 301)")
+    remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+    speed = _positive(speeds_of(speeds, remedy), "speeds", remedy)
     wanted = _listed(orders)
     twisted, motions = statically_twisted, own_motions_of(assembly)
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)

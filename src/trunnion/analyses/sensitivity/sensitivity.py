@@ -29,7 +29,7 @@ from trunnion.analyses.sensitivity.tips import tip_slopes
 from trunnion.analyses.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
 from trunnion.analyses.tongues.result import Tongues
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import numbers, several
+from trunnion.driveline.arguments import several, speeds_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.parameters import Parameter
@@ -167,7 +167,7 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
         if operation is None or (operation.speed is None and not operation.speed_range):
             return np.zeros(0)
         return np.array([operation.speed] if operation.speed is not None else operation.speed_range, dtype=float)
-    at = numbers(speeds, "speeds", "tn.rpm(1500)")
+    at = speeds_of(speeds, "tn.rpm(1500)")
     return np.array([operating_speed(line, float(one)) for one in at])
 
 

@@ -19,7 +19,7 @@ from trunnion.analyses.tolerance.bounds import half_widths, over_boxes
 from trunnion.analyses.tolerance.lyapunov import judge_boxes
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, read_tolerances
 from trunnion.arrays import Array, Integers
-from trunnion.driveline.arguments import whole_number
+from trunnion.driveline.arguments import SpeedEnds, rising_range, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
@@ -110,7 +110,7 @@ class StabilityCertificate(Result):
 def certify_stability(
     line: Driveline | Assembly,
     tolerances: Tolerances | None = None,
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     most_boxes: int = 20_000,
     progress: Callable[[float], None] | None = None,
@@ -133,15 +133,14 @@ def certify_stability(
     description = line.line if isinstance(line, Assembly) else line
     if speeds is None and description.operation is not None:
         speeds = description.operation.speed_range
-    if not isinstance(speeds, tuple | list) or len(speeds) != 2 or not 0 < speeds[0] < speeds[1] < np.inf:
-        raise InputError("must be two rising positive speeds", key="speeds", value=speeds, remedy="(100.0, 200.0)")
+    span = rising_range(speeds)
     most_boxes = whole_number(most_boxes, "most_boxes", 1)
     assembly = assemble(line)
     _require_provable(assembly)
     require_steady_base(assembly, assembly.table(1, 1.0))
     spreads = read_tolerances(assembly, tolerances)
     _require_rising(assembly, spreads)
-    space = _Space(assembly, spreads, (float(speeds[0]), float(speeds[1])))
+    space = _Space(assembly, spreads, span)
     found = _search(space, most_boxes, progress or (lambda share: None))
     left = found.open
     verdict = "counterexample" if found.counterexample else "undecided" if len(left) else "proved stable"

@@ -21,7 +21,7 @@ from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables, values_in_words
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import numbers, one_number, whole_number
+from trunnion.driveline.arguments import one_number, speeds_of, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -165,7 +165,7 @@ def tolerance_study(
     InputError : see ``read_tolerances`` and ``stability_chart``; speeds that are not positive; fewer than 256 samples.
     """
     description = line.line if isinstance(line, Assembly) else line
-    at = numbers(operating_speed(description, None) if speeds is None else speeds, "speeds", "tn.rpm(1500)")
+    at = speeds_of(operating_speed(description, None) if speeds is None else speeds, "tn.rpm(1500)")
     if not np.all(np.isfinite(at)) or not np.all(at > 0):
         raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
     samples, seed = whole_number(samples, "samples", 256), whole_number(seed, "seed", 0)

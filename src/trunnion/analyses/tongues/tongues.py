@@ -49,7 +49,7 @@ def tongues(
     x: Range,
     y: Range,
     *,
-    speed: float | None = None,
+    speed: float | str | None = None,
     rows: int = ROWS,
     statically_twisted: bool = True,
     threads: int | None = None,
@@ -150,7 +150,7 @@ def task_of(
     line: Driveline | Assembly | PeriodicLinearFamily,
     x: Range,
     y: Range,
-    speed: float | None,
+    speed: float | str | None,
     twisted: bool,
     analysis: str,
 ) -> Task:

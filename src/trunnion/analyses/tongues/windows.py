@@ -17,11 +17,10 @@ from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.tongues import task_of
 from trunnion.analyses.tongues.window_search import UNKNOWN, Seen, searched
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import one_number, quantity, whole_number
+from trunnion.driveline.arguments import SpeedEnds, one_number, rising_range, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter, Term
-from trunnion.driveline.quantities import SPEED
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remarks
@@ -138,7 +137,7 @@ def stable_windows(
     parameter: str | Parameter,
     low: float,
     high: float,
-    speeds: tuple[float, float],
+    speeds: SpeedEnds,
     *,
     margin: float = 0.0,
     rows: int | None = None,
@@ -160,7 +159,7 @@ def stable_windows(
     """
     if not 0 <= one_number(margin, "margin", "0.1 for 10 %") < 0.9:
         raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
-    asked = _read_speeds(speeds)
+    asked = rising_range(speeds)
     assembly = assemble(line)
     span = (asked[0] * (1 - margin), asked[1] * (1 + margin))
     task = task_of(assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues")
@@ -179,7 +178,7 @@ def stable_windows(
 
 def minimum_damping(
     line: Driveline | Assembly,
-    speeds: tuple[float, float],
+    speeds: SpeedEnds,
     *,
     damping: str | Parameter | None = None,
     maximum: float = 100.0,
@@ -233,16 +232,6 @@ def all_damping(assembly: Assembly) -> Parameter:
 
 def _why(end: End | None, unit: str) -> str:
     return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, unit)})"
-
-
-def _read_speeds(speeds: object) -> tuple[float, float]:
-    if isinstance(speeds, tuple | list) and len(speeds) == 2:
-        low, high = (quantity(speed, SPEED, "speeds") for speed in speeds)
-        if 0 < low < high:
-            return low, high
-    raise InputError(
-        "must be two rising positive speeds", key="speeds", value=speeds, remedy="(tn.rpm(300), tn.rpm(2400))"
-    )
 
 
 def _free_of(found: Tongues, columns: list[Seen]) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:

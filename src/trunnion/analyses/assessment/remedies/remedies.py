@@ -19,7 +19,7 @@ from trunnion.analyses.linear.loaded_modes import loaded_modes
 from trunnion.analyses.sensitivity.checks import check_slopes
 from trunnion.analyses.sensitivity.directions import Neighbours, directions_of
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import one_number
+from trunnion.driveline.arguments import SpeedEnds, one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
@@ -35,7 +35,7 @@ MOVED = 0.02
 
 def remedies(
     line: Driveline,
-    speeds: tuple[float, float] | None = None,
+    speeds: SpeedEnds | None = None,
     *,
     load_case: str | None = None,
     unit: str | None = None,
