@@ -20,6 +20,6 @@ def test_no_claim_of_chaos_holds(study) -> None:  # type: ignore[no-untyped-def]
     claims, others = found.tables[2].rows, found.tables[3].rows
     assert len(claims) == 10 and all(r.computed == "no chaos" for r in claims)
     assert len(others) == 9 and all("-" in r.computed and "+" not in r.computed for r in others)
-    held = ["corrected", "confirmed", "corrected", "corrected", "corrected", "confirmed", "corrected", "confirmed"]
-    assert [c.holds for c in found.conclusions] == [*held, "not decided"]
+    held = ["corrected", "confirmed", "corrected", "corrected", "confirmed", "not decided", "confirmed"]
+    assert [c.holds for c in found.conclusions] == [*held, "not decided", "not decided", "not decided", "added"]
     assert found.argument is not None and "10.73" in str(found)

@@ -99,9 +99,9 @@ def test_equations_in_twists_agree_with_the_general_ones() -> None:
 def test_conclusions(found: Reproduction) -> None:
     held = {c.statement.split(".")[0]: c.holds for c in found.conclusions}
     assert held["A larger joint angle widens the unstable regions"] == "confirmed"
-    assert held["Difference combinations are among the resonances (Table 2)"] == "corrected"
-    assert next(h for s, h in held.items() if "stiffer" in s) == "confirmed"
-    assert next(h for s, h in held.items() if "More damping" in s) == "confirmed"
+    assert held["Difference combinations are among the resonances (Table 2), γ = 100"] == "corrected"
+    for words in ("stiffer", "More damping", "A higher speed"):
+        assert next(h for s, h in held.items() if words in s) == "not decided"
     assert all(re.search(r"\d", c.evidence) for c in found.conclusions)
 
 

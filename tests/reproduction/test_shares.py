@@ -1,4 +1,4 @@
-"""What "more" and "less" mean: shares with sampling errors, labels that follow from them."""
+"""What "more" and "less" mean: shares with sampling errors, and what follows from band to band."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.result import ADDED, CONFIRMED, CORRECTED, UNDECIDED, Conclusion
-from trunnion.studies.shares import Share, bands, change, judged, share, steps
+from trunnion.studies.shares import Share, bands, change, in_bands, share, steps
 
 
 @pytest.fixture(scope="module")
@@ -42,16 +41,21 @@ def test_half_the_pixels_agree_within_the_error(chart: StabilityChart) -> None:
     assert len(bands(chart, (0.0, 0.2, 0.4, 0.501), along="y")) == 3
 
 
-def test_labels_follow_from_errors() -> None:
+def test_changes_count_beyond_their_errors() -> None:
     clear = [Share(1.0, 0.1), Share(2.0, 0.1), Share(3.0, 0.1)]
-    assert steps(clear) == [1, 1] and judged(steps(clear)) == CONFIRMED
-    assert judged(steps(clear[::-1])) == CORRECTED
+    assert steps(clear) == [1, 1] and steps(clear[::-1]) == [-1, -1]
     assert change(Share(10.7, 0.2), Share(11.0, 0.2)) == 0
-    assert judged([change(Share(10.7, 0.2), Share(11.0, 0.2))]) == UNDECIDED
-    assert judged([1, 1, -1]) == UNDECIDED
 
 
-def test_no_other_labels() -> None:
-    assert Conclusion("A.", ADDED, "1").holds == ADDED
-    with pytest.raises(ValueError, match="not decided"):
-        Conclusion("A.", "holds for a lucky range", "1")
+def test_rising_in_wide_bands_and_not_in_narrow_ones(chart: StabilityChart) -> None:
+    """Stripes whose pairs grow from left to right while every other one is empty."""
+    x = np.linspace(0, 1, 200, endpoint=False)
+    part = np.select([x < 0.25, x < 0.5, x < 0.75], [0.1, 0.0, 0.4], 0.0)
+    rows = np.arange(100)[:, None] / 100
+    stripes = with_region(chart, rows < part)
+    ends = (1.4, 1.6, 1.801)
+    wide, narrow = in_bands("stripes", stripes, ends, along="x")
+    assert (wide.says, narrow.says) == (1, 0)
+    steady = with_region(chart, rows < x)
+    assert [r.says for r in in_bands("steady", steady, ends, along="x")] == [1, 1]
+    assert [r.says for r in in_bands("falling", with_region(chart, rows < 1 - x), ends, along="x")] == [-1, -1]

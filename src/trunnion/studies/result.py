@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -75,25 +76,90 @@ class PaperFigure:
 
 CONFIRMED, CORRECTED, UNDECIDED, ADDED = "confirmed", "corrected", "not decided", "added"
 LABELS = {
-    CONFIRMED: "the computed figures bear it out, by more than their errors",
-    CORRECTED: "they contradict it, by more than their errors",
-    UNDECIDED: "they do neither: within the error, or different from one part of the range to another",
+    CONFIRMED: "the computed figures bear it out, by more than their errors, in every reading the paper leaves open",
+    CORRECTED: "they contradict it, by more than their errors, in every such reading",
+    UNDECIDED: "they do neither, or they do the one in one reading and not in another",
     ADDED: "not in the paper",
 }
 """What each label of a conclusion means."""
+FOR, NEITHER, AGAINST = 1, 0, -1
+"""What figures say of a statement."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to read a statement, or one part of what it covers: a box, a band, a base state, a range not stated.
+
+    Parameters
+    ----------
+    name : which one.
+    figures : what is computed for it, with numbers.
+    says : whether these speak for the statement (+1) or against it (−1) by more than their errors, or neither (0).
+    """
+
+    name: str
+    figures: str
+    says: int
+
+    def __post_init__(self) -> None:
+        if self.says not in (FOR, NEITHER, AGAINST):
+            raise ValueError(f"{self.name}: {self.says!r} is none of 1, 0, -1")
+        if not re.search(r"\d", self.figures):
+            raise ValueError(f"{self.name}: no number in {self.figures!r}")
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.figures}"
 
 
 @dataclass(frozen=True)
 class Conclusion:
-    """A statement of the paper, whether it holds (one of ``LABELS``), and the computed figures that say so."""
+    """A statement of the paper, or beside it, and the computed figures of every reading of it.
+
+    The label ``holds`` follows from the readings alone: one that speaks otherwise than the rest leaves the statement
+    undecided, and both are shown.
+    """
 
     statement: str
-    holds: str
-    evidence: str
+    readings: tuple[Reading, ...]
+    remark: str = ""
+    in_paper: bool = True
 
     def __post_init__(self) -> None:
-        if self.holds not in LABELS:
-            raise ValueError(f"{self.holds!r} is none of {', '.join(LABELS)}")
+        names = [r.name for r in self.readings]
+        if not names or len(set(names)) < len(names):
+            raise ValueError(f"{self.statement!r} needs readings of different names, not {names}")
+
+    @property
+    def holds(self) -> str:
+        """One of ``LABELS``."""
+        if not self.in_paper:
+            return ADDED
+        return {FOR: CONFIRMED, AGAINST: CORRECTED, NEITHER: UNDECIDED}[agreed([r.says for r in self.readings])]
+
+    @property
+    def grounds(self) -> tuple[str, ...]:
+        """Every reading with its figures, those that agree together, and the remark: a sentence or two each."""
+        said = {r.says for r in self.readings}
+        parts = []
+        for says, words in ((FOR, "For it: "), (AGAINST, "Against it: "), (NEITHER, "Neither: ")):
+            if which := [str(r) for r in self.readings if r.says == says]:
+                parts.append((words if len(said) > 1 else "") + "; ".join(which) + ".")
+        return (*parts, *([self.remark] if self.remark else []))
+
+    @property
+    def evidence(self) -> str:
+        """The grounds in one paragraph."""
+        return " ".join(self.grounds)
+
+
+def agreed(signs: Sequence[int]) -> int:
+    """+1 where every sign is +1, −1 where every sign is −1, else 0."""
+    return FOR if all(s > 0 for s in signs) else AGAINST if all(s < 0 for s in signs) else NEITHER
+
+
+def sign(holds: bool) -> int:
+    """+1 or −1 of what is either so or not so."""
+    return FOR if holds else AGAINST
 
 
 @dataclass(frozen=True)
@@ -109,8 +175,9 @@ class Argument:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """A paper computed anew. Print it, ``save`` it as a folder, or look at ``figures``, ``tables``,
-    ``errata`` and ``conclusions`` one by one."""
+    """A paper computed anew. Print it, ``save`` it as a folder, or look at ``figures``, ``tables``, ``errata``,
+    ``assumed`` (what the paper leaves open, what is taken, and what another value changes) and ``conclusions`` one by
+    one."""
 
     name: str
     title: str
@@ -122,15 +189,20 @@ class Reproduction:
     conclusions: tuple[Conclusion, ...]
     figures_note: str = CHARTS_NOTE
     argument: Argument | None = None
+    assumed: Comparison | None = None
 
     def figure(self, number: str | int) -> PaperFigure:
         """A figure by its number in the paper."""
         return next(f for f in self.figures if f.number == str(number))
 
     def markdown(self) -> str:
-        """The conclusions as a table in Markdown, as the documentation has them."""
-        rows = [f"| {c.statement} | **{c.holds}** | {c.evidence} |" for c in self.conclusions]
-        return "\n".join(["| statement | | computed |", "|---|---|---|", *rows])
+        """The conclusions and what is assumed as tables in Markdown, as the documentation has them."""
+        rows = [f"| {c.statement} | **{c.holds}** | {'<br>'.join(c.grounds)} |" for c in self.conclusions]
+        table = ["| statement | | computed |", "|---|---|---|", *rows]
+        if not self.assumed:
+            return "\n".join(table)
+        taken = [f"| {r.place} | {r.published} | {r.computed} | {r.remark} |" for r in self.assumed.rows]
+        return "\n".join([*table, "", "| assumed | in the paper | taken | |", "|---|---|---|---|", *taken])
 
     def drawn(self) -> list[bytes]:
         """Every figure, then the evidence, as PNG."""
@@ -142,7 +214,7 @@ class Reproduction:
 
     def __str__(self) -> str:
         parts = [f"{self.title}\n{self.source}"]
-        parts += [str(table) for table in (*self.tables, self.errata)]
+        parts += [str(table) for table in (*self.tables, self.errata, *([self.assumed] if self.assumed else []))]
         parts += [str(self.argument)] if self.argument else []
         parts.append(
             "Conclusions of the paper\n"

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Flags
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-from trunnion.studies.result import CONFIRMED, CORRECTED, UNDECIDED
+from trunnion.studies.result import Reading, agreed
 
 SPLIT = 4
 """Every SPLIT-th row and column make one of SPLIT² interleaved grids, whose scatter gives the standard error."""
@@ -79,10 +79,15 @@ def steps(values: Sequence[Share]) -> list[int]:
     return [change(a, b) for a, b in zip(values[:-1], values[1:], strict=True)]
 
 
-def judged(signs: Sequence[int]) -> str:
-    """The label of a claim that every sign be +1: so everywhere, so nowhere, or not the same everywhere."""
-    if all(sign > 0 for sign in signs):
-        return CONFIRMED
-    if all(sign < 0 for sign in signs):
-        return CORRECTED
-    return UNDECIDED
+def in_bands(
+    of: str, chart: StabilityChart, edges: tuple[float, ...], *, along: str, **rest: tuple[float, float]
+) -> tuple[Reading, ...]:
+    """Whether the share of a chart rises from band to band, in the given bands and in bands half as wide."""
+    low, high = np.array(edges[:-1]), np.array(edges[1:])
+    halves = tuple(np.sort(np.concatenate([edges, (low + high) / 2])).tolist())
+    readings = []
+    for width, ends in (("bands", edges), ("bands half as wide", halves)):
+        values = bands(chart, ends, along=along, **rest)
+        shown = ", ".join(f"{end:.3g}" for end in ends)
+        readings.append(Reading(f"{of}, {width} between {shown}", percents(values), agreed(steps(values))))
+    return tuple(readings)

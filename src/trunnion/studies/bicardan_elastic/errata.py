@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.analyses.kinetostatics.measures import extremes
 from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.studies.bicardan_elastic.published import PRINTED_STIFFNESS
 from trunnion.studies.result import Comparison, Row, rounded
@@ -13,6 +14,7 @@ def errata(elastic: Kinetostatics, rigid: Kinetostatics, worst: Kinetostatics, e
     """From the printed phases with the mended stiffness, rigid, 90° off, and rigid with the phases that cancel."""
     assert elastic.constant_twist is not None
     slow, fast = rigid.speed_ratio
+    twisted = extremes(np.abs(elastic.twist[1]))
     twist = 150.0 / (PRINTED_STIFFNESS * 1e-3)
     return Comparison(
         "Errata",
@@ -28,15 +30,7 @@ def errata(elastic: Kinetostatics, rigid: Kinetostatics, worst: Kinetostatics, e
             Row("(5), (6)", "ω_j1 ≈ ω_i2", "with the rate of ξ",
                 f"leaving it out costs {elastic.constant_twist.speed:.1e} of the speed"),
             Row("(7)", "T = ξ c, ξ ≈ constant", "solved at every angle",
-                f"ξ runs from {1e6 * _low(elastic):.1f} to {1e6 * _high(elastic):.1f} µrad"),
+                f"ξ runs from {1e6 * float(twisted[0]):.1f} to {1e6 * float(twisted[1]):.1f} µrad"),
         ),
         "Relations (2) to (6) else are right and reproduced to rounding.",
     )  # fmt: skip
-
-
-def _low(elastic: Kinetostatics) -> float:
-    return float(np.abs(elastic.twist[1]).min())
-
-
-def _high(elastic: Kinetostatics) -> float:
-    return float(np.abs(elastic.twist[1]).max())

@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from trunnion.analyses.kinetostatics.measures import extremes, largest
 from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.analyses.kinetostatics.turn import kinetostatics
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.plots.kinetostatics import draw_paper
-from trunnion.studies.bicardan_elastic.conclusions import change, conclusions
+from trunnion.studies.bicardan_elastic.conclusions import Turns, change, conclusions
 from trunnion.studies.bicardan_elastic.errata import errata
 from trunnion.studies.bicardan_elastic.published import bicardan_elastic as published
 from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
@@ -34,6 +35,10 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
     elastic, rigid = turn(), turn(rigid=True)
     stiff = turn(printed_stiffness=True)
     even, even_rigid = turn(homokinetic=True), turn(rigid=True, homokinetic=True)
+    units = {
+        "c₁₂ in N·mm/rad": Turns(elastic, rigid, even, even_rigid),
+        "c₁₂ in N·m/rad": Turns(stiff, rigid, turn(homokinetic=True, printed_stiffness=True), even_rigid),
+    }
     worst = turn(rigid=True, plane_angle=1.5 * np.pi)
     tell(0.8)
     shown = "1 rad/s, 150 N·m, ν₁₂ = 180°, β₁₂ = 266.4°. "
@@ -52,14 +57,32 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
         (_numbers(rigid), _differences(elastic, rigid, stiff)),
         errata(elastic, rigid, worst, even_rigid),
         (),
-        conclusions(elastic, rigid, even, even_rigid),
+        conclusions(units),
         "Torques are those passed on to the load. The paper draws its curves without numbers.",
+        assumed=_assumed(elastic, stiff),
     )
+
+
+def _assumed(elastic: Kinetostatics, stiff: Kinetostatics) -> Comparison:
+    """What the text leaves open, and what another value changes."""
+    twists = [float(largest(k.twist[1])) for k in (elastic, stiff)]
+    return Comparison(
+        "What is assumed",
+        (
+            Row("unit of c₁₂", "N·m/rad", "N·mm/rad",
+                f"no diameters to check it by; the largest twist is {twists[0]:.4g} rad, in the printed unit "
+                f"{twists[1]:.4g} rad; every conclusion is judged in both"),
+            Row("sense of ν₁₂, β₁₂", "(2)", "both against the rotation",
+                "the other sense mirrors the curves: the extremes of 0.7801 and 1.2819 stay"),
+            Row("J₁, J₁₂, J₃", "0", "0", "as stated: inertia torques of 0"),
+        ),
+    )  # fmt: skip
 
 
 def _numbers(rigid: Kinetostatics) -> Comparison:
     def row(words: str, values: Array, unit: str) -> Row:
-        return Row(words, "Figure 4", f"{values.min():.4g} … {values.max():.4g} {unit}")
+        low, high = extremes(values)
+        return Row(words, "Figure 4", f"{low:.5g} … {high:.5g} {unit}")
 
     return Comparison(
         "Extremes over a turn, rigid",

@@ -1,10 +1,11 @@
 # mypy: ignore-errors
 # Types are inferred by the compiler of this code, from its arguments.
-"""S4's equations (25), (26) and (29), (30) as C functions; see ``double_tripod`` for what they mean.
+"""S4's equations (25), (26) and (29), (30) as C functions, and a third reading of them; see ``double_tripod``.
 
     φ̈ + 2ζΩ√g φ̇ + Ω² g φ = q(t, φ)/(1 + χ cos 2φ) · (1 − 3A sin 3φ),   g = (1 + c₁C)/((1 + c₂C)(1 + χC)),
 
-C = cos 2φ in (25), (26) and cos Θ in (29), (30), Θ̇ = η. q = m[1 + χ_e Σ₀⁵ cos(2ⁱωt)/2^{i+1}] of the motor,
+C = cos 2φ in (25), (26) and cos Θ in (29), (30), Θ̇ = η; in the third reading φ is Θ/2 on the right side too.
+q = m[1 + χ_e Σ₀⁵ cos(2ⁱωt)/2^{i+1}] of the motor,
 m[1 + χ_e Σ₁⁷ cos(2^{j−1}φ)/2^j] of the mill, whose m is negative. p = (ζ, Ω, c₁, c₂, χ, m, χ_e, ω, A, mill, η).
 
 This file imports nothing of the package: it is compiled from a copy in the cache folder.
@@ -86,4 +87,24 @@ def given_phase(t, y_, p_, k, regime, out_):
         out[b] = y[b + 2]
         out[b + 1] = 0.0
         out[b + 2] = by_phi * y[b] + by_theta * y[b + 1] - loss * root * y[b + 2]
+    return 0
+
+
+@cfunc(_RATE, cache=True)
+def turning_phase(t, y_, p_, k, regime, out_):
+    """(29), (30) with Θ/2 for φ in every cosine and sine of the right side, as (27) and (28) have it."""
+    y, p, out = carray(y_, (3 + 3 * k,)), carray(p_, (11,)), carray(out_, (3 + 3 * k,))
+    phi, theta, v = y[0], y[1], y[2]
+    g, bend = _depth(p, math.cos(theta))
+    push, by_half = _push(p, t, theta / 2)
+    root = math.sqrt(g)
+    loss, square = 2 * p[ZETA] * p[OMEGA], p[OMEGA] * p[OMEGA]
+    out[0] = v
+    out[1] = p[ETA]
+    out[2] = push - loss * root * v - square * g * phi
+    by_theta = math.sin(theta) * bend * (loss * v / (2 * root) + square * phi) + by_half / 2
+    for b in range(3, 3 + 3 * k, 3):
+        out[b] = y[b + 2]
+        out[b + 1] = 0.0
+        out[b + 2] = by_theta * y[b + 1] - square * g * y[b] - loss * root * y[b + 2]
     return 0

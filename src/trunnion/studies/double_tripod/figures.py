@@ -64,6 +64,17 @@ def beats(motion: Simulation) -> int:
     return rises
 
 
+def turning_beats(element: str, frequencies: tuple[float, ...]) -> dict[float, int]:
+    """The same by frequency η/2π [Hz] where the rotation in every cosine turns with half the phase, ζ = 0.0016."""
+    found = {}
+    for hertz in frequencies:
+        system = DoubleTripod().system(element, phase="turning", excitation=2 * np.pi * hertz)
+        p = system.parameters
+        length = DIES_OUT / (p["damping_ratio"] * p["natural_frequency"])
+        found[hertz] = beats(simulate_system(system, length, tolerance=1e-9))
+    return found
+
+
 RISE = 0.02
 """Share of the first swing by which an envelope must rise again to count as beating."""
 

@@ -34,6 +34,7 @@ MIDSHAFT_LENGTH = 0.940
 """L_DM2 [m], Table 1."""
 WAVE_SPEED = float(np.sqrt(SHEAR_MODULUS / DENSITY))
 WORST_ANGLE = float(np.deg2rad(9.0))
+_PHASES = ("given", "own", "turning")
 _OPTIONS = {
     "nonuniformity": ("printed", "derived"),
     "mean_inertia": ("bent", "straight"),
@@ -218,15 +219,17 @@ class DoubleTripod:
         ----------
         which : "input" (25), (29) or "output" (26), (30).
         phase : "given" for (29), (30), states rotation, phase, rate, with the phase running at ``excitation``
-            [rad/s], by default 2Ω; "own" for (25), (26), states rotation and rate.
+            [rad/s], by default 2Ω; "own" for (25), (26), states rotation and rate; "turning" as "given", with half the
+            phase for the rotation in every cosine and sine, as (27) and (28) have it.
 
         The forcing period is that of Ω_AEM; the output element has none. Parameters: damping_ratio, excitation,
         torque, nonuniformity and those of the module; a change of one leaves the others as they are.
         """
-        if phase not in ("given", "own"):
+        if phase not in _PHASES:
             raise InputError(
-                "is not a phase", element="double-tripod", key="phase", value=phase, remedy='"given" or "own"'
-            )
+                "is not a phase", element="double-tripod", key="phase", value=phase,
+                remedy=f"write {' or '.join(map(repr, _PHASES))}",
+            )  # fmt: skip
         part = self.element(which)
         omega = part.natural_frequency(self.angle)
         c1, c2 = self.coefficients(which)
@@ -240,14 +243,14 @@ class DoubleTripod:
             "excitation": 2 * omega if excitation is None else float(excitation),
         }  # fmt: skip
         size = abs(acceleration) / omega**2
-        given = phase == "given"
+        given = phase != "own"
         scale = [size, 1.0, size * omega] if given else [size, size * omega]
         start = np.zeros(3 if given else 2)
         return System(
-            name=f"double tripod, {which} element, {'given' if given else 'own'} phase",
+            name=f"double tripod, {which} element, {phase} phase",
             states=("rotation", "phase", "rate") if given else ("rotation", "rate"),
             units=("rad", "rad", "rad/s") if given else ("rad", "rad/s"),
-            rate=_function("given_phase" if given else "own_phase"),
+            rate=_function(f"{phase}_phase"),
             parameters=values,
             parameter_units={"natural_frequency": "rad/s", "motor_frequency": "rad/s", "excitation": "rad/s"},
             period=None if part.mill else _motor_period,

@@ -23,8 +23,8 @@ from trunnion.studies.double_tripod.computed import (
     opening_depth,
     sweep_of,
 )
-from trunnion.studies.double_tripod.conclusions import PARTS, conclusions, dampings, refuted
-from trunnion.studies.double_tripod.contraction import argument
+from trunnion.studies.double_tripod.conclusions import PARTS, START, conclusions, dampings, refuted
+from trunnion.studies.double_tripod.contraction import argument, contraction
 from trunnion.studies.double_tripod.errata import errata
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
@@ -43,6 +43,8 @@ MAPS = (
     ("27", "input", 0.011, (10_000, 1000)), ("28", "output", 0.0016, (50_000, 10_000)),
     ("29", "output", 0.0064, (50_000, 5000)), ("30", "output", 0.0104, (50_000, 5000)),
 )  # fmt: skip
+TURNING = {"input": (2950.0, 3066.5, 3200.0), "output": (2650.0, 2750.0, 2791.9, 2850.0, 2950.0)}
+"""Frequencies η/2π [Hz] at which beats are counted with a rotation that turns: over the paper's range, and 2Ω."""
 ASSUMED = "9°, printed χ_n, consistent Ī, Ω_AEM = 600π rad/s."
 
 
@@ -74,10 +76,37 @@ def double_tripod(points: int, tell: Callable[[float], None]) -> Reproduction:
         (_numbers(), _exponents(), dampings(found), against, _opening(opened)),
         errata(),
         evidence,
-        conclusions(found, opened, beats),
+        conclusions(found, opened, beats, {e: drawn.turning_beats(e, TURNING[e]) for e in PARTS}),
         "Lyapunov exponents are of the standard definition: variational equations, natural logarithm.",
         argument(),
+        assumed=_assumed(),
     )
+
+
+def _assumed() -> Comparison:
+    """What the text leaves open, and what another value changes."""
+    shafts = {"printed": DoubleTripod(), "derived": DoubleTripod(nonuniformity="derived")}
+    rates = {k: contraction(s.system("input"), own=False).rate for k, s in shafts.items()}
+    straight = contraction(DoubleTripod(mean_inertia="straight").system("input"), own=False).rate
+    mended = DoubleTripod(steiner="mended").element("input").natural_frequency(WORST_ANGLE)
+    taken = DoubleTripod().element("input").natural_frequency(WORST_ANGLE)
+    return Comparison(
+        "What is assumed",
+        (
+            Row("χ_n", "0.0026, 0.0027, and other values by Appendix B", "as printed in section 6",
+                f"the bound of DIE1's motions is {rates['printed']:.3g} 1/s, by Appendix B {rates['derived']:.3g} 1/s"),
+            Row("Ī", "of the straight shaft in c₁…c₄, at the angle in Ω", "at the angle in both",
+                f"the bound of DIE1 is {rates['printed']:.3g} 1/s, with the straight shaft's {straight:.3g} 1/s"),
+            Row("Steiner terms", "without sin²β", "as printed",
+                f"Ω₁ = {taken:.0f} rad/s, with sin²β {mended:.0f} rad/s"),
+            Row("Ω_AEM", "100nπ, n one of 6, 12, 24, 48, 96, and πn_AEM/30", "600π rad/s",
+                "every one of the five stands in the table of other speeds"),
+            Row("φ in the cosines of (25), (26)", "the twist, and by (27), (28) a turning angle", "both",
+                "motions and exponents of (25), (26) and of (29), (30); beats in a third reading"),
+            Row("start and length of Figures 11 to 16", "not stated", f"rest without twist, {drawn.HISTORY:g} s",
+                f"exponents from {START:g} rad stand in the table of other starts"),
+        ),
+    )  # fmt: skip
 
 
 def _case(element: str, ratio: float) -> str:

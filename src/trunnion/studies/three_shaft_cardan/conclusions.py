@@ -8,15 +8,17 @@ import numpy as np
 
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-from trunnion.studies.result import ADDED, Conclusion
-from trunnion.studies.shares import Share, bands, change, judged, percents, share, steps
+from trunnion.studies.result import NEITHER, Conclusion, Reading, sign
+from trunnion.studies.shares import change, in_bands, percents, share
 
 PRACTICAL = float(np.pi / 4)
 """Joint angles that S3 calls practical, up to 45° [rad]."""
 NEAR = 0.05
 """How nearly equal two joint angles are to count as equal [rad]."""
-EVERYWHERE = 0.95
-"""Share of the angles up to 45° at which a speed must be unstable to count as unstable throughout."""
+SMALL = (0.1, 0.2, 0.3)
+"""Angles [rad] below which β₂ counts as small."""
+EVERYWHERE = (0.9, 0.95, 0.99)
+"""Shares of the angles up to 45° at which a speed must be unstable to count as unstable at nearly all of them."""
 
 
 def conclusions(
@@ -24,79 +26,88 @@ def conclusions(
 ) -> tuple[Conclusion, ...]:
     """From Figures 4, 5, 6, and the same with the forks in line."""
     return (
-        _second(four),
+        _second(four, five, six),
         _first_at_small(four, six),
-        _first_as_a_whole(four, six),
+        _first_as_a_whole(four, six, inline),
         _inertia(four, five),
-        _speed(four),
+        _speed(four, five, six),
         _forks(four, five, six, inline),
     )
 
 
-def _second(four: StabilityChart) -> Conclusion:
-    low = bands(four, (0.0, 0.25, 0.5, PRACTICAL, 1.501), along="y")
+def _second(four: StabilityChart, five: StabilityChart, six: StabilityChart) -> Conclusion:
+    edges = (0.0, 0.25, 0.5, PRACTICAL, 1.501)
+    charts = {"4": four, "5": five, "6": six}
     return Conclusion(
         "A larger angle of the second joint enlarges the unstable regions in the practical range.",
-        judged(steps(low)),
-        f"Unstable share of Figure 4 for β₂ in 0–0.25, 0.25–0.5, 0.5–0.79 and 0.79–1.5 rad: {percents(low)}.",
+        tuple(r for n, c in charts.items() for r in in_bands(f"Figure {n}, β₂ [rad]", c, edges, along="y")),
     )
 
 
 def _first_at_small(four: StabilityChart, six: StabilityChart) -> Conclusion:
-    small = [share(c, y=(0.0, 0.2)) for c in (four, six)]
-    through = [_throughout(c) for c in (four, six)]
+    readings = []
+    for top in SMALL:
+        small = [share(c, y=(0.0, top)) for c in (four, six)]
+        readings.append(Reading(f"β₂ below {top:g} rad", f"{small[0]} → {small[1]} % unstable", change(*small)))
+    for part in EVERYWHERE:
+        through = [_throughout(c, part) for c in (four, six)]
+        readings.append(
+            Reading(
+                f"speeds unstable at {100 * part:g} % of the β₂ up to 45°",
+                f"{through[0]:.2g} → {through[1]:.2g} % of the speeds",
+                sign(through[1] > through[0]),
+            )
+        )
     return Conclusion(
-        "A larger angle of the first joint makes small angles of the second unstable, at some speeds nearly all of "
-        "them.",
-        judged([change(*small), 1 if through[1] > through[0] else -1]),
-        f"β₁ = 0.2 and 0.4 rad: {percents(small)} unstable for β₂ below 0.2 rad; {through[0]:.2g} % and "
-        f"{through[1]:.2g} % of the speeds are unstable at nearly every β₂ up to 45°.",
+        "A larger angle of the first joint (β₁ from 0.2 to 0.4 rad) makes small angles of the second unstable, at some "
+        "speeds nearly all of them.",
+        tuple(readings),
     )
 
 
-def _first_as_a_whole(four: StabilityChart, six: StabilityChart) -> Conclusion:
-    practical = [share(c, y=(0.0, PRACTICAL)) for c in (four, six)]
-    everything = [share(c) for c in (four, six)]
+def _first_as_a_whole(four: StabilityChart, six: StabilityChart, inline: Mapping[str, StabilityChart]) -> Conclusion:
+    readings = []
+    for forks, pair in (("joints in phase", (four, six)), ("forks in line", (inline["4"], inline["6"]))):
+        for name, top in (("up to 45°", PRACTICAL), ("as drawn", np.inf)):
+            shares = [share(c, y=(0.0, top)) for c in pair]
+            readings.append(Reading(f"{forks}, {name}", f"{shares[0]} → {shares[1]} %", -change(*shares)))
     return Conclusion(
-        "As a whole the unstable regions seem to shrink with a larger angle of the first joint.",
-        judged([-change(*practical), -change(*everything)]),
-        f"β₁ = 0.2 and 0.4 rad: {percents(practical)} unstable up to 45°, {percents(everything)} of the whole chart.",
+        "As a whole the unstable regions seem to shrink with a larger angle of the first joint (β₁ from 0.2 to 0.4 "
+        "rad).",
+        tuple(readings),
     )
 
 
-def _throughout(chart: StabilityChart) -> float:
+def _throughout(chart: StabilityChart, part: float) -> float:
     rows = chart.y < PRACTICAL
-    return 100 * float(np.mean(np.mean(chart.verdict[rows] == Verdict.UNSTABLE, axis=0) >= EVERYWHERE))
+    return 100 * float(np.mean(np.mean(chart.verdict[rows] == Verdict.UNSTABLE, axis=0) >= part))
 
 
 def _inertia(four: StabilityChart, five: StabilityChart) -> Conclusion:
-    """The claim is of the practical range; it is judged below and above Ω = 1, which go opposite ways."""
-    below, above = (_both(four, five, x) for x in ((0.0, 1.0), (1.0, 2.001)))
-    whole = _both(four, five, (0.0, 2.001))
-    judgement = judged([-change(*below), -change(*above)])
-    apart = " The whole hangs on where the box ends." if change(*below) != change(*above) else ""
+    """The claim is of the practical range; where the box of speeds ends the paper does not say."""
+    readings = []
+    for name, x in (("below Ω = 1", (0.0, 1.0)), ("above", (1.0, 2.001)), ("together", (0.0, 2.001))):
+        for angles, top in (("up to 45°", PRACTICAL), ("as drawn", np.inf)):
+            shares = [share(c, x=x, y=(0.0, top)) for c in (four, five)]
+            readings.append(Reading(f"{name}, {angles}", f"{shares[0]} → {shares[1]} %", -change(*shares)))
     return Conclusion(
         "A larger inertia of the third disk (γ₂ from 10 to 100) shrinks the unstable regions in the practical range.",
-        judgement,
-        f"γ₂ = 10 and 100, up to 45°: {percents(below)} unstable below Ω = 1, {percents(above)} above, "
-        f"{percents(whole)} together.{apart}",
+        tuple(readings),
+        "The whole hangs on where the box ends.",
     )
 
 
-def _both(one: StabilityChart, other: StabilityChart, x: tuple[float, float]) -> tuple[Share, Share]:
-    y = (0.0, PRACTICAL)
-    return share(one, x=x, y=y), share(other, x=x, y=y)
-
-
-def _speed(four: StabilityChart) -> Conclusion:
-    quarter = bands(four, (0.04, 0.5, 1.0, 1.5, 2.001), along="x", y=(0.0, PRACTICAL))
-    judgement = judged(steps(quarter))
-    mixed = len(set(steps(quarter))) > 1
+def _speed(four: StabilityChart, five: StabilityChart, six: StabilityChart) -> Conclusion:
+    edges = (0.04, 0.5, 1.0, 1.5, 2.001)
+    charts = {"4": four, "5": five, "6": six}
     return Conclusion(
         "A higher speed generally means more instability, though natural frequencies decide.",
-        judgement,
-        f"Figure 4 up to 45°, for Ω in 0–0.5, 0.5–1, 1–1.5 and 1.5–2: {percents(quarter)} unstable."
-        + (" It follows where the first-order tongues stand, not the speed." if mixed else ""),
+        tuple(
+            r
+            for n, c in charts.items()
+            for r in in_bands(f"Figure {n} up to 45°, Ω", c, edges, along="x", y=(0.0, PRACTICAL))
+        ),
+        "It follows where the first-order tongues stand, not the speed.",
     )
 
 
@@ -112,9 +123,14 @@ def _forks(
     return Conclusion(
         "Beside the paper: forks in line, as one would assemble them, cancel what equal joints force on the line, but "
         f"not the parametric excitation{'; slightly more is unstable' if more else ''}.",
-        ADDED,
-        f"Figures 4, 5 and 6 with β₂ within {NEAR} rad of β₁: {percents(equal[0])} unstable with joints in phase, "
-        f"{percents(equal[1])} with forks in line; for all β₂ up to 45°: {percents(whole[0])} and "
-        f"{percents(whole[1])}. The joints still modulate "
-        "the coupling of their own two disks; only their sum at the output cancels.",
+        (
+            Reading(
+                f"Figures 4, 5 and 6 with β₂ within {NEAR} rad of β₁",
+                f"{percents(equal[0])} unstable with joints in phase, {percents(equal[1])} with forks in line",
+                NEITHER,
+            ),
+            Reading("the same for all β₂ up to 45°", f"{percents(whole[0])} and {percents(whole[1])}", NEITHER),
+        ),
+        "The joints still modulate the coupling of their own two disks; only their sum at the output cancels.",
+        in_paper=False,
     )

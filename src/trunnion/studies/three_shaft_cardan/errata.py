@@ -9,9 +9,12 @@ from trunnion.studies.entries import catalogue
 from trunnion.studies.result import Comparison, Row
 from trunnion.studies.shares import sampled_share
 from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
+from trunnion.studies.two_shaft_cardan.errata import missed
 
 ANGLES = (0.2, 0.5)
 SPEEDS = np.linspace(0.15, 1.95, 31)
+RULED = np.linspace(0.15, 1.95, 121)
+"""Speeds at which the printed criterion is applied."""
 
 
 def errata() -> Comparison:
@@ -24,6 +27,9 @@ def errata() -> Comparison:
     }
     line = catalogue("three-shaft-cardan", angle_1=ANGLES[0], angle_2=ANGLES[1])
     general = np.array([stability(line, float(s), tolerance=1e-9).spectral_radius for s in SPEEDS])
+    ruled = [stability(line, float(s), tolerance=1e-8) for s in RULED]
+    wrong = sum(missed(np.asarray(one.multipliers)) for one in ruled)
+    right = sum(one.spectral_radius > 1 + 1e-6 for one in ruled)
 
     unstable = {version: f"{sampled_share(of > 1 + 1e-6, 0)} of speeds unstable" for version, of in radius.items()}
     shift = float(np.max(np.abs(radius["second at input"] - radius["derived"])))
@@ -37,6 +43,9 @@ def errata() -> Comparison:
                 f"it belongs at ψ₁(τ), behind joint 1: spectral radii move by up to {shift:.2g}"),
             Row("Figures 4 to 6, captions", "β₂ = 0.2, 0.2, 0.4 rad", "β₁",
                 "their axis is β₂; the text varies β₁ = 0.2, 0.4 (mended in the captions here)"),
+            Row("criterion of stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1",
+                f"the second is a rule for exponents: of multipliers it calls {wrong} of {right} unstable ones among "
+                f"{len(RULED)} speeds stable, those of subharmonic tongues"),
             Row("derived", "η₂(ψ₁(τ))", unstable["derived"],
                 f"agrees with the general equations of this program to {agree:.0e}"),
         ),

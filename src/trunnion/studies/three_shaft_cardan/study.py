@@ -14,8 +14,9 @@ from trunnion.results.chart import StabilityChart
 from trunnion.studies.drawing import charts_figure, panel
 from trunnion.studies.entries import catalogue
 from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.result import Comparison, Reproduction
-from trunnion.studies.three_shaft_cardan.conclusions import conclusions
+from trunnion.studies.result import Comparison, Reproduction, Row
+from trunnion.studies.shares import share
+from trunnion.studies.three_shaft_cardan.conclusions import PRACTICAL, conclusions
 from trunnion.studies.three_shaft_cardan.errata import errata
 
 NAME = "three-shaft-cardan"
@@ -103,4 +104,26 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
         errata(),
         (),
         conclusions(worst["4"], worst["5"], worst["6"], inline),
+        assumed=_assumed(alone, worst["4"], inline["4"]),
     )
+
+
+def _assumed(alone: StabilityChart, four: StabilityChart, inline: StabilityChart) -> Comparison:
+    """What the text leaves open, and what another value changes."""
+    practical = (0.0, PRACTICAL)
+    shares = [share(c, y=practical) for c in (alone, four, inline)]
+    drawn = share(four)
+    return Comparison(
+        "What is assumed",
+        (
+            Row("Figures 2 to 6, range of speeds", "pictures without numbers", f"{LOW:g} to {HIGH:g}",
+                "conclusions are judged below and above Ω = 1 and together"),
+            Row("Figures 2 to 6, range of angles", "pictures without numbers", f"0 to {TOP:g} rad",
+                f"Figure 4 up to 45°: {shares[1]} % unstable, as drawn {drawn} %"),
+            Row("Figure 3, β₁", "not stated", "0, as for equation 20",
+                f"up to 45°: {shares[0]} % unstable, with β₁ = 0.2 rad (Figure 4) {shares[1]} %"),
+            Row("Figure 2, ζ, α₁, μ₁, γ₁", "0.001, 1, 1, 10", "as stated", "the line of S1 with its γ = 10"),
+            Row("forks of shaft 2", "by (7), η₂ in phase with η₁", "90° from one another",
+                f"forks in line: {shares[2]} % of Figure 4 up to 45° for {shares[1]} %"),
+        ),
+    )  # fmt: skip

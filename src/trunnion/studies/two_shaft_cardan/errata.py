@@ -7,7 +7,7 @@ from functools import cache, partial
 import numpy as np
 
 from trunnion.analyses.linear.stability import stability
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 from trunnion.studies.drawing import curves
 from trunnion.studies.result import Comparison, PaperFigure, Row
 from trunnion.studies.shares import sampled_share
@@ -17,6 +17,8 @@ BETA, GAMMA = 0.5, 100.0
 SPEEDS = np.linspace(0.25, 1.6, 109)
 """Evenly spaced: shares of them are shares of the range."""
 DIFFERENCE, HALF = 0.336, 0.705
+AT_TONGUE = 1.41
+"""A speed within the subharmonic tongue of ω₂."""
 AROUND = 0.01
 """Half-width of the search for a false tongue about (ω₂−ω₁)/4."""
 
@@ -77,6 +79,28 @@ def _as_printed(mu: float, gamma: float) -> tuple[float, float]:
     return float(low), float(high)
 
 
+def missed(multipliers: Complex) -> bool:
+    """Whether "or Re σ ≤ 0", a rule for exponents, calls multipliers stable of which one lies outside the circle."""
+    outside = np.abs(multipliers) > 1 + 1e-6
+    return bool(outside.any() and np.all(multipliers[outside].real <= 0))
+
+
+def _rule() -> str:
+    found = [_multipliers(float(s)) for s in SPEEDS]
+    unstable = sum(bool(np.any(np.abs(m) > 1 + 1e-6)) for m in found)
+    wrong = sum(missed(m) for m in found)
+    most = min(_multipliers(AT_TONGUE).real)
+    return (
+        f"the second is a rule for exponents: of multipliers it calls {wrong} of {unstable} unstable speeds stable, "
+        f"those of subharmonic tongues, as σ = {most:.5f} at Ω = {AT_TONGUE:g}"
+    )
+
+
+def _multipliers(speed: float) -> Complex:
+    system = printed_system("derived", speed, BETA, inertia_of_disk_2=GAMMA)
+    return np.asarray(stability(system, tolerance=1e-9).multipliers)
+
+
 def errata() -> Comparison:
     """The misprints, and what the matrices give with and without them."""
     radii = _radii()
@@ -99,6 +123,7 @@ def errata() -> Comparison:
             Row("eq 14", "ζ = c₁/√(k₁J₁)", "ζ = c₁/(2√(k₁J₁))", "the 2ζ/Ω of its matrix E needs the factor 2"),
             Row("eq 25", "√(1 + μ(1/γ+1)² − 4μ/γ)", "√((1 + μ(1/γ+1))² − 4μ/γ)",
                 f"bracket: as printed it gives {printed[0]:.3f} and {printed[1]:.3f} for μ = 1, γ = 100"),
+            Row("(25), stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1", _rule()),
             Row("Figure 6, text", "damping ratio × 20", "stiffness ratio × 20", "slip in the text"),
         ),
         f"The first four rows: β = {BETA} rad, γ = {GAMMA:g}, {len(SPEEDS)} evenly spaced speeds from {SPEEDS[0]:g} to "

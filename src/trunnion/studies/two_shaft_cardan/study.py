@@ -8,14 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from trunnion.analyses.charts.stability_chart import stability_chart
 from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
 from trunnion.studies.drawing import charts_figure, panel
 from trunnion.studies.entries import catalogue
 from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.result import Comparison, Reproduction
-from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, conclusions
+from trunnion.studies.result import Comparison, Reproduction, Row
+from trunnion.studies.shares import percents, share
+from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, Charts, conclusions
 from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
 from trunnion.studies.two_shaft_cardan.published import DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2, group_parameters
 from trunnion.studies.two_shaft_cardan.twists import agreement, chart_in_twists
@@ -28,6 +31,10 @@ BETA = 0.5
 """Joint angle of Figures 5 and 7 [rad]; the text does not state it."""
 MOST = 20.0
 """Largest ratio of Figures 5 and 7; the text does not state it, Figures 4 and 6 use it."""
+BETAS = (0.3, 0.5, 0.7)
+"""Joint angles [rad] at which Figures 5 and 7 are compared."""
+PRINTED_ALPHA = (0.001, 0.02)
+"""α of the base state as printed, and 20 times that; ζ has no number."""
 
 TABLE_1: tuple[Printed, ...] = (
     ("subharmonic", (1,), 1, 0.072), ("subharmonic", (1,), 2, 0.024),
@@ -62,8 +69,9 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
     tell(0.6)
     damping, stiffness = _over_group(DAMPING_OF_SHAFT_2, points), _over_group(STIFFNESS_OF_SHAFT_2, points)
     tell(0.65)
+    low_alpha, twenty = (over_angle(0.04, 2.0, damping_of_shaft_2=alpha) for alpha in PRINTED_ALPHA)
     twists = tuple(chart_in_twists(chart, 100.0) for chart in (slow, fast))
-    wide = tuple(_wide(mu, points) for mu in (1.0, 20.0))
+    wide = _wide(1.0, points), _wide(20.0, points)
     tell(0.75)
     beta = "joint angle β [rad]"
     whole = (0.0, 2.0)
@@ -115,12 +123,35 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
         tables,
         errata(),
         evidence,
-        conclusions(base, damped, wide[0], wide[1], fast),
+        conclusions(Charts(base, damped, stiff, fast, damping, stiffness, wide, (low_alpha, twenty))),
+        assumed=_assumed(base, low_alpha),
     )
 
 
-def _over_group(label: str, points: int) -> StabilityChart:
-    line = catalogue(NAME, angle=BETA)
+def _assumed(base: StabilityChart, printed: StabilityChart) -> Comparison:
+    """What the text leaves open or says otherwise, and what another value changes."""
+    shares = share(base), share(printed)
+    differ = 100 * float(np.mean(base.verdict != printed.verdict))
+    angles = [
+        [share(_over_group(label, 120, beta)) for beta in BETAS] for label in (DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2)
+    ]
+    told = [f"{', '.join(f'{b:g}' for b in BETAS)} rad give {percents(found)} unstable" for found in angles]
+    return Comparison(
+        "What is assumed",
+        (
+            Row("Figures 3 to 7, ζ", "not stated", "0.001", "the value of the three-shaft study (S3)"),
+            Row("Figures 3, 6, α", f"{PRINTED_ALPHA[0]:g}", "1",
+                f"taken as ζ = 0.001, α = 1, the names exchanged; with α = {PRINTED_ALPHA[0]:g} the unstable share of "
+                f"Figure 3 is {shares[1]} % for {shares[0]} %, and {differ:.2g} % of its points change"),
+            Row("Figure 4, α", f"20 times {PRINTED_ALPHA[0]:g}", "20", "a reading of its own among the conclusions"),
+            Row("Figure 5, β and largest α", "not stated", f"{BETA:g} rad, {MOST:g}", told[0]),
+            Row("Figure 7, β and largest μ", "not stated", f"{BETA:g} rad, {MOST:g}", told[1]),
+        ),
+    )  # fmt: skip
+
+
+def _over_group(label: str, points: int, angle: float = BETA) -> StabilityChart:
+    line = catalogue(NAME, angle=angle)
     parameter = group_parameters(line)[label]
     low = 0.0 if label == DAMPING_OF_SHAFT_2 else 0.05
     across, up = ("speed", 0.06, 2.0, points), (parameter, low, MOST, points)
