@@ -113,3 +113,40 @@ def test_the_vector_model_knows_the_single_joint():
     line = Line(angles=[0.5], planes=[0.0], fork_offsets=[0.0])
     assert abs(vector_model.motion(line, 0.0).speed[1] - 1 / np.cos(0.5)) < 1e-15
     assert abs(vector_model.motion(line, np.pi / 2).speed[1] - np.cos(0.5)) < 1e-15
+
+
+@pytest.mark.parametrize("name", ["one joint", "three joints, accelerating", "six joints", "bent the other way"])
+def test_tilts_of_the_crosses(name):
+    """From the pins' directions in space: how far each fork's pins tip out of the plane square to the other shaft."""
+    line = CASES[name]
+    result = tn.kinetostatics(lines.driveline(line), points=24, **lines.arguments(line))
+    states = [vector_model.motion(line, phi) for phi in result.input_angle]
+    for j in range(len(line.angles)):
+        front = np.arcsin([s.b[j] @ line.axes[j] for s in states])
+        behind = np.arcsin([s.a[j] @ line.axes[j + 1] for s in states])
+        for found, truth in zip(result.cross_tilt[2 * j : 2 * j + 2], (front, behind), strict=True):
+            # which of the two opposite pins is meant is the same for the whole turn
+            assert min(np.abs(found - truth).max(), np.abs(found + truth).max()) < 1e-13
+        assert np.abs(result.cross_tilt[2 * j]).max() <= abs(line.angles[j]) + 1e-14
+
+
+def test_tilts_of_the_printed_relations():
+    """S2 (4) at its own angles, its α_i1 read as α_i; and no tilt where a joint has no cross."""
+    turn = tn.kinetostatics(tn.catalogue("bicardan-elastic"), points=360)
+    alpha, phi = np.deg2rad(27.99), turn.input_angle
+    tilted = np.sin(alpha) * np.cos(phi) / np.sqrt(1 - np.sin(alpha) ** 2 * np.cos(phi) ** 2)
+    assert np.tan(turn.cross_tilt[0]) == pytest.approx(np.tan(alpha) * np.sin(phi), abs=1e-13)
+    assert np.tan(turn.cross_tilt[1]) == pytest.approx(tilted, abs=1e-13)
+    with_balls = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.RzeppaJoint(angle=0.1)]
+    plain = tn.kinetostatics(tn.Driveline([*with_balls, tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0)]))
+    assert plain.cross_tilt.shape == (2, 720) and np.isnan(plain.cross_tilt).all()
+
+
+def test_rate_of_the_tilts_is_the_swing_of_the_cross():
+    line = CASES["one joint"]
+    result = tn.kinetostatics(lines.driveline(line), points=720, **lines.arguments(line))
+    step = result.input_angle[1]
+    for tilt, which in zip(result.cross_tilt, (0, 1), strict=True):
+        rate = line.speed * (np.roll(tilt, -1) - np.roll(tilt, 1)) / (2 * step)
+        swing = [vector_model.motion(line, phi).swing[0][which] for phi in result.input_angle]
+        assert np.abs(rate) == pytest.approx(np.abs(swing), abs=1e-4 * line.speed)

@@ -67,6 +67,25 @@ def secondary_couples(chain: Chain, motion: Rotations, passed: Torques, pin_mome
     return Couples(tuple(names), tuple(member), np.reshape(standing, shape), np.reshape(rotating, shape), heat)
 
 
+def cross_tilts(chain: Chain, motion: Rotations) -> Array:
+    """Tilt [rad] of the cross in every fork (fork, point), in the order of ``Couples``; NaN where there is no cross.
+
+    In each fork the other fork's pins tip out of the plane square to the shaft, with a at the input, b at the output:
+
+        input fork   sin θ₁ = b·e₁,  tan θ₁ = tan β sin χ        output fork   sin θ₂ = a·e₂ = sin β cos χ
+
+    which is S2's (4).
+    """
+    tilts = []
+    for i in chain.joints:
+        step, chi = chain.steps[i], motion.chi[i][0]
+        if step.link is Link.HOOKE:
+            tilts += [np.arctan(np.tan(step.angle) * np.sin(chi)), np.arcsin(np.sin(step.angle) * np.cos(chi))]
+        else:
+            tilts += [np.full(len(chi), np.nan)] * 2
+    return np.reshape(tilts, (len(tilts), len(motion.angle[0][0])))
+
+
 def _cross(
     angle: float, chi: Array, torque_out: Array, speeds: tuple[Array, Array], pin_moment: float
 ) -> tuple[Array, Array, Array]:

@@ -73,6 +73,8 @@ class Kinetostatics(Described):
     output_torque : torque [N m] asked for at the end of ``branch``, beside the Disks' own.
     joint_angle : (joint, point) input angle χ of each joint from its own plane [rad].
     joint_torque_in, joint_torque_out : (joint, point) transmitted into and out of each joint [N m].
+    cross_tilt : (fork, point) of the cross in each fork [rad]: of the other fork's pins out of the plane square to the
+        shaft, positive away from the drive; NaN where the joint has no cross.
     secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane,
         toward the side the line bends to) and v (normal to it, axis × u).
     secondary_couple_rotating : (fork, 2, point) the same along the fork's arm and across it (axis × arm).
@@ -111,6 +113,7 @@ class Kinetostatics(Described):
     joint_torque_out: Array
     forks: tuple[str, ...]
     fork_ratio: Array
+    cross_tilt: Array
     secondary_couple: Array
     secondary_couple_rotating: Array
     supports: Supports | None
@@ -238,6 +241,8 @@ class Kinetostatics(Described):
         yield over(joint, "joint_angle", self.joint_angle, "rad", "input angle from the joint's own plane")
         yield over(joint, "joint_torque_in", self.joint_torque_in, "N*m", "torque transmitted into the joint")
         yield over(joint, "joint_torque_out", self.joint_torque_out, "N*m", "torque transmitted out of the joint")
+        tilt = "tilt of the other fork's pins out of the plane square to the shaft"
+        yield over("fork input_angle", "cross_tilt", self.cross_tilt, "rad", tilt)
         for frame, name in (("standing", "secondary_couple"), ("rotating", "secondary_couple_rotating")):
             yield over(fork.format(frame), name, getattr(self, name), "N*m", couple.format(frame))
         if self.supports is not None:
@@ -403,6 +408,9 @@ def _columns(result: Kinetostatics) -> Iterator[tuple[str, Array]]:
     for name, (u, v) in zip(result.forks, result.secondary_couple, strict=True):
         yield f"{name} couple u [N*m]", u
         yield f"{name} couple v [N*m]", v
+    for name, tilt in zip(result.forks, result.cross_tilt, strict=True):
+        if not np.any(np.isnan(tilt)):
+            yield f"{name} tilt of the cross [rad]", tilt
     if result.supports:
         for name, (u, v) in zip(result.supports.names, result.supports.force, strict=True):
             yield f"{name} force u [N]", u

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.analyses.kinetostatics.bearings import Bearings
 from trunnion.analyses.kinetostatics.chain import Chain, Link, chain, member_ratio
-from trunnion.analyses.kinetostatics.couples import secondary_couples
+from trunnion.analyses.kinetostatics.couples import cross_tilts, secondary_couples
 from trunnion.analyses.kinetostatics.elastic import constant_twist, solve
 from trunnion.analyses.kinetostatics.friction import CrossFriction
 from trunnion.analyses.kinetostatics.measures import largest
@@ -136,6 +136,7 @@ def kinetostatics(
         joint_torque_out=stack([passed.out[i][0] for i in joints]),
         forks=couples.names,
         fork_ratio=np.array([member_ratio(train, m) for m in couples.member]),
+        cross_tilt=cross_tilts(train, motion),
         secondary_couple=couples.standing,
         secondary_couple_rotating=couples.rotating,
         supports=forces,

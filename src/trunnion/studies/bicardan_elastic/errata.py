@@ -26,7 +26,7 @@ def errata(elastic: Kinetostatics, rigid: Kinetostatics, worst: Kinetostatics, e
                 f"86.4° from homokinetic, nearly the worst: ω_out/ω_in {slow:.4f} … {fast:.4f}, "
                 f"irregularity {rigid.irregularity:.4f} "
                 f"(90° off: {worst.irregularity:.4f}; β₁₂ = ν₁₂: {rounded(even.irregularity)})"),
-            Row("(4)", "sin α_i1", "sin α_i", "misprint"),
+            Row("(4)", "sin α_i1", "sin α_i", "tilts θ by the mended relation stand in the first table"),
             Row("(5), (6)", "ω_j1 ≈ ω_i2", "with the rate of ξ",
                 f"leaving it out costs {elastic.constant_twist.speed:.1e} of the speed"),
             Row("(7)", "T = ξ c, ξ ≈ constant", "solved at every angle",

@@ -92,6 +92,10 @@ def _numbers(rigid: Kinetostatics) -> Comparison:
             row("speed of the output", rigid.output_speed, "rad/s"),
             row("acceleration of the output", rigid.output_acceleration, "rad/s²"),
             row("torque of the drive", rigid.drive_torque, "N·m"),
+            *(
+                Row(f"tilt θ of the cross in fork {fork}", "(4), not drawn", f"{low:.5g} … {high:.5g} °")
+                for fork, low, high in zip(rigid.forks, *extremes(np.degrees(rigid.cross_tilt)), strict=True)
+            ),
         ),
     )
 
