@@ -33,6 +33,26 @@ def test_characteristic_values(q: float, a: float, trace: float) -> None:
     assert bisect(beyond, a - 1e-3, a + 1e-3, xtol=1e-9) == pytest.approx(a, abs=5.1e-7)
 
 
+@pytest.mark.parametrize(
+    ("a", "trace"),
+    [
+        (12.964079444, -2.0), (12.986489953, 2.0), (27.805240581, 2.0), (28.062765899, -2.0),
+        (40.050190986, -2.0), (57.534689001, -2.0), (55.002957151, -2.0), (69.057988351, 2.0), (123.643012376, -2.0),
+    ],
+)  # fmt: skip
+def test_characteristic_values_of_strong_modulation(a: float, trace: float) -> None:
+    """q = 25: a₃, b₄, a₄, b₅, a₅, a₇, b₇, b₈, a₁₁ of Zhang and Jin, Computation of Special Functions (1996), read in the
+    table of its program MCVA2; nine decimals. Lower ones are left out: below a = 2q motions grow too far over a period
+    for so many digits, which ``stability`` says.
+    """
+
+    def beyond(value: float) -> float:
+        return float(tn.stability(mathieu(value, 25.0), tolerance=1e-12).multipliers.sum().real - trace)
+
+    width = 1e-4  # a₁₁ and b₁₁ are 3e-4 apart
+    assert bisect(beyond, a - width, a + width, xtol=1e-11) == pytest.approx(a, abs=2e-9)
+
+
 @pytest.mark.parametrize(("a", "verdict"), [(1.2, "MARGINAL"), (1.0, "UNSTABLE")])
 def test_undamped_verdict(a: float, verdict: str) -> None:
     """q = 0.1: a = 1 lies between b₁ and a₁, a = 1.2 outside."""

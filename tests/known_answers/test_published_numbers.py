@@ -31,6 +31,15 @@ def test_speed_fluctuation_at_1200_rpm() -> None:
     assert (speed.min(), speed.max()) == (pytest.approx(1151, abs=0.5), pytest.approx(1251, abs=0.5))
 
 
+def test_acceleration_behind_a_joint_of_ten_degrees() -> None:
+    """SDP/SI, handbook D200, T62 (read at sdp-si.com): 10° at 250 rpm, 0.0306 times ω², 21.0 rad/s², and on its disk of
+    0.0233 in lb s² a torque of 0.489 in lb; three figures. The table is Baranyi's, Design News, 1 September 1969."""
+    turn = one_joint(10.0, tn.rpm(250))
+    assert turn.peak_acceleration / tn.rpm(250) ** 2 == pytest.approx(0.0306, abs=5e-5)
+    assert turn.peak_acceleration == pytest.approx(21.0, abs=0.05)
+    assert turn.peak_acceleration * 0.0233 == pytest.approx(0.489, abs=5e-4)
+
+
 def sprott_jerk() -> tn.System:
     """x‴ + A x″ − x′² + x = 0 with A = 2.017 (Sprott, Phys. Lett. A 228, 1997)."""
 
