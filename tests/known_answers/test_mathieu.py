@@ -41,9 +41,10 @@ def test_characteristic_values(q: float, a: float, trace: float) -> None:
     ],
 )  # fmt: skip
 def test_characteristic_values_of_strong_modulation(a: float, trace: float) -> None:
-    """q = 25: a₃, b₄, a₄, b₅, a₅, a₇, b₇, b₈, a₁₁ of Zhang and Jin, Computation of Special Functions (1996), read in the
-    table of its program MCVA2; nine decimals. Lower ones are left out: below a = 2q motions grow too far over a period
-    for so many digits, which ``stability`` says.
+    """q = 25: a₃, b₄, a₄, b₅, a₅, a₇, b₇, b₈, a₁₁ of Zhang and Jin, Computation of Special Functions (1996).
+
+    Read: the table of its program MCVA2; nine decimals. Lower values are left out: there motions grow too far over a
+    period for so many digits, which ``stability`` says.
     """
 
     def beyond(value: float) -> float:

@@ -106,8 +106,10 @@ def test_two_disks() -> None:
 
 
 def test_turbine_generator_of_the_first_benchmark() -> None:
-    """IEEE task force, first benchmark model of subsynchronous resonance, Trans. PAS-96 (1977): HP and IP turbine, two LP
-    turbines, generator and exciter, as inertia constants H [s] and stiffness in torque per electrical radian, both per unit.
+    """IEEE task force, first benchmark model of subsynchronous resonance, Trans. PAS-96 (1977).
+
+    HP and IP turbine, two LP turbines, generator and exciter, as inertia constants H [s] and stiffness in torque per
+    electrical radian, both per unit.
 
     Read: two transcriptions of the model in public programs (one after Ong's book on electric machines), which agree
     but for the last figure of the exciter's shaft, 2.822 and 2.82. The article was not read. The frequencies, as the

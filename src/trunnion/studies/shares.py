@@ -88,6 +88,6 @@ def in_bands(
     readings = []
     for width, ends in (("bands", edges), ("bands half as wide", halves)):
         values = bands(chart, ends, along=along, **rest)
-        shown = ", ".join(f"{end:.3g}" for end in ends)
-        readings.append(Reading(f"{of}, {width} between {shown}", percents(values), agreed(steps(values))))
+        shown = " between " + ", ".join(f"{end:.3g}" for end in ends) if ends is edges else ""
+        readings.append(Reading(f"{of}, {width}{shown}", percents(values), agreed(steps(values))))
     return tuple(readings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.studies.double_tripod.contraction import torque_that_breaks_it
+from trunnion.studies.double_tripod.midshaft import midshaft_frequencies, ratio_that_meets
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 from trunnion.studies.result import Comparison, Row
 
@@ -25,6 +26,8 @@ def errata() -> Comparison:
     turning = one.natural_frequency(WORST_ANGLE) / (2 * np.pi)
     near = 100 * (first / turning - 1), 100 * (second / (2 * turning) - 1)
     room = torque_that_breaks_it("input")
+    meets = [ratio_that_meets(2, float(part.natural_frequency(WORST_ANGLE)) / np.pi) for part in (one, three)]
+    heavy = midshaft_frequencies((1.0, 1.0), 2)
     dropped = TABLE_RIGIDITY * one.joint_amplitude(WORST_ANGLE) / float(stiff[0])
     return Comparison(
         "Errata",
@@ -46,10 +49,15 @@ def errata() -> Comparison:
                 "not Lyapunov exponents as the text reads; what the authors computed in fact is not known"),
             Row("(38), (39)", "criteria of chaos", "hold of themselves",
                 "a forced system has an exponent 0, a damped one a negative sum: they cannot discriminate"),
-            Row("(20), (21): midshaft terms", "dropped in (25), (26)",
-                f"ν₁, ν₂ {near[0]:.0f} % and {near[1]:.0f} % away",
-                "ν₁ from Ω₁/2π, ν₂ from 2Ω₁/2π. Their amplitudes A_k are free, no equation fixes them. As torques in "
-                f"time they would have to be {room:.2g} times the motor's mean before the bound below fails"),
+            Row("(17): midshaft", "fixed ends, ν_k = k c/2L", "(r₁ + r₂)x cos x = (r₁r₂x² − 1) sin x, x = ωL/c",
+                "by (15), (16), r = I_TJ/(ρJL), of which we have no number; the printed ν_k are of r = 0, free ends. "
+                f"Tripods of r = {meets[0]:.3g} bring ν₂ to 2Ω₁/2π, of r = {meets[1]:.3g} to 2Ω₃/2π, of r = 1 to "
+                f"{heavy[1]:.0f} Hz and ν₁ to {heavy[0]:.0f} Hz"),
+            Row("(20), (21): midshaft terms", "dropped in (25), (26), as ν_k is not near",
+                f"ν₁, ν₂ {near[0]:.0f} % and {near[1]:.0f} % away for r = 0",
+                "ν₁ from Ω₁/2π, ν₂ from 2Ω₁/2π. By (15) these terms are the joint's own torque k_tTJ A φ cos 3φ of the "
+                "next row, which has no φ₂: no resonance of the midshaft enlarges it. Taken as free torques in time "
+                f"they would have to be {room:.2g} times the motor's mean before the bound below fails"),
             Row("(10), (12): tripod terms", "k_tTJ A cos 3φ, dropped in (25)", f"{dropped:.0e} of k_t",
                 "with the table's 1.11·10⁴ N m/rad as the joint's k_tTJ; A = 3.65e-5 makes them nothing"),
         ),
