@@ -33,6 +33,7 @@ name = "gears"
 after = "pinion"
 mesh_stiffness = "2e8 N/m"
 mesh_damping = "900 N*s/m"
+impact_damping = "2e7 N*s/m^2"
 damping_law = "in contact"
 stiffness_ratio = 0.05
 """

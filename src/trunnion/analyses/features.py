@@ -132,8 +132,9 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
-            "ratio", "gear mesh", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
-            "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load", "quadratic load", SERIES,
+            "ratio", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
+            "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
+            "quadratic load", SERIES,
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -177,7 +178,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
-        (*_UNEVEN, "joint plane", "mesh-stiffness variation", "quadratic load"),
+        (*_UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
         "the stages are then not linear with constant coefficients",
     ),
 }
@@ -185,8 +186,8 @@ _UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "angle of an ideal joint", "mesh damping", "backlash", "transmission error", "mesh-stiffness variation",
-        "stages", "dry friction", ONE_MOTION,
+        "angle of an ideal joint", "mesh damping", "impact damping", "backlash", "transmission error",
+        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
         "unlike damping in series", "free start", "drive share",
@@ -219,6 +220,7 @@ TABLE: dict[str, Row] = {
                     "loss factor",
                     "damping ratio",
                     "mesh damping",
+                    "impact damping",
                     "damping in contact only",
                     "unlike damping in series",
                 ),
@@ -278,6 +280,7 @@ TABLE: dict[str, Row] = {
             "damping ratio": _UNDAMPED_TURN,
             "damping in contact only": _UNDAMPED_TURN,
             "mesh damping": _RIGID_MESH,
+            "impact damping": _RIGID_MESH,
             "backlash": _RIGID_MESH,
             "transmission error": _RIGID_MESH,
             "mesh-stiffness variation": _RIGID_MESH,

@@ -131,6 +131,7 @@ FEATURES = (
         ),
     ),
     Feature("mesh damping", ("GearPair.mesh_damping",)),
+    Feature("impact damping", ("GearPair.impact_damping",)),
     Feature("backlash", ("GearPair.backlash", "GearPair.angular_backlash", "GearPair.stiffness_ratio")),
     Feature(
         "transmission error",

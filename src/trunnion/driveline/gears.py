@@ -14,6 +14,7 @@ from trunnion.driveline.quantities import (
     DEGREE,
     Angle,
     Dimensionless,
+    ImpactDamping,
     Length,
     Maybe,
     MeshDamping,
@@ -85,7 +86,7 @@ class GearPair(Element):
     The gears' own inertia is a Disk on each side; the rotation of both sides is positive in its own sense, as with a
     ``Ratio`` of tooth numbers, which it becomes as the mesh stiffness grows. With u = r₁φ₁ − r₂φ₂ − e the mesh pushes
     with k f(u) + c u′ along the line of action, where f rises with slope 1 outside ± backlash/2 and with
-    ``stiffness_ratio`` inside.
+    ``stiffness_ratio`` inside; with ``impact_damping`` d also with d (|u| − backlash/2) u′ outside.
 
     Parameters
     ----------
@@ -96,6 +97,9 @@ class GearPair(Element):
     mesh_damping : c [N s/m].
     damping_law : "always"; "in contact", not inside the backlash; or "never pulling", in contact and so that the teeth
         neither pull nor push with more than twice the elastic force.
+    impact_damping : d [N s/m²]: behind the backlash d times the depth of the teeth's contact is damping too, so that
+        the force of a landing rises from nothing (Hunt and Crossley's law for a linear spring). In a free impact the
+        teeth part slower than k/d, so that they do not pull.
     backlash : play along the line of action [m]; or else
     angular_backlash : play of the output gear with the input gear held [rad].
     stiffness_ratio : slope within the backlash over that outside, 0 (free play) to 1.
@@ -120,6 +124,9 @@ class GearPair(Element):
     )
     mesh_stiffness: MeshStiffness = Field(description="along the line of action")
     mesh_damping: MeshDamping = optional(default=0.0, description="along the line of action")
+    impact_damping: ImpactDamping = optional(
+        default=0.0, description="along the line of action, over the depth of contact behind the backlash"
+    )
     damping_law: DampingLaw = Field(
         default="always", description='when it damps: "always", "in contact" or "never pulling"'
     )
@@ -169,7 +176,18 @@ class GearPair(Element):
             )
 
     def _check_law(self) -> None:
-        not_negative(self, "backlash", "angular_backlash", "mesh_damping", remedy="write 0 for none")
+        not_negative(self, "backlash", "angular_backlash", "mesh_damping", "impact_damping", remedy="write 0 for none")
+        if self.impact_damping and not self.total_backlash:
+            remedy = "give backlash or angular_backlash, or mesh_damping alone"
+            raise InputError(
+                "needs a backlash, behind which contact begins", key="impact_damping", value=self.impact_damping,
+                remedy=remedy,
+            )  # fmt: skip
+        if self.impact_damping and self.damping_law == "never pulling":
+            raise InputError(
+                "does not go with damping_law = never pulling", key="impact_damping", value=self.impact_damping,
+                remedy='write damping_law = "in contact"',
+            )  # fmt: skip
         if self.backlash and self.angular_backlash:
             raise InputError(
                 "stands beside backlash", key="angular_backlash", value=self.angular_backlash, remedy="leave out one"
@@ -223,7 +241,7 @@ class GearPair(Element):
     def idle(self) -> tuple[str, ...]:
         """Numbers that do nothing here and are no parameters."""
         if not self.total_backlash:
-            return "backlash", "angular_backlash", "stiffness_ratio"
+            return "backlash", "angular_backlash", "stiffness_ratio", "impact_damping"
         return ("angular_backlash",) if self.backlash else ("backlash",)
 
     @property

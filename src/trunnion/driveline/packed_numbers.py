@@ -33,6 +33,7 @@ UNITS = {
     "yoke_length": "m",
     "mesh_stiffness": "N/m",
     "mesh_damping": "N*s/m",
+    "impact_damping": "N*s/m^2",
     "backlash": "m",
     "angular_backlash": "rad",
     "stiffness_ratio": "1",

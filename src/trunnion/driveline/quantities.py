@@ -76,6 +76,7 @@ DAMPING = Kind("damping", "N*m*s/rad", "3 N*m*s/rad")
 QUADRATIC = Kind("quadratic load", "N*m*s^2/rad^2", "0.02 N*m*s^2/rad^2")
 MESH_STIFFNESS = Kind("mesh stiffness", "N/m", "2e8 N/m")
 MESH_DAMPING = Kind("mesh damping", "N*s/m", "500 N*s/m")
+IMPACT_DAMPING = Kind("impact damping", "N*s/m^2", "2e7 N*s/m^2")
 INERTIA = Kind("inertia", "kg*m^2", "0.4 kg*m^2")
 TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
 LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
@@ -94,6 +95,7 @@ KINDS = (
     QUADRATIC,
     MESH_STIFFNESS,
     MESH_DAMPING,
+    IMPACT_DAMPING,
     INERTIA,
     TORQUE,
     LENGTH,
@@ -120,6 +122,7 @@ USUAL: dict[str, dict[str, float]] = {
     "N*m*s^2/rad^2": {"N*m*s^2/rad^2": 1.0},
     "N/m": {"N/m": 1.0},
     "N*s/m": {"N*s/m": 1.0},
+    "N*s/m^2": {"N*s/m^2": 1.0},
     "kg*m^2": {"kg*m^2": 1.0, "t*m^2": 1e3},
     "N*m": {"N*m": 1.0, "kN*m": 1e3},
     "m": {"m": 1.0, "mm": 1e-3},
@@ -131,7 +134,7 @@ USUAL: dict[str, dict[str, float]] = {
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
 
-OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, TORQUE)
+OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, IMPACT_DAMPING, TORQUE)
 """Kinds that computations leave as good as zero, and that nothing is divided by."""
 
 
@@ -352,6 +355,7 @@ if TYPE_CHECKING:
     QuadraticLoad: TypeAlias = Stated[float, float | str]
     MeshStiffness: TypeAlias = Stated[float, float | str]
     MeshDamping: TypeAlias = Stated[float, float | str]
+    ImpactDamping: TypeAlias = Stated[float, float | str]
     Inertia: TypeAlias = Stated[float, float | str]
     Torque: TypeAlias = Stated[float, float | str]
     Length: TypeAlias = Stated[float, float | str]
@@ -385,6 +389,7 @@ else:
     QuadraticLoad = Annotated[float, Quantity(QUADRATIC)]
     MeshStiffness = Annotated[float, Quantity(MESH_STIFFNESS)]
     MeshDamping = Annotated[float, Quantity(MESH_DAMPING)]
+    ImpactDamping = Annotated[float, Quantity(IMPACT_DAMPING)]
     Inertia = Annotated[float, Quantity(INERTIA)]
     Torque = Annotated[float, Quantity(TORQUE)]
     Length = Annotated[float, Quantity(LENGTH)]

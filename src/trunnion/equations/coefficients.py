@@ -25,7 +25,7 @@ from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
-from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
+from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.equations.topology import Mesh, Topology, topology
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
@@ -285,6 +285,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
                 law = stage_law(assembly.line, shafts[0], column, table)
                 at_rest, stiffness[:, e], damped_there = law.under(static[:, e], free=free)
                 damping[:, e] *= damped_there
+                impact = impact_damping(assembly.line.elements[shafts[0]], shafts[0], column, table)
+                if damped and impact.any():
+                    damping[:, e] += impact * law.depth(at_rest)
             twist[:, e] = at_rest if twisted else 0.0
             own = [twist[:, e]]
         else:

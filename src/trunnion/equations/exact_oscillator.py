@@ -50,8 +50,8 @@ def exact_oscillator(line: Driveline, speed: float | str | None = None) -> Piece
 
     Raises
     ------
-    InputError : another kind of line, loads that depend on the speed, a mesh stiffness that varies, harmonics without a
-        common frequency, no speed where one is needed.
+    InputError : another kind of line, loads that depend on the speed, a mesh stiffness that varies, impact damping,
+        harmonics without a common frequency, no speed where one is needed.
     """
     front, spring, back = _three(line)
     near, far = (np.inf if isinstance(e, ConstantSpeed) else e.moment_of_inertia for e in (front, back))
@@ -108,6 +108,11 @@ def _three(line: Driveline) -> tuple[Disk | ConstantSpeed, GearPair | PiecewiseS
         raise InputError(
             "makes the stages vary in time, so that no motion is exact", element=line.names[1],
             key="stiffness_variation", remedy="use tn.periodic_branch or tn.harmonic_balance",
+        )  # fmt: skip
+    if isinstance(spring, GearPair) and spring.impact_damping:
+        raise InputError(
+            "goes with the depth of contact, so that no stage is linear", element=line.names[1], key="impact_damping",
+            value=spring.impact_damping, remedy="use tn.periodic_branch or tn.harmonic_balance",
         )  # fmt: skip
     return front, spring, back
 

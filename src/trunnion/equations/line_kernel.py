@@ -42,10 +42,12 @@ LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
 PER_COMPLIANCE = 11
 # A spring with stages has its law at p[LAW], else LAW is 0: per stage damping, slope, offset and GUARDS guards of four
 # numbers (a, e, h, direction): the stage ends where a q + e q′ − h crosses zero in that direction (0: no such guard);
+# at IMPACT two more, of damping that goes with the depth of contact, by the twist and at twist 0;
 # then ERRORS and WAVES mesh harmonics of amplitude, cycles per turn of the input and phase: those of e, over the output
 # radius, and of the stiffness.
 GUARDS, PER_GUARD, PER_WAVE = 3, 4, 3
-PER_STAGE = 3 + GUARDS * PER_GUARD
+IMPACT = 3 + GUARDS * PER_GUARD
+PER_STAGE = IMPACT + 2
 # Per harmonic torque; order 0 means in time.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
@@ -237,10 +239,10 @@ def line(t, y_, p_, k, regime, out_):
             stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
             error, slope, bend = mesh_error(p, q, turned)
             wave, swell = mesh_wave(p, q, turned)
-            damp[e], stiff[e] = p[stage], wave * p[stage + 1]
-            twist = d[far] - d[near] + error
-            shaft[e] = stiff[e] * twist + wave * p[stage + 2]
-            shaft[e] += damp[e] * (v[far] - v[near] + slope * turning)
+            twist, rate = d[far] - d[near] + error, v[far] - v[near] + slope * turning
+            damp[e] = p[stage] + p[stage + IMPACT] * twist + p[stage + IMPACT + 1]
+            shaft[e] = wave * (p[stage + 1] * twist + p[stage + 2]) + damp[e] * rate
+            stiff[e] = wave * p[stage + 1] + p[stage + IMPACT] * rate
             by_turn[e] = stiff[e] * slope + damp[e] * bend * turning + swell * (p[stage + 1] * twist + p[stage + 2])
             by_turning[e] = damp[e] * slope
         for s in range(sliding):
@@ -351,7 +353,8 @@ def observe(times, states, p, twist, torque, rotation, speed, stages):
             rate += slope * turning
             stages[m, e] = stage_at(p, q, twist[m, e], rate)
             at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
-            torque[m, e] = mesh_wave(p, q, turned)[0] * (p[at + 1] * twist[m, e] + p[at + 2]) + p[at] * rate
+            damping = p[at] + p[at + IMPACT] * twist[m, e] + p[at + IMPACT + 1]
+            torque[m, e] = mesh_wave(p, q, turned)[0] * (p[at + 1] * twist[m, e] + p[at + 2]) + damping * rate
         for s in range(int(p[SLIDERS])):
             at = slider + s * PER_SLIDER
             torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]

@@ -20,7 +20,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import beyond_capacity, sliders
-from trunnion.equations.stage_laws import has_stages, spring_damping, stage_law
+from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
@@ -62,7 +62,8 @@ class StagedSpring:
     @property
     def numbers(self) -> Array:
         """All of them in a row."""
-        table = np.concatenate([self.law.pieces, self.law.guards.reshape(self.stages, -1)], axis=1)
+        guards = self.law.guards.reshape(self.stages, -1)
+        table = np.concatenate([self.law.pieces, guards, self.law.impact], axis=1)
         return np.concatenate([table.ravel(), self.error.ravel(), self.wave.ravel()])
 
 
@@ -93,7 +94,8 @@ def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSp
         error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
         error[:, 0] /= element.radii[1]
         wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
-    return StagedSpring(assembly.line.names[place], stride, stages_of(law.first, damping, kind), error, wave)
+    impact = float(impact_damping(element, place, column, row[None])[0])
+    return StagedSpring(assembly.line.names[place], stride, stages_of(law.first, damping, kind, impact), error, wave)
 
 
 def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, cycles: float) -> Array:

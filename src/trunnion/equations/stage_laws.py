@@ -49,6 +49,10 @@ class StageLaw(StageSpring):
         damped = np.ones(len(stage)) if self.softest_damped else (stage != np.argmin(self.slopes, axis=1)).astype(float)
         return np.where(slope > 0, torque - offset, 0.0) / np.where(slope > 0, slope, 1.0), slope, damped
 
+    def depth(self, twist: Array) -> Array:
+        """How far a twist (case,) lies beyond a mesh's backlash [rad]."""
+        return np.asarray(np.maximum(0.0, np.abs(twist) - self.knots[:, -1]))
+
     @property
     def first(self) -> StageSpring:
         """The spring of the first case alone."""
@@ -116,3 +120,10 @@ def spring_damping(element: Element, place: int, column: Column, table: Array) -
     if isinstance(element, GearPair):
         return np.asarray(table[:, column(place, "mesh_damping")] * element.radii[1] ** 2)
     return np.asarray(table[:, column(place, "damping")])
+
+
+def impact_damping(element: Element, place: int, column: Column, table: Array) -> Array:
+    """Damping over depth of contact [N m s/rad²] of a mesh, as a law of twist rate and twist; zeros elsewhere."""
+    if isinstance(element, GearPair) and element.impact_damping:
+        return np.asarray(table[:, column(place, "impact_damping")] * element.radii[1] ** 3)
+    return np.zeros(len(table))

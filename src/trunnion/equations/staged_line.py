@@ -253,8 +253,8 @@ def staged_line(line: Driveline | Assembly, speed: float | str | None = None) ->
 
     Raises
     ------
-    InputError : a bent Hooke's or tripod joint, a mesh stiffness that varies, a quadratic load, two prescribed
-        speeds, no speed where one is needed.
+    InputError : a bent Hooke's or tripod joint, a mesh stiffness that varies, impact damping, a quadratic load, two
+        prescribed speeds, no speed where one is needed.
     """
     if not isinstance(line, Driveline | Assembly):
         raise InputError(
@@ -305,6 +305,8 @@ def _refuse_inexact(assembly: Assembly) -> None:
             found = "angle", "bends the line, so that no stage is linear with constant coefficients"
         elif isinstance(element, GearPair) and element.stiffness_variation:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"
+        elif isinstance(element, GearPair) and element.impact_damping:
+            found = "impact_damping", "goes with the depth of contact, so that no stage is linear"
         elif isinstance(element, Disk) and any(one.varies for one in element.excitation):
             found = "excitation", "has an amplitude that depends on the speed or the load"
         elif isinstance(element, Disk) and element.quadratic_load:

@@ -1,8 +1,8 @@
 """Springs, contacts and sliders as stages in each of which the torque is linear, and the surfaces between those.
 
-On a stage the torque is c q′ + s q + d. Two stages see the surface between them as one function a q + h q′ − r under
-one number, crossed upwards from one and downwards from the other, so that behind a crossing nothing starts at a zero
-whose sign is rounding.
+On a stage the torque is c q′ + s q + d, and of a contact that damps with its depth (a q + b) q′ besides. Two stages
+see the surface between them as one function a q + h q′ − r under one number, crossed upwards from one and downwards
+from the other, so that behind a crossing nothing starts at a zero whose sign is rounding.
 
 A contact that never pulls presses with τ + min(τ, d), τ the elastic torque and d = c q′, and lets go where τ + d ≤ 0
 (the law of Modelica.Mechanics.Rotational.Components.ElastoBacklash). A slider is a Jenkins element: q is the deflection
@@ -33,13 +33,15 @@ class Stages:
     """Stages and the surfaces between them.
 
     pieces (stages, 3): c, s and d; side (stages,): −1 below the softest stage, +1 above, 0 in it; moves (stages,): 0
-    where q stands still, else 1; guards (stages, GUARDS, 4): a, h, r and the direction in which the surface is crossed
-    from there, 0 where there is none; then (stages, GUARDS): the stage behind it, or −1.
+    where q stands still, else 1; impact (stages, 2): a and b, zero where damping does not go with depth; guards
+    (stages, GUARDS, 4): a, h, r and the direction in which the surface is crossed from there, 0 where there is none;
+    then (stages, GUARDS): the stage behind it, or −1.
     """
 
     pieces: Array
     side: Integers
     moves: Array
+    impact: Array
     guards: Array
     then: Integers
 
@@ -49,7 +51,8 @@ class Stages:
         rows = np.array(pieces, dtype=float)
         n = len(rows)
         return cls(
-            rows, np.full(n, side, dtype=np.int64), np.full(n, moves, dtype=float), np.zeros((n, GUARDS, 4)),
+            rows, np.full(n, side, dtype=np.int64), np.full(n, moves, dtype=float), np.zeros((n, 2)),
+            np.zeros((n, GUARDS, 4)),
             np.full((n, GUARDS), -1, dtype=np.int64),
         )  # fmt: skip
 
@@ -71,15 +74,19 @@ def softest(spring: StageSpring) -> int:
     return min(range(len(distance)), key=lambda i: (spring.slopes[i], distance[i]))
 
 
-def stages_of(spring: StageSpring, damping: float, damping_law: str = "always") -> Stages:
+def stages_of(spring: StageSpring, damping: float, damping_law: str = "always", impact: float = 0.0) -> Stages:
     """The stages of a spring (of one case): damped "always", "in contact" (not in the softest stage) or "never
-    pulling"."""
+    pulling"; and by ``impact`` [N m s/rad²] times the depth beyond the softest stage."""
     if damping_law == "never pulling":
         return _contacts(spring, damping)
     count = len(spring.slopes)
     side = np.sign(np.arange(count) - softest(spring))
     damped = np.ones(count) if damping_law == "always" or count == 1 else np.abs(side)
     found = Stages.apart(np.stack([damping * damped, spring.slopes, spring.offsets], axis=1), side)
+    if impact:
+        gap = softest(spring)
+        low, high = spring.knots[gap - 1], spring.knots[gap]
+        found.impact[:gap], found.impact[gap + 1 :] = (-impact, impact * low), (impact, -impact * high)
     for i, knot in enumerate(spring.knots):
         found.part(i, i % 2, (1.0, 0.0, knot), 1, i + 1)
     return found

@@ -86,6 +86,7 @@ def _meshes(chain: Chain) -> list[Finding]:
     words = {
         "mesh_stiffness": "the mesh's yielding",
         "total_backlash": "backlash",
+        "impact_damping": "impact damping",
         "transmission_error": "transmission error",
         "stiffness_variation": "stiffness variation",
     }

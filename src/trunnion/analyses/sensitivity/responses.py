@@ -37,7 +37,7 @@ UNSURE = 1e-8
 ROUNDING = 1e-15
 """Relative error of numbers and of what is computed from them."""
 FINER = (1 / 50, 1 / 2500)
-LINEAR_KEYS = ("damping", "mesh_damping", "relative_damping", "loss_factor", "damping_ratio")
+LINEAR_KEYS = ("damping", "mesh_damping", "impact_damping", "relative_damping", "loss_factor", "damping_ratio")
 """Numbers in which the equations are linear, so that any step gives their slope; a wide one keeps what little damping
 does to a stiff spring's equations above rounding."""
 WIDE_STEP = 0.25
