@@ -49,7 +49,7 @@ ACCURATE = 0.05
 """Largest error in height and in place that counts as "very good accuracy"."""
 DOUBLED = 0.43, 1.27
 """Frequencies at which motions of twice the period are stable."""
-IMPACT = "small at low speed and load, says the paper; a mesh with impact damping is a law of GearPair"
+IMPACT = "small at low speed and load, says the paper; GearPair has it as impact_damping"
 FORCE = 0.03
 """B₁ of Table 1."""
 SMALL = 0.6
