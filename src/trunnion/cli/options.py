@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -45,6 +46,8 @@ SpeedRange = Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", h
 LoadCase = Annotated[str | None, typer.Option("--load-case", help="Torques of this load case of the file.")]
 Points = Annotated[str, typer.Option("--points", metavar="NXxNY", help="Points along x and y where not said there.")]
 
+TABLES_ANYWHERE = ContextVar("TABLES_ANYWHERE", default=False)
+"""Whether a driveline file may name tables outside its folder: an option before the command."""
 ROWS = 65
 """Rows of a search of a box."""
 AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30deg:300"'
@@ -69,7 +72,7 @@ def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
     """The driveline in a file, or of the catalogue where no such file exists; ``besides`` are also names to tell."""
     path = Path(file)
     if path.exists() or path.suffix or len(path.parts) != 1:
-        return tn.load(path)
+        return tn.load(path, tables_anywhere=TABLES_ANYWHERE.get())
     # The studies load much that a file does not need.
     from trunnion.driveline.refusals import nearest
     from trunnion.studies.entries import entries

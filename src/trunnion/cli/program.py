@@ -26,6 +26,7 @@ from trunnion.cli.design import compare, optimise, sensitivity
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import certify_stability, minimum_damping, stable_windows, tolerance_study, tongues
 from trunnion.cli.motion import linearity_check, periodic_response, run_up, simulate
+from trunnion.cli.options import TABLES_ANYWHERE
 from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
@@ -164,7 +165,11 @@ app = typer.Typer(
 def _root(
     ctx: typer.Context,
     version: bool = typer.Option(False, "--version", help="Print the version and leave.", is_eager=True),
+    tables_anywhere: bool = typer.Option(
+        False, "--tables-anywhere", help="Read tables that FILE names wherever they lie, not only beside it."
+    ),
 ) -> None:
+    TABLES_ANYWHERE.set(tables_anywhere)
     if version:
         typer.echo(f"trunnion {__version__}")
         raise typer.Exit

@@ -8,7 +8,8 @@
     4,600,35,10
 
 The first line names the columns, each with its unit: order, amplitude, and where there are any phase, and speed (of
-the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs.
+the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs. What a
+message says of a table is its place, never its content: a description may name a file that is none.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ from typing import Any
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, Kind, parse
 from trunnion.driveline.refusals import nearest
-from trunnion.errors import InputError, short
+from trunnion.errors import InputError
+from trunnion.reading import regular_bytes
 
 COLUMNS: dict[str, Kind] = {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE}
 LARGEST_TABLE = 1_000_000
@@ -54,10 +56,9 @@ def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
 
 def _rows(path: Path) -> list[list[str]]:
     try:
-        if path.stat().st_size > LARGEST_TABLE:
-            problem = f"has {path.stat().st_size} bytes, a table of excitations at most {LARGEST_TABLE}"
-            raise InputError(problem, key=str(path), remedy="name the table of orders")
-        text = path.read_text(encoding="utf-8-sig")
+        text = regular_bytes(path, LARGEST_TABLE, what="the table of orders").decode("utf-8-sig")
+    except InputError:
+        raise
     except FileNotFoundError:
         there = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
         remedy = nearest(path.name, there) if there else "put it beside the driveline's file"
@@ -66,7 +67,13 @@ def _rows(path: Path) -> list[list[str]]:
         raise InputError("cannot be read as text in UTF-8", key=str(path), remedy="save it as CSV") from None
     head = text.partition("\n")[0]
     mark = next((m for m in (";", "\t") if m in head), ",")
-    rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines(), delimiter=mark)]
+    reader = csv.reader(text.splitlines(), delimiter=mark)
+    try:
+        rows = [[cell.strip() for cell in row] for row in reader]
+    except csv.Error:
+        problem = f"has a cell of more than {csv.field_size_limit()} characters, or one that is no text"
+        where = f"{path.name}: row {reader.line_num}"
+        raise InputError(problem, element=where, remedy="write numbers, and close what is quoted") from None
     rows = [row for row in rows if any(row) and not row[0].startswith("#")]
     if not rows:
         raise InputError("is empty", key=path.name, remedy="write order,amplitude [N*m] in its first line")
@@ -78,13 +85,16 @@ def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
     found: dict[str, tuple[int, str]] = {}
     for i, cell in enumerate(head):
         match = _HEAD.fullmatch(cell.strip())
-        name = match.group(1).lower() if match else cell
+        name = match.group(1).lower() if match else ""
         if name not in COLUMNS:
-            raise InputError("is not a column of such a table", element=source, key=cell, remedy=nearest(name, COLUMNS))
+            remedy = f"write one of {', '.join(COLUMNS)}, and its unit"
+            raise InputError("is not a column of such a table", element=source, key=f"column {i + 1}", remedy=remedy)
         unit = (match.group(2) if match else None) or ""
+        remedy = f'write "{name} [{_usual(COLUMNS[name])}]" in the first line'
         if not unit and COLUMNS[name] is not RATIO:
-            remedy = f'write "{name} [{_usual(COLUMNS[name])}]" in the first line'
             raise InputError("has no unit", element=source, key=name, remedy=remedy)
+        if unit and not _is_unit(unit, COLUMNS[name]):
+            raise InputError(f"has no unit of a {COLUMNS[name].name}", element=source, key=name, remedy=remedy)
         if name in found:
             raise InputError("stands twice", element=source, key=name, remedy="leave one of the columns out")
         found[name] = i, unit
@@ -98,6 +108,14 @@ def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
     return found
 
 
+def _is_unit(unit: str, kind: Kind) -> bool:
+    try:
+        parse(f"1 {unit}", kind)
+    except InputError:
+        return False
+    return True
+
+
 def _usual(kind: Kind) -> str:
     return {SPEED: "rpm", ANGLE: "deg"}.get(kind, kind.unit)
 
@@ -109,11 +127,10 @@ def _values(where: str, row: Sequence[str], columns: dict[str, tuple[int, str]])
         if not cell:
             raise InputError("is missing", element=where, key=name, remedy="write a number in every column")
         try:
-            values[name] = parse(f"{cell} {unit}" if unit else float(cell), COLUMNS[name])
-        except (InputError, ValueError) as error:
-            problem = error.problem if isinstance(error, InputError) else "is not a number"
-            remedy = error.remedy if isinstance(error, InputError) else "write 2 or 2.5, say"
-            raise InputError(problem, element=where, key=name, value=short(cell, 40), remedy=remedy) from None
+            number = float(cell)
+            values[name] = parse(f"{number!r} {unit}" if unit else number, COLUMNS[name])
+        except ValueError:  # an InputError among them, which would quote it
+            raise InputError("is not a number", element=where, key=name, remedy="write 2 or 2.5, say") from None
     return values
 
 
@@ -136,4 +153,4 @@ def _harmonic(source: str, order: float, rows: list[dict[str, float]], over: str
     try:
         return Excitation(order=order, **table)
     except InputError as error:
-        raise error.each(lambda one: one.but(**where)) from None
+        raise error.each(lambda one: one.but(**where, value=None)) from None

@@ -31,6 +31,7 @@ from typing import Any, TypeVar
 from trunnion.driveline.chain import refuse_too_many
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
@@ -42,9 +43,13 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
+from trunnion.reading import below
 from trunnion.writing import written_whole
 
 Made = TypeVar("Made", bound=Record)
+Place = Callable[[str], Path]
+"""Where a table lies that a description names; raises InputError where it may not be read."""
+ELSEWHERE = "put the table beside it, or allow it: tn.load(path, tables_anywhere=True), trunnion --tables-anywhere …"
 FORMAT = 1
 LARGEST_FILE = 4_000_000
 """Bytes of a driveline file; examples have a few thousand."""
@@ -74,14 +79,24 @@ TOP_KEYS = (
 )
 
 
-def load(path: str | os.PathLike[str]) -> Driveline:
+def load(path: str | os.PathLike[str], *, tables_anywhere: bool = False) -> Driveline:
     """Read a driveline from a TOML file.
+
+    Parameters
+    ----------
+    tables_anywhere : read tables of excitations wherever the file says they are; otherwise only below its own folder,
+        so that the file of a stranger opens nothing else.
 
     Raises
     ------
     InputError : the file cannot be read, is not TOML or describes no driveline; names file and place.
     """
-    return _loads(_read(Path(path)), Path(path).name, Path(path).parent)
+    folder = Path(path).parent
+
+    def table(named: str) -> Path:
+        return folder / named if tables_anywhere else below(folder, named, ELSEWHERE)
+
+    return _loads(_read(Path(path)), Path(path).name, table)
 
 
 def loads(text: str, *, source: str = "") -> Driveline:
@@ -89,9 +104,9 @@ def loads(text: str, *, source: str = "") -> Driveline:
     return _loads(text, source, None)
 
 
-def _loads(text: str, source: str, folder: Path | None) -> Driveline:
+def _loads(text: str, source: str, place_of: Place | None) -> Driveline:
     try:
-        return _driveline(_toml(text), source, folder)
+        return _driveline(_toml(text), source, place_of)
     except InputError as error:
         raise _located(error, source) from None
 
@@ -197,8 +212,8 @@ def _cut(message: str) -> str:
     return f"{short(what, 120)}{at}{place}" if at else short(message, 120)
 
 
-def _driveline(table: dict[str, Any], source: str, folder: Path | None) -> Driveline:
-    """The driveline of a file's content, tables in ``folder`` beside it, or everything that is wrong with it."""
+def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Driveline:
+    """The driveline of a file's content, its tables where ``place_of`` says, or everything that is wrong with it."""
     wrong = [
         InputError("unknown key", key=key, value=value, remedy=nearest(key, [k for k in TOP_KEYS if k not in table]))
         for key, value in table.items()
@@ -216,7 +231,7 @@ def _driveline(table: dict[str, Any], source: str, folder: Path | None) -> Drive
             wrong.extend(error.problems)
 
     if "element" in table or not wrong:
-        read("elements", table.get("element"), lambda value: _elements(value, source, folder))
+        read("elements", table.get("element"), lambda value: _elements(value, source, place_of))
     if "operation" in table:
         read("operation", table["operation"], _operation)
     if "limit" in table:
@@ -240,7 +255,7 @@ def _check_format(table: dict[str, Any]) -> None:
         raise InputError("is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}")
 
 
-def _elements(tables: Any, source: str, folder: Path | None) -> list[Element]:
+def _elements(tables: Any, source: str, place_of: Place | None) -> list[Element]:
     if isinstance(tables, dict):
         raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
     if not isinstance(tables, list) or not tables:
@@ -248,10 +263,10 @@ def _elements(tables: Any, source: str, folder: Path | None) -> list[Element]:
         raise InputError("has no elements", key="element", remedy=remedy)
     refuse_too_many(len(tables))
     seen: Counter[str] = Counter()
-    return all_made(partial(_element, table, i, seen, source, folder) for i, table in enumerate(tables, start=1))
+    return all_made(partial(_element, table, i, seen, source, place_of) for i, table in enumerate(tables, start=1))
 
 
-def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Path | None) -> Element:
+def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: Place | None) -> Element:
     if not isinstance(table, dict):
         raise InputError("is not a table", element=f"element {place}", value=table, remedy="write [[element]]")
     data = dict(table)
@@ -273,8 +288,8 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Pa
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
-            if folder is not None and isinstance(named := data.get("excitation"), str):
-                data["excitation"] = read_excitation(folder / named)
+            if place_of is not None and isinstance(named := data.get("excitation"), str):
+                data["excitation"] = _table_of(named, place_of)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
@@ -282,6 +297,16 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, folder: Pa
         remark = InputError(problem, element=label, key=key, value=data.get(key), remedy=remedy)
         warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
     return element
+
+
+def _table_of(named: str, place_of: Place) -> tuple[Excitation, ...]:
+    """What the table holds that an element names; complaints say the place in the table, about that element."""
+    try:
+        return read_excitation(place_of(named))
+    except InputError as error:
+        where = ".".join(part for part in (error.element, error.key) if part)
+        problem = f"{short(where)} {error.problem}"
+        raise error.but(element="", key="excitation", value=None, problem=problem) from None
 
 
 def _limit_elsewhere(error: InputError, name: str | None) -> InputError:

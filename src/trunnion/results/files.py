@@ -11,13 +11,14 @@ import hashlib
 import io
 import os
 from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trunnion._version import __version__
 from trunnion.errors import InputError
+from trunnion.numerics.memory import MOST
+from trunnion.reading import regular_bytes
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 FORMAT_VERSION = 1
 """Of what all files have in common; the attribute ``format`` tells kinds of results apart."""
+LARGEST = MOST
+"""Bytes of a file that is read, and of the arrays in it."""
 _LABEL = b"\ntrunnion sha256 "
 _TAIL = len(_LABEL) + 64 + 1
 
@@ -117,7 +120,9 @@ def read_dataset(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
 def _whole(path: str | os.PathLike[str]) -> bytes:
     """The bytes before the checksum, once it holds."""
     try:
-        content = Path(path).read_bytes()
+        content = regular_bytes(path, LARGEST, what="a result this program saved")
+    except InputError:
+        raise
     except FileNotFoundError:
         raise InputError("does not exist", key=str(path), remedy="check the path") from None
     except (OSError, ValueError) as error:
