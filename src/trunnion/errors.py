@@ -70,6 +70,11 @@ class InputError(TrunnionError, ValueError):
         whole.args = ("\n".join([*lines[:MOST_LINES], *more]),)
         return whole
 
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        # What is pickled by default is the text alone, taken for the problem.
+        parts = [(one.problem, one.element, one.key, _portable(one.value), one.remedy) for one in self.problems]
+        return _together, (parts,)
+
     def each(self, change: Callable[[InputError], InputError]) -> InputError:
         """The same error with every single complaint changed."""
         return InputError.together([change(one) for one in self.problems])
@@ -131,6 +136,23 @@ def problems_of(checks: Iterable[Callable[[], object]]) -> list[InputError]:
         except InputError as error:
             found += error.problems
     return found
+
+
+class _Shown(str):
+    """What is left of a value that cannot leave its process: what messages show of it."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _portable(value: object) -> object:
+    plain = (str, int, float, complex, list, tuple, dict, type(None))
+    return value if isinstance(value, plain) else _Shown(_brief(value))
+
+
+def _together(parts: list[tuple[str, str, str, object, str]]) -> InputError:
+    """The error of ``InputError.__reduce__``."""
+    return InputError.together(InputError(p, element=e, key=k, value=v, remedy=r) for p, e, k, v, r in parts)
 
 
 class _Brief(reprlib.Repr):

@@ -17,7 +17,7 @@ ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
 LAYERS = (
     {"errors", "arrays", "_version"},
-    {"reading", "writing"},
+    {"portable", "reading", "writing"},
     {"numerics"},
     {"laws"},
     {"driveline", "systems"},

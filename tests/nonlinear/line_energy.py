@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.equations.line_system import LineSystem, kernel
+from trunnion.equations.line_regimes import line_kernel as kernel
+from trunnion.equations.line_system import LineSystem
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.systems.system import System
 

@@ -25,9 +25,14 @@ from trunnion.errors import InputError
 from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.regimes import SLACK, Regimes
-from trunnion.systems.user_functions import CFunction
+from trunnion.systems.user_functions import from_kernel
 
 MOST_REGIMES = 400
+
+
+def line_kernel() -> ModuleType:
+    """The compiled right-hand side of lines and what observes their motion."""
+    return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
 
 
 def guards_kernel() -> ModuleType:
@@ -131,7 +136,6 @@ class LineRegimes(Regimes):
 
     transitions: Integers | None = None
     directions: Integers | None = None
-    kernel: ModuleType | None = None
     sliders: tuple[_Part, ...] = ()
 
     def tables(self) -> tuple[Integers, Integers]:
@@ -179,8 +183,7 @@ class LineRegimes(Regimes):
 
     @property
     def _core(self) -> ModuleType:
-        assert self.kernel is not None
-        return self.kernel
+        return line_kernel()
 
     def _numbers(self, numbers: Array) -> Array:
         """The rows (slider, PER_SLIDER) of the sliders among the numbers of a line, a view."""
@@ -197,7 +200,7 @@ def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
     return [first * SLIDER_STAGES**i for i in range(count)]
 
 
-def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
+def line_regimes(assembly: Assembly) -> LineRegimes | None:
     """The regimes of a line; None where all springs are linear and nothing rubs.
 
     Raises
@@ -228,17 +231,15 @@ def line_regimes(assembly: Assembly, kernel: ModuleType) -> LineRegimes | None:
                     directions[regime, GUARDS * i + guard] = int(law.guards[stage, guard, 3])
     names = tuple(", ".join(f"{p.name} {p.words[p.stage(r)]}" for p in parts) for r in range(count))
     guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
-    compiled, jump = guards_kernel().line_guards, guards_kernel().line_jump
     return LineRegimes(
         names,
         guards,
-        CFunction(compiled.address, compiled),
+        from_kernel(guards_kernel, "line_guards"),
         (),
         lambda t, x, p: 0,
-        CFunction(jump.address, jump) if any(part.along for part in parts) else None,
+        from_kernel(guards_kernel, "line_jump") if any(part.along for part in parts) else None,
         transitions,
         directions,
-        kernel,
         tuple(part for part in parts if part.along),
     )
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property, partial
-from pathlib import Path
+from functools import cached_property, partial
 from types import ModuleType
 from typing import NamedTuple
 
@@ -23,6 +22,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonic_torques import harmonic_torque
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
@@ -31,18 +31,12 @@ from trunnion.errors import InputError
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
 from trunnion.laws.joint import JointLaw
-from trunnion.numerics.compiled import kernel_file
+from trunnion.portable import Portable
 from trunnion.systems.system import System
-from trunnion.systems.user_functions import CFunction
+from trunnion.systems.user_functions import from_kernel
 
 ANGLE_SCALE = 0.01
 """The deviation [rad] that counts as one in error control."""
-
-
-@cache
-def kernel() -> ModuleType:
-    """The compiled right-hand side of lines and what observes their motion."""
-    return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
 
 
 @dataclass(frozen=True)
@@ -102,7 +96,7 @@ class HarmonicTorque(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LineSystem:
+class LineSystem(Portable):
     """A line prepared for nonlinear analyses.
 
     ``system`` has the states "rotation of …" (deviations from uniform rotation at the mean speed, forks
@@ -156,7 +150,6 @@ class LineSystem:
         packed = self.assembly.packed
         values = dict(zip(packed.labels, map(float, packed.values), strict=True)) | {SPEED: self.speed}
         n, rubbing = self.assembly.topology.size, self.sliders
-        compiled = kernel().line
         reach = [slider.reach for slider in rubbing]
         return System(
             name=self.assembly.line.name or "driveline",
@@ -166,14 +159,14 @@ class LineSystem:
                 *(f"deflection of {slider.name}" for slider in rubbing),
             ),
             units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(rubbing),
-            rate=CFunction(compiled.address, compiled),
+            rate=from_kernel(kernel, "line"),
             parameters=values,
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
             start=np.zeros(2 * n + len(rubbing)),
             scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
             numbers_of=self._numbers,
-            regimes=line_regimes(self.assembly, kernel()),
+            regimes=line_regimes(self.assembly),
             speed_unit=speed_unit(self.assembly.line),
         )
 

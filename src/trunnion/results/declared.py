@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trunnion.portable import Portable
 from trunnion.results.finding import Finding
 from trunnion.results.outcome import Outcome
 from trunnion.results.plain import plain
@@ -107,7 +108,7 @@ def about(system: System, outcome: Outcome, **remarks: object) -> Iterator[Held]
     yield from parameters_of(system)
 
 
-class Result(ABC):
+class Result(Portable, ABC):
     """Base of what analyses return; a subclass writes ``declared`` and its words, ``__str__`` or ``Described``."""
 
     @abstractmethod

@@ -9,11 +9,12 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
+from trunnion.portable import Portable
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 
 @dataclass(frozen=True)
-class PeriodicLinearFamily:
+class PeriodicLinearFamily(Portable):
     """M x″ + C x′ + K x = 0 with periodic coefficients that depend on parameters.
 
     Parameters

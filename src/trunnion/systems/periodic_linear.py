@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
+from trunnion.portable import Portable
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Matrices:
 
 
 @dataclass(frozen=True)
-class PeriodicLinearSystem:
+class PeriodicLinearSystem(Portable):
     """A periodic linear system and the names of its coordinates.
 
     Parameters

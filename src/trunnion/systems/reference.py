@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.periodic_linear import PeriodicLinearSystem, from_matrices
 from trunnion.systems.regimes import Regimes, Switch
 from trunnion.systems.system import Period, System
-from trunnion.systems.user_functions import CFunction
+from trunnion.systems.user_functions import CFunction, from_kernel
 
 
 def mathieu(a: float, q: float, damping: float = 0.0) -> PeriodicLinearSystem:
@@ -143,9 +144,12 @@ def _contact(time: float, state: Array, p: Any) -> int:
     return 1 if state[0] > p.half_gap else 2 if state[0] < -p.half_gap else 0
 
 
+def _kernel() -> ModuleType:
+    return kernel_file(str(Path(__file__).with_name("reference_kernel.py")))
+
+
 def _function(name: str) -> CFunction:
-    compiled = getattr(kernel_file(str(Path(__file__).with_name("reference_kernel.py"))), name)
-    return CFunction(compiled.address, compiled)
+    return from_kernel(_kernel, name)
 
 
 def _forcing_period(p: Mapping[str, float]) -> float:

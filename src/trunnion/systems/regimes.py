@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
+from trunnion.portable import Portable
 from trunnion.systems.user_functions import CFunction, guard_function, jump_function, parameter_tuple
 
 SLACK = 1e-6
@@ -26,7 +27,7 @@ class Switch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Regimes:
+class Regimes(Portable):
     """Regimes, the guards between them, and what happens there.
 
     Parameters

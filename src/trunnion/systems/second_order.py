@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
+from trunnion.portable import Portable
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
 @dataclass(frozen=True)
-class Spring:
+class Spring(Portable):
     """A nonlinear spring along d: force(u) and slope(u) at elongations u = dᵀx of any shape; kinks: where the slope
     jumps."""
 

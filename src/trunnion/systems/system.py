@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import Equations, kernel
+from trunnion.portable import Portable
 from trunnion.systems.regimes import Regimes
 from trunnion.systems.user_functions import CFunction, rate_function
 
@@ -45,7 +46,7 @@ Period = float | Callable[[Mapping[str, float]], float | None] | None
 
 
 @dataclass(frozen=True)
-class System:
+class System(Portable):
     """A system, its parameters, and the names and units of both.
 
     Parameters

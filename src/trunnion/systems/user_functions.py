@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import pickle
 import sys
 from collections import namedtuple
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass, field, replace
+from functools import cache, partial, wraps
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +31,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
+from trunnion.portable import carried
 
 RAISED, WRONG_SHAPE = 1, 2
 STEP = 1e-3
@@ -51,13 +54,38 @@ INNER = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[cal
 class CFunction:
     """A C function: its address, what keeps it alive, and whether it is machine code.
 
-    ``raised`` holds the last exception of a function that is called back.
+    ``raised`` holds the last exception of a function that is called back. ``maker`` makes it: an address means nothing
+    in another process.
     """
 
     address: int
     owner: Any = field(repr=False, default=None)
     compiled: bool = True
     raised: list[BaseException] = field(default_factory=list, repr=False)
+    maker: Callable[[], CFunction] | None = field(default=None, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        if self.maker is None:
+            return CFunction, (0,)
+        made = carried(self.maker)
+        _MADE.setdefault(made, self)
+        return _made_again, (made,)
+
+
+_MADE: dict[bytes, CFunction] = {}
+"""C functions that were pickled or unpickled here: none is compiled twice."""
+
+
+def _made_again(maker: bytes) -> CFunction:
+    if maker not in _MADE:
+        _MADE[maker] = pickle.loads(maker)()
+    return _MADE[maker]
+
+
+def from_kernel(kernel: Callable[[], ModuleType], name: str) -> CFunction:
+    """The C function ``name`` of a file of kernels, which a function that can be imported gives."""
+    compiled = getattr(kernel(), name)
+    return CFunction(compiled.address, compiled, maker=partial(from_kernel, kernel, name))
 
 
 def store(out: Array, value: Any) -> int:
@@ -130,6 +158,16 @@ class Mode(NamedTuple):
     uniform: Callable[..., Any]
     array: Any
     caught: Any
+
+
+def remade(make: Callable[..., CFunction]) -> Callable[..., CFunction]:
+    """The same function, whose C functions know how they were made."""
+
+    @wraps(make)
+    def made(*arguments: Any, **keywords: Any) -> CFunction:
+        return replace(make(*arguments, **keywords), maker=partial(made, *arguments, **keywords))
+
+    return made
 
 
 def wrap(
@@ -236,6 +274,7 @@ def _slope_along(mode: Mode, uniform: Any, size: int, rows: int, scale: ArrayLik
     return along
 
 
+@remade
 def rate_function(
     function: Callable[..., Any],
     jacobian: Callable[..., Any] | None,
@@ -305,6 +344,7 @@ def rate_function(
 
 
 @cache
+@remade
 def guard_function(
     function: Callable[..., Any],
     guards: int,
@@ -359,6 +399,7 @@ def guard_function(
 
 
 @cache
+@remade
 def jump_function(
     function: Callable[..., Any], size: int, names: tuple[str, ...], scale: tuple[float, ...], *, compiled: bool = True
 ) -> CFunction:

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from trunnion.errors import InputError
 from trunnion.laws import tripod
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.system import System
-from trunnion.systems.user_functions import CFunction
+from trunnion.systems.user_functions import CFunction, from_kernel
 
 DENSITY, SHEAR_MODULUS = 7850.0, 77.3e9
 """ρ [kg/m³] and G [Pa] of Tables 1 and 2."""
@@ -280,6 +281,9 @@ def _motor_period(p: Mapping[str, float]) -> float:
     return 2 * np.pi / p["motor_frequency"] if p["motor_frequency"] > 0 else np.nan
 
 
+def _kernel() -> ModuleType:
+    return kernel_file(str(Path(__file__).with_name("double_tripod_kernel.py")))
+
+
 def _function(name: str) -> CFunction:
-    compiled = getattr(kernel_file(str(Path(__file__).with_name("double_tripod_kernel.py"))), name)
-    return CFunction(compiled.address, compiled)
+    return from_kernel(_kernel, name)
