@@ -17,7 +17,7 @@ ROOT = Path(trunnion.__file__).parent
 ALWAYS = {"errors", "_version"}
 LAYERS = (
     {"errors", "arrays", "_version"},
-    {"portable", "reading", "writing"},
+    {"portable", "reading", "waiting", "writing"},
     {"numerics"},
     {"laws"},
     {"driveline", "systems"},

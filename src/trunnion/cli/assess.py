@@ -9,7 +9,7 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Output, SpeedRange, Unit, read_case, read_speed_ends
+from trunnion.cli.options import File, Json, LoadCase, Output, SpeedRange, Unit, Within, read_case, read_speed_ends
 from trunnion.cli.places import check_places, deliver
 from trunnion.results.speeds import speed_factor
 
@@ -28,17 +28,18 @@ def assess(
     remedies: Annotated[
         bool, typer.Option("--remedies", help="What would help: the smallest single changes for what is exceeded.")
     ] = False,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """Judge every limit of the file and every rule that applies, over its speed range; the binding one first."""
     line, unit = read_case(file, unit)
     helping = None
     if remedies:
-        with output.progress("remedies") as advance:
+        with output.progress("remedies", within) as advance:
             helping = tn.remedies(line, load_case=load_case, unit=unit, progress=advance)
             result = helping.assessment
     else:
-        with output.compile_notice():
+        with output.progress("assessment", within):
             result = tn.assess(line, load_case=load_case, unit=unit)
     if as_json:
         output.write_json("assess", assessment_json(result) | (remedies_json(helping) if helping else {}))

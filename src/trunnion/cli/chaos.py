@@ -15,6 +15,7 @@ from trunnion.cli.options import (
     OutputNoTable,
     Speed,
     Unit,
+    Within,
     only_for_lines,
     read_case,
     read_set,
@@ -106,7 +107,7 @@ def poincare_map(
     """
     system = _subject(file, parameters, speed, unit, load_case)
     check_places(to, PICTURES_AND_DATA)
-    with output.compile_notice():
+    with output.progress("Poincaré map"):
         result = tn.poincare_map(
             system, points, section=_section(section), every=every, start=read_state(start),
             transient=500 if transient is None else transient, tolerance=tolerance,
@@ -145,6 +146,7 @@ def certify_chaos(
     ] = None,
     tolerance: Tolerance = 1e-10,
     to: OutputNoTable = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """Regular, chaotic, unbounded or undecided, with reasons and one figure.
@@ -153,7 +155,7 @@ def certify_chaos(
     """
     system = _subject(file, parameters, speed, unit, load_case)
     check_places(to, PICTURES_AND_DATA)
-    with output.progress("exponents, map and sweep") as advance:
+    with output.progress("exponents, map and sweep", within) as advance:
         result = tn.certify_chaos(
             system, periods, duration=duration, section=_section(section), start=read_state(start), starts=starts,
             transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,

@@ -17,6 +17,7 @@ from trunnion.cli.options import (
     Output,
     SpeedRange,
     Unit,
+    Within,
     file_stem,
     is_number,
     read_box_range,
@@ -81,6 +82,7 @@ def optimise(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """Choose numbers of the file within bounds, for one aim or for two, against its checks.
@@ -96,7 +98,7 @@ def optimise(
     check_places(to)
     if best is not None and (best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir()):
         raise InputError("is no place for a driveline file", key="--write", value=str(best), remedy="best.toml, say")
-    with output.progress("optimise") as advance:
+    with output.progress("optimise", within) as advance:
         found = tn.optimise(
             line, bounds, aim, span, checks=checks, load_case=load_case, designs=designs, seed=seed, unit=unit,
             progress=advance,

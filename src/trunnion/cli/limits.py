@@ -17,6 +17,7 @@ from trunnion.cli.options import (
     Speed,
     SpeedRange,
     Unit,
+    Within,
     read_box_range,
     read_case,
     read_speed,
@@ -69,6 +70,7 @@ def minimum_damping(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """All ranges of damping that keep a range of speeds stable.
@@ -80,7 +82,7 @@ def minimum_damping(
         tn.pack(line).resolve(damping)
     span = read_speed_range(speeds, line, unit)
     check_places(to)
-    with output.progress("minimum damping") as advance:
+    with output.progress("minimum damping", within) as advance:
         found = tn.minimum_damping(line, span, damping=damping, maximum=maximum, margin=margin, progress=advance)
     shown = replace(found, speed_unit=unit)
     deliver("minimum-damping", file, shown, to, as_json, draw=lambda: shown.plot(unit=unit))
@@ -96,6 +98,7 @@ def stable_windows(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """All ranges of a parameter, joint angles first, that keep a range of speeds stable.
@@ -106,7 +109,7 @@ def stable_windows(
     ends, rows = read_box_range(parameter, line, unit, "--parameter")
     span = read_speed_range(speeds, line, unit)
     check_places(to)
-    with output.progress("stable windows") as advance:
+    with output.progress("stable windows", within) as advance:
         found = tn.stable_windows(line, *ends, span, margin=margin, rows=rows, progress=advance)
     shown = replace(found, speed_unit=unit)
     deliver("stable-windows", file, shown, to, as_json, draw=lambda: shown.plot(unit=unit))
@@ -134,6 +137,7 @@ def tolerance_study(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """The probability that the line is stable within its tolerances, its worst corner, and what matters.
@@ -147,7 +151,7 @@ def tolerance_study(
     asked = [read_speed(text, unit) for text in speeds] if speeds else [None]
     at = [operating_speed(line, one) for one in asked]
     check_places(to)
-    with output.progress("tolerance study") as advance:
+    with output.progress("tolerance study", within) as advance:
         counted = True if checks < 0 else checks
         found = tn.tolerance_study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
     deliver("tolerance-study", file, replace(found, unit=unit), to, as_json)
@@ -185,6 +189,7 @@ def certify_stability(
     boxes: Annotated[int, typer.Option("--boxes", help="Boxes judged before the rest is left undecided.")] = 20_000,
     unit: Unit = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """Prove that no line within its tolerances is unstable in a range of speeds, or find one that is.
@@ -194,6 +199,6 @@ def certify_stability(
     line, unit = read_case(file, unit)
     given, span = _tolerances(tolerance), read_speed_range(speeds, line, unit)
     check_places(to, PICTURES_AND_DATA)
-    with output.progress("certificate") as advance:
+    with output.progress("certificate", within) as advance:
         found = tn.certify_stability(line, given, span, most_boxes=boxes, progress=advance)
     deliver("certify-stability", file, replace(found, unit=unit), to, as_json, what="certificate")

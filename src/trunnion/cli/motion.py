@@ -17,6 +17,7 @@ from trunnion.cli.options import (
     Output,
     Speed,
     Unit,
+    Within,
     only_for_lines,
     read_case,
     read_quantity,
@@ -63,7 +64,7 @@ def simulate(
 
     Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
     """
-    with output.compile_notice():
+    with output.progress("motion"):
         subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed, "--to-speed": to_speed})
         if isinstance(subject, tn.Driveline):
             check_places(to)
@@ -102,7 +103,7 @@ def periodic_response(
 
     Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
     """
-    with output.compile_notice():
+    with output.progress("periodic response"):
         subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed})
         if isinstance(subject, tn.Driveline):
             if period is not None:
@@ -150,7 +151,7 @@ def linearity_check(
     """
     line, unit = read_case(file, unit, load_case)
     check_places(to)
-    with output.compile_notice():
+    with output.progress("linearity check"):
         found = tn.linearity_check(line, read_speed(speed, unit), allowed=allowed, acceleration=acceleration)
     found.nonlinear.outcome.require()
     deliver(
@@ -174,6 +175,7 @@ def run_up(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """Passage through resonance at an acceleration that sets in smoothly, against the steady response.
@@ -186,7 +188,7 @@ def run_up(
     torque = None if limit is None else _torque(limit)
     check_places(to)
     safe = None
-    with output.compile_notice():
+    with output.progress("run-up", within):
         result = tn.run_up(line, low, high, acceleration=rate, ramp=ramp)
         if torque is not None:
             tried = (rate / 4, rate * 4)

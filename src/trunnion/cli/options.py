@@ -44,6 +44,10 @@ Speed = Annotated[
 ]
 SpeedRange = Annotated[str | None, typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")]
 LoadCase = Annotated[str | None, typer.Option("--load-case", help="Torques of this load case of the file.")]
+Within = Annotated[
+    str | None,
+    typer.Option("--within", metavar="TIME", help='End within this time, "30 s" say, with what is known by then.'),
+]
 Points = Annotated[str, typer.Option("--points", metavar="NXxNY", help="Points along x and y where not said there.")]
 
 TABLES_ANYWHERE = ContextVar("TABLES_ANYWHERE", default=False)

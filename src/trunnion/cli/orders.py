@@ -15,6 +15,7 @@ from trunnion.cli.options import (
     LoadCase,
     Output,
     Unit,
+    Within,
     is_number,
     read_case,
     read_even_axis,
@@ -133,6 +134,7 @@ def stable_limit(
     unit: Unit = None,
     load_case: LoadCase = None,
     to: Output = None,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
     """The largest value of a parameter up to which the line is stable, over speed, and which limit binds before.
@@ -145,7 +147,7 @@ def stable_limit(
     label, low, high, points = read_even_axis(parameter, line, unit, SCAN + 1, "--parameter")
     at = _speeds(line, speeds, unit, points=FEW, even=True)
     check_places(to)
-    with output.progress("stable limit") as advance:
+    with output.progress("stable limit", within) as advance:
         result = tn.stable_limit(
             line, label, at, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=advance
         )

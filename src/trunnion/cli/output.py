@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import _thread
 import json
 import os
+import signal
 import sys
+import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from contextvars import copy_context
 from functools import cache
 from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
+from trunnion.cli.options import read_time
 from trunnion.errors import ComputationError
 from trunnion.results.plain import plain
+from trunnion.waiting import OutOfTime, TimeLimit, seconds_left, time_limit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +33,10 @@ if TYPE_CHECKING:
 
 LONG = 10.0
 """Seconds between lines of progress where stderr is not a terminal."""
+QUIET = 10.0
+"""Seconds after which something is said there though the work tells nothing of how far it is."""
+LEAST_SHARE, LEAST_WORK, ALIKE = 0.05, 2.0, 1.5
+"""Share done and seconds of work from which the time left is told; factor by which the pace may have changed."""
 PIPED_WIDTH = 110
 _COLOUR = {"danger": "bold red", "caution": "yellow", "note": "green"}
 
@@ -114,14 +124,16 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress(what: str) -> Iterator[Callable[[float], None]]:
+def progress(what: str, within: str | None = None) -> Iterator[Callable[[float], None]]:
     """A callback for the share done: a bar with the time left on a terminal, else a line now and then.
 
-    Time spent on compiling, which happens once, is not taken for the pace of the work.
+    Time spent on compiling, which happens once, is not taken for the pace of the work. What is computed inside ends
+    ``within`` its time and on Ctrl-C with what it has, see ``stoppable``.
     """
-    with compile_notice() as clock:
+    with stoppable(within), compile_notice() as clock:
         if not sys.stderr.isatty():
-            yield _Lines(what, clock)
+            with _Lines(what, clock) as lines:
+                yield lines
             return
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
@@ -148,6 +160,7 @@ class _Clock:
     def __init__(self) -> None:
         self.start = time.monotonic()
         self.spent, self.depth, self.since = 0.0, 0, 0.0
+        self.told: list[tuple[float, float]] = []
 
     def begin(self) -> None:
         """Something is being compiled."""
@@ -167,11 +180,18 @@ class _Clock:
         return self.spent + (time.monotonic() - self.since if self.depth else 0.0)
 
     def left(self, share: float) -> str:
-        """Time left of the work."""
-        if share <= 0:
+        """Time left of the work; "" where nothing is known of it yet: where little is done, or where the pace of the
+        first half of the time would have told something else."""
+        worked = max(time.monotonic() - self.start - self.seconds(), 0.0)
+        if share > (self.told[-1][1] if self.told else 0.0):
+            self.told.append((worked, share))
+        early = [one for one in self.told if one[0] <= worked / 2]
+        if not early or not LEAST_SHARE <= share <= 1 or worked < LEAST_WORK:
             return ""
-        worked = time.monotonic() - self.start - self.seconds()
-        return f"about {max(worked, 0.0) * (1 - share) / share:.0f} s left"
+        whole, before = worked / share, early[-1][0] / early[-1][1]
+        if max(whole, before) > ALIKE * min(whole, before):
+            return ""
+        return f"about {min(whole - worked, seconds_left()):.0f} s left"
 
 
 @contextmanager
@@ -231,14 +251,95 @@ def _listening(clock: _Clock) -> AbstractContextManager[Any]:
 
 
 class _Lines:
-    """Progress for logs: silent while it is quick."""
+    """Progress for logs: silent while it is quick, then a line now and then, whether the work tells a share or not."""
 
     def __init__(self, what: str, clock: _Clock) -> None:
         self.what, self.clock = what, clock
         self.last = clock.start
+        self.done = threading.Event()
+
+    def __enter__(self) -> _Lines:
+        # A thread of its own, as many a computation has nothing to tell before it is done.
+        threading.Thread(target=copy_context().run, args=(self._tell,), daemon=True).start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.done.set()
 
     def __call__(self, share: float) -> None:
-        now = time.monotonic()
-        if now - self.last >= LONG and share > 0:
-            self.last = now
-            print(f"{self.what}: {100 * share:.0f} %, {self.clock.left(share)}", file=sys.stderr, flush=True)
+        left = self.clock.left(share)
+        if share > 0 and time.monotonic() - self.last >= LONG:
+            self._say(f"{100 * share:.0f} %{f', {left}' if left else ''}")
+
+    def _tell(self) -> None:
+        while not self.done.wait(QUIET):
+            if time.monotonic() - self.last >= QUIET:
+                self._say(f"{time.monotonic() - self.clock.start:.0f} s so far")
+
+    def _say(self, told: str) -> None:
+        self.last = time.monotonic()
+        note(f"{self.what}: {told}")
+
+
+STOPPING = "stopping with what is known by now; Ctrl-C again leaves at once"
+PATIENCE = 5.0
+"""Seconds that a computation has to stop with what it has, before Ctrl-C ends it as it stands."""
+_stopped = False
+
+
+def stopped() -> bool:
+    """Whether a Ctrl-C ended what this command computed, so that its answer is one of what was known by then."""
+    return _stopped
+
+
+@contextmanager
+def stoppable(within: str | None = None) -> Iterator[TimeLimit]:
+    """What is computed inside ends ``within`` its time ("30 s"), and on Ctrl-C, with what it has.
+
+    A second Ctrl-C, or one that nothing has answered after some seconds, ends the command at once.
+
+    Raises
+    ------
+    InputError : no positive time. KeyboardInterrupt : it was stopped before anything was known.
+    """
+    global _stopped
+    with time_limit(read_time(within, "--within")) as limit, _first_ctrl_c(limit):
+        try:
+            yield limit
+        except OutOfTime:
+            if limit.stopped:
+                raise KeyboardInterrupt from None
+            raise
+        _stopped = _stopped or (limit.stopped and limit.noticed)
+
+
+@contextmanager
+def _first_ctrl_c(limit: TimeLimit) -> Iterator[None]:
+    """The first Ctrl-C inside asks ``limit`` for an end."""
+    here = threading.current_thread() is threading.main_thread()
+    if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield
+        return
+    impatient: list[threading.Timer] = []
+
+    def hurry() -> None:
+        if not limit.noticed:
+            _thread.interrupt_main()
+
+    def ask(*_: object) -> None:
+        if limit.stopped:
+            raise KeyboardInterrupt
+        limit.stop()
+        note(STOPPING)
+        timer = threading.Timer(PATIENCE, hurry)
+        timer.daemon = True
+        timer.start()
+        impatient.append(timer)
+
+    signal.signal(signal.SIGINT, ask)
+    try:
+        yield
+    finally:
+        for timer in impatient:
+            timer.cancel()
+        signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -17,7 +17,7 @@ from rich.markup import escape
 from typer.core import TyperGroup
 
 from trunnion._version import __version__
-from trunnion.cli import describe, study
+from trunnion.cli import describe, output, study
 from trunnion.cli.app import app as serve_app
 from trunnion.cli.assess import assess, campbell_diagram, envelope
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
@@ -55,9 +55,12 @@ class OneLineGroup(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            result = super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
             raise _Interrupted(*interrupt.args) from None
+        if output.stopped():
+            raise _Interrupted("this is what was known by then")
+        return result
 
     def main(self, args: Any = None, prog_name: str | None = None, **extra: Any) -> Any:  # type: ignore[override]
         _open_streams()

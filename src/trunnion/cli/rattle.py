@@ -133,7 +133,7 @@ def sweep(
     grid = np.linspace(first, last, points)
     grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
     unit = _unit(subject)
-    with output.compile_notice():
+    with output.progress("sweep"):
         found: list[Any] = [tn.sweep(subject, values) for values in grids]
     if isinstance(subject, tn.PiecewiseOscillator):
         deliver(

@@ -118,7 +118,7 @@ def stability(
     at = read_speed(speed, unit)
     from trunnion.cli.report import stability_json
 
-    with output.compile_notice():
+    with output.progress("stability"):
         result = tn.stability(line, at)
     answer(
         "stability", None, as_json, lambda: stability_json(result, unit), lambda: result.describe(unit),

@@ -41,6 +41,7 @@ from trunnion.reporting.overview_findings import (
 from trunnion.reporting.ranges import speed_range
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.waiting import OutOfTime
 
 NEARLY = 0.1
 """Spare margin below which a check deserves a word though it is satisfied."""
@@ -83,7 +84,7 @@ def answer(line: Driveline, *, speed: float | str | None = None, unit: str | Non
         speed = operating_speed(line, speed)
         require_steady_base(assembly, assembly.table(1, speed))
     low, high = speed_range(line)
-    subject = replace(subject_of(line, (low, high), None, unit), speed=speed)
+    subject = replace(subject_of(line, (low, high), None, unit, partly=True), speed=speed)
     assessment = judgement(subject, checks_of(subject))
     every = resonance_speeds(assembly)
     here = every.within(low, high)
@@ -126,7 +127,7 @@ def _along(case: Case) -> StabilityAlong | None:
         return None
     try:
         return case.along
-    except (NoSharedMotion, InputError, ComputationError):  # the check says why
+    except (NoSharedMotion, InputError, ComputationError, OutOfTime):  # the check says why
         return None
 
 

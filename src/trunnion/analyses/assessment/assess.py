@@ -26,16 +26,19 @@ from trunnion.driveline.operation import Operation
 from trunnion.errors import InputError
 from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
+from trunnion.waiting import OutOfTime, keeps_time
 
 OF_RESPONSE = (own_limits, coupling_ratings, ship_shafts, gear_hammer)
 
 
+@keeps_time
 def assess(
     line: Driveline,
     speeds: SpeedEnds | None = None,
     *,
     load_case: str | None = None,
     unit: str | None = None,
+    within: float | None = None,
 ) -> Assessment:
     """Every limit of the description and every rule that applies, over the running range.
 
@@ -47,6 +50,7 @@ def assess(
     speeds : lowest and highest input speed [rad/s]; default the description's range, or its operating speed alone.
     load_case : name of one of the line's load cases; by default the line is judged as stated and under each of them.
     unit : of speeds in sentences; default the one of the description.
+    within : seconds that it may take; what is not reached by then is not judged, and says so.
 
     Raises
     ------
@@ -62,7 +66,7 @@ def assess(
     >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
     satisfied max torque of shaft 0.129
     """
-    subject = subject_of(line, speeds, load_case, unit)
+    subject = subject_of(line, speeds, load_case, unit, partly=True)
     return judgement(subject, checks_of(subject))
 
 
@@ -82,12 +86,14 @@ def subject_of(
     load_case: str | None,
     unit: str | None,
     effort: Effort = WHOLE,
+    *,
+    partly: bool = False,
 ) -> Subject:
-    """What is judged: see ``assess``; ``effort``: how closely."""
+    """What is judged: see ``assess``; ``effort``: how closely; ``partly``: what there is where a time limit ends it."""
     if load_case is not None:
         line = line.with_load(load_case)
     low, high, speed = _range(line, speeds)
-    every = cases_of(line, low, high, effort)
+    every = cases_of(line, low, high, effort, partly=partly)
     return Subject(line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every)
 
 
@@ -102,7 +108,11 @@ def checks_of(subject: Subject, *, geometry: bool = True) -> tuple[Check, ...]:
 
 def prepare(cases: tuple[Case, ...]) -> None:
     """Compute what the checks look at, cases side by side."""
-    on_threads(Case.prepare, cases, os.cpu_count() or 1)
+    try:
+        on_threads(Case.prepare, cases, os.cpu_count() or 1)
+    except OutOfTime:
+        if not all(case.partly for case in cases):
+            raise  # otherwise each check says that it was not reached
 
 
 def _range(line: Driveline, speeds: SpeedEnds | None) -> tuple[float, float, float | None]:

@@ -58,7 +58,8 @@ class Check:
     stated; barred: speed ranges [rad/s] to pass quickly; decides: whether the verdict rests on it, see
     ``deciding.weighed``; cause: the order that leads there and the mode that it is nearest to; course: value and limit
     at all speeds judged; error: what the largest value may be low by, in ``unit``, NaN where nothing was searched;
-    covered: the speed ranges [rad/s] that it was judged over.
+    covered: the speed ranges [rad/s] that it was judged over; ended: what ended its search before it was done, as a
+    clause: "the time limit of 30 s ended the search".
     """
 
     name: str
@@ -80,6 +81,7 @@ class Check:
     course: Course | None = field(default=None, repr=False, compare=False)
     error: float = nan
     covered: tuple[tuple[float, float], ...] = ()
+    ended: str = ""
 
     @property
     def judged(self) -> bool:

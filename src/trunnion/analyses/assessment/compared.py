@@ -20,9 +20,17 @@ MOST_GAPS = 4
 SEPARATION = "separation of"
 
 
-def unanswered(case: Case, name: str, rule: Rule) -> Check:
-    """Of a case that has no linear response."""
+def unanswered(subject: Subject, case: Case, name: str, rule: Rule) -> Check:
+    """Of a case that has no linear response, or of which it was not reached."""
+    if case.ended_by:
+        return not_reached(subject, case, name, rule, case.ended_by[0])
     return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
+
+
+def not_reached(subject: Subject, case: Case, name: str, rule: Rule, ended: str) -> Check:
+    """Of what a time limit left out; ``ended``: what ended the search, as a clause."""
+    because = f"{subject.ranges([(case.low, case.high)])} not judged: {ended}{case.suffix}"
+    return Check(name, Status.NOT_JUDGED, rule, because, load_case=case.name, ended=ended)
 
 
 def at_largest(
@@ -58,11 +66,12 @@ def at_largest(
         words = against(value, limit, kind)
     elif not np.isfinite(value):
         words = f"no steady state (undamped resonance) against {shown(limit, kind, digits=4)}"
-    unsure = f" (may be {100 * found.error / value:.2g} % more)" if found.error > WORTH_SAYING * value else ""
+    known = np.isfinite(found.error)  # a search that was ended knows nothing of what it did not reach
+    unsure = f" (may be {100 * found.error / value:.2g} % more)" if known and found.error > WORTH_SAYING * value else ""
     led = f", {cause}" if cause else ""
     because = f"{words}{unsure} at {subject.shown(speed)}{where}, {percent(margin)}{led}{case.suffix}{more}"
     status = judged(margin, required)
-    if status is Status.SATISFIED and judged(below(value + found.error, limit), required) is Status.EXCEEDED:
+    if known and status is Status.SATISFIED and judged(below(value + found.error, limit), required) is Status.EXCEEDED:
         status, because = Status.NOT_JUDGED, f"{because}; the search did not settle closely enough to tell"
     return Check(
         name, status, rule, because, margin, required, value, limit, kind.unit, speed,
@@ -81,7 +90,11 @@ def looked_at(subject: Subject, case: Case) -> str:
 
 def uncovered(subject: Subject, case: Case, check: Check) -> Check:
     """A check of the response that holds wherever it could be judged: not judged where there are speeds at which it
-    could not."""
+    could not, or where a time limit ended the search."""
+    if case.ended_by and check.judged:
+        ended = case.ended_by[0]
+        status = Status.NOT_JUDGED if check.status is Status.SATISFIED else check.status
+        return replace(check, status=status, because=f"{check.because}; {ended}: more may hide", ended=ended)
     gaps = case.gaps
     if not gaps or not check.judged or check.name.startswith(SEPARATION):
         return check

@@ -60,7 +60,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
             if rating is None:
                 yield Check(title, Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):
-                yield unanswered(case, title, rule)
+                yield unanswered(subject, case, title, rule)
             else:
                 yield _rated(subject, case, name, key, rating, rule)
 

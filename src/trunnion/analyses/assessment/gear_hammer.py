@@ -33,7 +33,7 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
     for name in pairs:
         title = f"gear hammer in {name}"
         if isinstance(case.answer, str):
-            yield unanswered(case, title, RULE)
+            yield unanswered(subject, case, title, RULE)
             continue
         measure = of_hammer(case.assembly, name)
         found = case.largest(measure)

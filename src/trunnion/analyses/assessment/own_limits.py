@@ -67,7 +67,7 @@ def _one(subject: Subject, case: Case, limit: OneLimit) -> Check:
     if measure is None:
         return Check(name, Status.NOT_APPLICABLE, rule, HELD)
     if isinstance(case.answer, str):
-        return unanswered(case, name, rule)
+        return unanswered(subject, case, name, rule)
     found = case.largest(measure)
     barred = bands(case.speeds, found.values, found.limits * (1 - limit.margin)) if measure.bars else ()
     more = f"; {100 * limit.margin:.3g} % must stay free" if limit.margin else ""

@@ -19,6 +19,7 @@ from contextlib import suppress
 import numpy as np
 
 from trunnion.analyses.assessment.check import Check, Rule, Status
+from trunnion.analyses.assessment.compared import not_reached
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong, straight_decay
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
@@ -27,6 +28,7 @@ from trunnion.arrays import Array
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
 
 RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived", "stability")
 EACH, COARSE = 25, 1e-8
@@ -46,6 +48,10 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
             yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
             return
         yield Check(NAME, Status.NOT_JUDGED, RULE, str(error).splitlines()[0], load_case=case.name)
+        return
+    except OutOfTime as error:
+        case.end(error)
+        yield not_reached(subject, case, NAME, RULE, error.why)
         return
     speeds, growth = found.along.speed, found.along.growth_rate
     if not case.parametric and not found.ranges:

@@ -55,6 +55,11 @@ class Assessment(Result):
         return next((check for check in self.checks if check.exceeded or check.satisfied), None)
 
     @property
+    def ended(self) -> str:
+        """What ended the search before all of it was judged, as a clause; "" where nothing did."""
+        return next((check.ended for check in self.checks if check.ended), "")
+
+    @property
     def shown_beyond(self) -> tuple[Check, ...]:
         """Guidelines that the line is beyond and that do not decide."""
         return tuple(check for check in self.checks if check.status is Status.EXCEEDED and not check.decides)
@@ -74,7 +79,9 @@ class Assessment(Result):
     @property
     def sentence(self) -> str:
         """The verdict in one sentence; of a line without application also which guidelines it is beyond."""
-        return self._of_verdict() + self._beyond_guidelines()
+        verdict = self._of_verdict()
+        ended = f"; {self.ended}" if self.ended not in verdict else ""
+        return verdict + ended + self._beyond_guidelines()
 
     def _of_verdict(self) -> str:
         over_limit = [c for c in self.checks if c.exceeded]

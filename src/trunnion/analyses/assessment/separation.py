@@ -34,8 +34,8 @@ LIMITED = "limits of torque or stress, which are stated"
 
 def separation(subject: Subject, case: Case) -> Iterator[Check]:
     """One check a mode that an order meets, one for all the others together."""
-    if case.response is None:
-        yield unanswered(case, ALL, RULE)
+    if case.response is None or case.ended_by:
+        yield unanswered(subject, case, ALL, RULE)
         return
     orders = shaking_orders(case)
     if not len(orders):

@@ -53,7 +53,7 @@ def ship_shafts(subject: Subject, case: Case) -> Iterator[Check]:
 def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Check]:
     title = ship_name(name)
     if isinstance(case.answer, str):
-        yield unanswered(case, title, RULE)
+        yield unanswered(subject, case, title, RULE)
         return
     numbers = ship_shaft(case.assembly, name, feature)
     if numbers is None:

@@ -29,6 +29,7 @@ from trunnion.equations.steady_base import moves_by_itself
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
 
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
@@ -102,8 +103,10 @@ class Case:
     """The line under one load case ("" as stated), over a range of speeds.
 
     ``given``: speeds to judge it at instead of searching; ``known``: its response there, where that is known already;
-    ``rough``: to look around, see ``order_spectrum``; ``torques``: springs of which torques are looked for beside what
-    the checks look at, as of ``torque_measures``; ``follows``: what changes with the speed besides, see ``Span``.
+    ``rough``: to look around, see ``order_spectrum``; ``partly``: where a time limit ends a search, go on with what
+    there is, ``ended_by`` saying so, instead of passing it on; ``torques``: springs of which torques are looked for
+    beside what the checks look at, as of ``torque_measures``; ``follows``: what changes with the speed besides, see
+    ``Span``.
     """
 
     name: str
@@ -114,6 +117,7 @@ class Case:
     given: tuple[float, ...] = ()
     known: OrderResponse | None = None
     rough: bool = False
+    partly: bool = False
     torques: tuple[tuple[str, int], ...] = ()
     follows: Span | None = field(default=None, repr=False)
 
@@ -148,9 +152,26 @@ class Case:
         try:
             if self.given:
                 return self._judged(self.respond(np.array(self.given)))
-            return self._judged(self.searched.response)
+            found = self.searched
+            if found.ended:
+                self.end(OutOfTime(found.ended))
+            return self._judged(found.response)
         except (InputError, ComputationError) as error:
             return str(error).splitlines()[0]
+        except OutOfTime as error:
+            self.end(error)
+            return error.why
+
+    @cached_property
+    def ended_by(self) -> list[str]:
+        """What ended searches before they were done, a time limit; none where all were."""
+        return []
+
+    def end(self, error: OutOfTime) -> None:
+        """Keep what ended a search and go on with what there is, where that is wanted; otherwise pass it on."""
+        if not self.partly:
+            raise error
+        self.ended_by.append(error.why)
 
     @cached_property
     def searched(self) -> Largest:
@@ -286,6 +307,9 @@ class Case:
             return tuple(self.unstable.stable_part(self.span.pieces))
         except (InputError, ComputationError):  # it cannot be told; the check of stability says so
             return self.span.pieces
+        except OutOfTime as error:
+            self.end(error)
+            return self.span.pieces
 
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:
@@ -293,8 +317,12 @@ class Case:
         if self.given or self.known is not None:
             return ()
         ranges: tuple[tuple[float, float], ...] = ()
-        with suppress(InputError, ComputationError):
+        try:
             ranges = () if self.rough else self.unstable.ranges
+        except OutOfTime as error:
+            self.end(error)
+        except (InputError, ComputationError):
+            pass
         return (*self.span.gaps, *(Gap(low, high, UNSTABLE) for low, high in ranges))
 
     def _judged(self, found: OrderResponse) -> OrderResponse:
@@ -344,11 +372,14 @@ def lossy(assembly: Assembly) -> bool:
     return bool(assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())
 
 
-def cases_of(line: Driveline, low: float, high: float, effort: Effort = WHOLE) -> tuple[Case, ...]:
+def cases_of(
+    line: Driveline, low: float, high: float, effort: Effort = WHOLE, *, partly: bool = False
+) -> tuple[Case, ...]:
     """The line as stated and under each of its load cases."""
     named = [case.name for case in line.operation.load_cases] if line.operation else []
     return tuple(
-        Case(name, assemble(line.with_load(name) if name else line), low, high, effort) for name in ("", *named)
+        Case(name, assemble(line.with_load(name) if name else line), low, high, effort, partly=partly)
+        for name in ("", *named)
     )
 
 

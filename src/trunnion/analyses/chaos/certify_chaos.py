@@ -43,6 +43,7 @@ from trunnion.results.drawing import Figure, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
+from trunnion.waiting import OutOfTime, keeps_time, time_is_up
 
 POINTS = 3000
 """Points of the Poincaré map."""
@@ -135,6 +136,7 @@ class ChaosCertificate(Result):
         return "\n".join(lines)
 
 
+@keeps_time
 def certify_chaos(
     subject: System | Driveline,
     periods: int | None = None,
@@ -148,6 +150,7 @@ def certify_chaos(
     transient: int | None = None,
     sweep: tuple[str, float, float, int] | bool = True,
     tolerance: float = 1e-10,
+    within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> ChaosCertificate:
     """Certify what a motion is, by time history, Lyapunov exponents, Poincaré map and the 0–1 test.
@@ -159,6 +162,7 @@ def certify_chaos(
     points : of the map.
     sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the
         forcing frequency or speed by ± 10 %; False for none.
+    within : seconds that it may take; what is known by then is judged, and the reasons say what ended it.
 
     Returns
     -------
@@ -179,7 +183,8 @@ def certify_chaos(
     tell(last)
     states = np.concatenate([run.states[-8:] for run in spectrum.runs])
     running = clocks(system, states) if len(states) and np.all(np.isfinite(states)) else {}
-    witnesses = [_witness(system, spectrum, i, section, points, running) for i in range(len(spectrum.runs))]
+    ended = time_is_up()
+    witnesses = [_in_time(system, spectrum, i, section, points, running) for i in range(len(spectrum.runs))]
     first = witnesses[0]
     same = all((w.verdict, w.kind) == (first.verdict, first.kind) for w in witnesses)
     verdict, kind, reasons = first.verdict, first.kind, first.reasons
@@ -199,10 +204,16 @@ def certify_chaos(
         )  # fmt: skip
     swept = None
     if request is not None and verdict is not Verdict.UNBOUNDED:
-        swept = lyapunov_sweep(
-            system, request[0], request[1:], periods=SWEEP_PERIODS, start=first_starts(system, start, 1)[0],
-            tolerance=max(tolerance, 1e-9), progress=lambda share: tell(last + (1 - last) * share),
-        )  # fmt: skip
+        try:
+            swept = lyapunov_sweep(
+                system, request[0], request[1:], periods=SWEEP_PERIODS, start=first_starts(system, start, 1)[0],
+                tolerance=max(tolerance, 1e-9), progress=lambda share: tell(last + (1 - last) * share),
+            )  # fmt: skip
+        except OutOfTime as error:
+            reasons = (*reasons, f"no exponents over {request[0]}: {error.why}")
+    if ended:
+        samples = min(len(run.growth) for run in spectrum.runs)
+        reasons = (*reasons, f"{ended} after {samples} samples of the exponents")
     return ChaosCertificate(
         system, verdict, kind, repeat, _period(first.map, repeat), reasons, judged, spectrum, first.map, first.test,
         swept,
@@ -221,6 +232,15 @@ def _sweep_request(system: System, sweep: tuple[str, float, float, int] | bool) 
         return None
     value = system.parameters[name]
     return name, (1 - SWEPT) * value, (1 + SWEPT) * value, SWEEP_POINTS
+
+
+def _in_time(
+    system: System, spectrum: LyapunovSpectrum, i: int, section: Event | None, points: int, running: dict[int, float]
+) -> Witness:
+    try:
+        return _witness(system, spectrum, i, section, points, running)
+    except OutOfTime as error:
+        return Witness(None, None, Verdict.UNDECIDED, "", (f"no map: {error.why}",))
 
 
 def _witness(

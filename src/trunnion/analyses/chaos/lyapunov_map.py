@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass
 
 import numpy as np
@@ -234,8 +235,13 @@ def _all(
         width[place] = np.where(np.abs(result.mean) <= bound, np.fmax(width[place], bound), width[place])
 
     with ThreadPoolExecutor(threads if system.compiled else 1) as pool:
-        for done, _ in enumerate(pool.map(one, range(len(points))), start=1):
-            tell(done / len(points))
+        waiting = [pool.submit(copy_context().run, one, place) for place in range(len(points))]
+        try:
+            for done, each in enumerate(waiting, start=1):
+                each.result()
+                tell(done / len(points))
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
     return mean, width, told
 
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import replace
 from itertools import repeat
 
@@ -34,6 +35,7 @@ from trunnion.numerics.integration.tangents import Motion, Samples
 from trunnion.results.outcome import Outcome
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
+from trunnion.waiting import time_is_up
 
 PRECISION = 0.018
 """Width of the interval of the largest exponent over its size at which the default effort is content."""
@@ -108,27 +110,32 @@ def lyapunov_spectrum(
     tell = progress or (lambda share: None)
 
     with ThreadPoolExecutor(len(motions) if system.compiled else 1) as pool:
-        early = list(pool.map(lambda m: m.run(skipped), motions))
+        waiting = [pool.submit(copy_context().run, motion.run, skipped) for motion in motions]
+        early = [one.result() for one in waiting]
         if any(e.end is not End.REACHED for e in early):
             # What does not outlive its transient is measured from the start.
             skipped, motions = 0, [_motion(system, x, count, interval, tolerance) for x in states]
             early = [m.run(0) for m in motions]
         runs = [_begun(s, count) for s in early]
-        total = asked or FIRST
+        total, ended = asked or FIRST, ""
         while True:
             more = total - runs[0].wanted
             for part in _parts(more):
+                if ended := time_is_up():
+                    break
                 runs = list(pool.map(_carry_on, motions, runs, repeat(part), repeat(traced)))
                 tell(runs[0].wanted / (asked or LAST))
             whole = all(r.end is End.REACHED for r in runs)
-            late = 0 if asked or not whole else total // LEFT_OUT
+            late = 0 if asked or ended or not whole else total // LEFT_OUT
             result = _result(
                 system, states, [_later(r, late) for r in runs], interval, skipped + late, tolerance, count
             )
-            if asked or not whole or total >= LAST or _known(result, precision):
+            if asked or ended or not whole or total >= LAST or _known(result, precision):
                 break
             total = min(LAST, int(total * _more(result, precision)))
-    outcome = _outcome(system, motions, result, runs, precision if asked is None else None)
+    outcome = _outcome(system, motions, result, runs, precision if asked is None and not ended else None)
+    if ended:
+        outcome = replace(outcome, sentence=f"{outcome.sentence}; {ended} after {len(runs[0].growth)} samples")
     return replace(result, outcome=outcome)
 
 

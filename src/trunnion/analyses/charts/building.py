@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -135,7 +136,7 @@ def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: in
     # What the check compares with asks nothing of the chart. Functions of a user's own stay on one thread.
     beside = threads > 1 and isinstance(family, LineFamily)
     with ThreadPoolExecutor(1) as aside:
-        first = aside.submit(sharp) if beside else None
+        first = aside.submit(copy_context().run, sharp) if beside else None
         for way in LADDER:
             own, asked = family_for(way, family), tolerance * way.share
             if way.smaller and not way.half_windows and own is family:

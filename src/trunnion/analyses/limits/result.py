@@ -57,7 +57,8 @@ class StableLimit(Described):
     of ``LimitKind``; unstable: of each speed its unstable ranges (ranges, 2), rising; low, high: the range searched;
     complete: whether every zero of the boundary functions was found, which ``search`` puts in words; others: limits of
     the description, and ``others_search`` how they were looked for; whole: the same for every speed between the
-    lowest and the highest, None of a single speed and where the listed ones alone were asked for; ``findings`` say what
+    lowest and the highest, None of a single speed and where the listed ones alone were asked for; ended: what ended the
+    search before it was done, as a clause, "" where it was done; ``findings`` say what
     of the line is left out; speed_unit: that speeds are printed in.
     """
 
@@ -76,6 +77,7 @@ class StableLimit(Described):
     whole: StableWindows | None = None
     findings: tuple[Finding, ...] = ()
     speed_unit: str = "rad/s"
+    ended: str = ""
 
     @property
     def intervals(self) -> Integers:
@@ -135,6 +137,8 @@ class StableLimit(Described):
 
     def sentence_in(self, unit: str) -> str:
         """The answer for all speeds in a sentence, and before it the one for every speed between where it is known."""
+        if self.ended:
+            return self._ended_in_words(unit)
         shown, factor = quantity_axis(self.parameter, self.unit, unit), speed_factor(unit)
         low, high = (float(end) * factor for end in (self.speed.min(), self.speed.max()))
         span = f"all {len(self.speed)} speeds from {low:.6g} to {high:.6g} {unit}"
@@ -165,8 +169,23 @@ class StableLimit(Described):
         ranges = self.unstable[i : i + 1]
         return replace(
             self, speed=self.speed[i : i + 1], limit=self.limit[i : i + 1], kind=self.kind[i : i + 1],
-            unstable=ranges, others=others, whole=None,
+            unstable=ranges, others=others, whole=None, ended="",
         ).sentence_in(unit)  # fmt: skip
+
+    def _ended_in_words(self, unit: str) -> str:
+        """The answer at the speeds that were searched before a time limit ended the search."""
+        known = self.kind != LimitKind.UNKNOWN
+        ended = f"{self.ended[0].upper()}{self.ended[1:]}: {int(known.sum())} of {len(known)} speeds were searched"
+        left = ", and nothing between them." if self.whole is None and len(known) > 1 else "."
+        if not np.any(known):
+            return f"{ended}{left}"
+        there = np.flatnonzero(known)
+        part = replace(
+            self, speed=self.speed[there], limit=self.limit[there], kind=self.kind[there],
+            unstable=tuple(self.unstable[k] for k in there), ended="",
+            others=tuple(replace(other, reached=other.reached[there]) for other in self.others),
+        )  # fmt: skip
+        return f"{part.sentence_in(unit)} {ended}{left}"
 
     def _other_in_words(self, shown: QuantityAxis, unit: str) -> str:
         """ "; above 28° the vibratory torque of Shaft 2 binds, at 1850 rpm", where another limit ends before."""
@@ -219,6 +238,7 @@ class StableLimit(Described):
             search=self.search,
             others_search=self.others_search or None,
             sentence=self.sentence,
+            ended=self.ended,
         )
         if self.whole is not None:
             yield remark("whole_range", self.whole.sentence)

@@ -21,7 +21,7 @@ from trunnion.analyses.limits.other_limits import SCAN, Reached, other_limits
 from trunnion.analyses.limits.result import LimitKind, StableLimit
 from trunnion.analyses.tongues.boundaries import MOST
 from trunnion.analyses.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
-from trunnion.analyses.tongues.rows import Row, unstable_intervals
+from trunnion.analyses.tongues.rows import Row, unknown_row, unstable_intervals
 from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.analyses.tongues.windows import StableWindows, stable_windows
 from trunnion.arrays import Array
@@ -33,15 +33,17 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.results.chart import StabilityChart, require_pixels
 from trunnion.results.finding import Finding, Gravity
+from trunnion.waiting import OutOfTime, keeps_time, limited, to_the_end
 
 Progress = Callable[[float], None]
 HIGHEST = float(np.deg2rad(60.0))
 ASIDE = 1e-3
 """Share by which a box about a single speed reaches to either side."""
-AT_ONCE = 500
-"""Speeds searched together: bounded memory, and steps of progress."""
+AT_ONCE, FEW_AT_ONCE = 500, 48
+"""Speeds searched together: bounded memory, and steps of progress; with a time limit."""
 
 
+@keeps_time
 def stable_limit(
     line: Driveline | Assembly,
     parameter: str | Parameter,
@@ -53,6 +55,7 @@ def stable_limit(
     between: bool = True,
     scan: int = SCAN,
     tolerance: float = PATCH_TOLERANCE,
+    within: float | None = None,
     progress: Progress | None = None,
 ) -> StableLimit:
     """The largest stable value of ``parameter`` at each of ``speeds`` [rad/s], the stable ranges above, and what binds.
@@ -67,6 +70,7 @@ def stable_limit(
         ``stable_windows``); False for the speeds alone.
     scan : steps of the grid on which the limits of the description are compared.
     tolerance : of the patches that tell where to look; edges are solved for by themselves.
+    within : seconds that it may take; the limit is unknown at speeds that were not reached, and ``ended`` says so.
 
     Undecided points (the spectral radius is 1 to within its error) and marginal ones (undamped lines) do not
     count as unstable.
@@ -99,19 +103,25 @@ def stable_limit(
     workers = os.cpu_count() or 1
     region = _region(task, len(speed), tolerance, workers, lambda s: tell(0.6 * s))
     at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
-    rows = _rows(region, at)
+    rows, ended = _rows_in_time(region, at)
     tell(0.7)
     every = between and len(at) > 1
     end = 0.8 if every else 1.0
     span = float(task.x.values[0]), float(task.x.values[-1])
-    others = other_limits(assembly, task.x.columns, at, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s))
+    others: Reached = (), ""
     whole = None
-    if every:
-        whole = stable_windows(
-            assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
-        )
+    try:
+        others = other_limits(assembly, task.x.columns, at, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s))
+        if every:
+            whole = stable_windows(
+                assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
+            )
+    except OutOfTime as error:
+        ended = error.why
+        others = others if others[1] else ((), f"limits of the description are not compared: {ended}")
     tell(1.0)
-    return _result(assembly, task, region, at, rows, others, whole)
+    with to_the_end():
+        return replace(_result(assembly, task, region, at, rows, others, whole), ended=ended)
 
 
 def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool = False) -> StableLimit:
@@ -151,6 +161,32 @@ def _rows(region: Region, speed: Array) -> list[Row]:
     for start in range(0, len(speed), AT_ONCE):
         rows += unstable_intervals(region, region.family.to_patch(speed[start : start + AT_ONCE], False))
     return rows
+
+
+def _rows_in_time(region: Region, speed: Array) -> tuple[list[Row], str]:
+    """The same, unknown at speeds that a time limit left out, and what ended the search, as a clause.
+
+    With a limit a few speeds at a time, spread over all of them, so that whatever is known covers the range.
+
+    Raises
+    ------
+    OutOfTime : the time was up before the first of them were known.
+    """
+    if not limited() or len(speed) <= FEW_AT_ONCE:
+        return _rows(region, speed), ""
+    parts = -(-len(speed) // FEW_AT_ONCE)
+    rows: list[Row | None] = [None] * len(speed)
+    ended = ""
+    try:
+        for first in range(parts):
+            for k, row in zip(range(first, len(speed), parts), _rows(region, speed[first::parts]), strict=True):
+                rows[k] = row
+    except OutOfTime as error:
+        if all(row is None for row in rows):
+            raise
+        ended = error.why
+    v = region.family.to_patch(speed, False)
+    return [row or unknown_row(region, float(v[k])) for k, row in enumerate(rows)], ended
 
 
 def _result(

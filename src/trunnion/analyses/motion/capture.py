@@ -30,6 +30,7 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.loads import load_at_input
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
+from trunnion.waiting import time_is_up
 
 CLOSE = 0.01
 """Share of the speed range by which a line that has reached the last speed may be behind it."""
@@ -64,7 +65,8 @@ def run_to_the_end(
     drive = extra + schedule.sense * schedule.acceleration * _inertia(run)
     run, kind = _followed(run, schedule, drive, tolerance)
     if kind == "hanging":
-        kind = "captured" if _keeps_the_last_speed(run, schedule, drive, tolerance) else "short of torque"
+        kept = _keeps_the_last_speed(run, schedule, drive, tolerance)
+        kind = "undecided" if time_is_up() else "captured" if kept else "short of torque"
     return run, _ending(kind, run, schedule, drive)
 
 

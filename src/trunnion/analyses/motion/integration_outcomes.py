@@ -8,9 +8,13 @@ from trunnion.numerics.integration.integration import End, Trajectory
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import WRONG_SHAPE, parameter_tuple, store
+from trunnion.waiting import time_is_up
 
 GROWN = 1e6
 """Growth of the state over a run beyond which a vanishing step is called a blow-up."""
+
+OUT_OF_TIME = "out of time"
+"""Kind of the outcome of a run that a time limit ended."""
 
 TINY = 1e-5
 """Size of all states over their scale below which the scale is what to change."""
@@ -26,6 +30,9 @@ def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[
     value = f"{system.states[largest]} = {run.final[0, largest]:.3g}"
     if run.end is End.STOPPED:
         return Outcome(True, "stopped", f"stopped {at} by the event {guards[int(run.event_which[-1])]}")
+    if run.end is End.OUT_OF_TIME:
+        why = time_is_up() or "the search was stopped"
+        return Outcome(False, OUT_OF_TIME, f"{why.replace('the search', 'the run')} {at}; what was computed is kept")
     if run.end is End.STEP_LIMIT:
         return Outcome(
             False,

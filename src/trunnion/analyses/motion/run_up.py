@@ -37,6 +37,7 @@ from trunnion.equations.loads import drive_torques, given_shares, static_torque
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
+from trunnion.waiting import OutOfTime, keeps_time, time_is_up
 
 STEADY_SPEEDS = 81
 STATIC_SPEEDS = 65
@@ -49,6 +50,7 @@ LOOSER, LOOSEST = 100.0, 1e-6
 """How much looser the tolerance of a second run is whose ending must be the same, and how loose it may be."""
 
 
+@keeps_time
 def run_up(
     line: Driveline | Assembly,
     first: float | str,
@@ -58,6 +60,7 @@ def run_up(
     ramp: float | None = None,
     steady: int = STEADY_SPEEDS,
     tolerance: float = 1e-9,
+    within: float | None = None,
 ) -> RunUp:
     """Run a line from speed ``first`` to ``last`` at an acceleration that sets in smoothly and then stays.
 
@@ -69,6 +72,7 @@ def run_up(
         half of the speed range is passed; 0 for at once.
     steady : number of speeds, at least, at which the steady periodic motion is computed for comparison; 0 leaves
         it out.
+    within : seconds that it may take; the run is given as far as it came by then, and ``ended`` says what is left out.
 
     The run begins on the periodic motion at ``first`` where there is one, otherwise without twist (a line that starts
     free: twisted by its mean torques). A line that starts free and is behind at the end is followed further, its drives
@@ -90,10 +94,13 @@ def run_up(
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)
     begun, extra = _begin(prepared)
     run, ending = _run(prepared, asked, begun, extra, tolerance)
-    if ending is not None and not ending.on_time:
+    ended = f"{time_is_up()}: the run is not whole" if not run.outcome.ok and time_is_up() else ""
+    if ending is not None and not ending.on_time and not ended:
         other = LOOSER * tolerance if LOOSER * tolerance <= LOOSEST else tolerance / LOOSER
         again = _run(prepared, asked, begun, extra, other)[1]
-        if again is not None and again.kind != ending.kind:
+        if ended := time_is_up():
+            ended = f"{ended}: no run at another tolerance confirms how it ends"
+        elif again is not None and again.kind != ending.kind:
             ending = replace(ending, kind="undecided", ways=(ending.kind, again.kind))
     # Windows of equal angle, a turn or a little more, so that none is left over.
     angle = run.whole.furthest
@@ -110,6 +117,11 @@ def run_up(
         return np.hstack([torque, torque - quasi_static(times)])
 
     seen = extremes_in(curves, run.cuts, edges)
+    found = None
+    try:
+        found = _steady(prepared.assembly, first, last, steady) if steady else None
+    except OutOfTime as error:
+        ended = ended or f"{error.why}: no steady response beside the run"
     return RunUp(
         simulation=run,
         schedule=asked,
@@ -120,8 +132,9 @@ def run_up(
         vibration=seen.largest[:, count:],
         lag=lag,
         inertia_torque=np.abs(_inertia_torque(prepared.assembly)) * asked.acceleration,
-        steady=_steady(prepared.assembly, first, last, steady) if steady else None,
+        steady=found,
         ending=ending,
+        ended=ended,
     )
 
 

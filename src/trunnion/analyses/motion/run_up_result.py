@@ -42,7 +42,8 @@ class RunUp(Described):
     and acceleration that the line has; lag (turns,) [rad/s]: by how much it turned slower than asked, which only a line
     that starts free can; inertia_torque (shaft,) [N m]: what accelerates the inertia behind each shaft at the full
     acceleration, were it rigid and its joints straight; steady: the steady response in the same range (None if not
-    asked for); ending: how a line that starts free came to the last speed, None where the speed is prescribed.
+    asked for); ending: how a line that starts free came to the last speed, None where the speed is prescribed; ended:
+    what a time limit left out, as a clause, "" where nothing.
     """
 
     simulation: LineSimulation
@@ -56,6 +57,7 @@ class RunUp(Described):
     inertia_torque: Array
     steady: SteadyResponse | None
     ending: RunUpEnding | None
+    ended: str = ""
 
     @property
     def acceleration(self) -> float:
@@ -147,6 +149,7 @@ class RunUp(Described):
         if self.ending is not None:
             yield from self.ending.declared()
         yield from ending(self.outcome)
+        yield from remarks(ended=self.ended)
 
     def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
         """Envelope against the steady response; see ``trunnion.plots.run_up``."""
@@ -179,6 +182,8 @@ class RunUp(Described):
             )
         if self.simulation.line.sliders:
             rows.append("  no steady response beside it: clutches rub, which no branch follows; ask periodic_response")
+        if self.ended:
+            rows.append(f"  {self.ended}")
         return "\n".join([head, *rows, f"  {self.outcome_in(unit)}"])
 
     def _against(self, i: int) -> str:

@@ -176,7 +176,7 @@ def simulate_system(
     regime = system.regime_at(start_time, first)
     run = integrate(
         system.equations, start_time, end, first, regime=regime, tolerance=tolerance, most_steps=most_steps,
-        watch=watch(system, events), dense=dense, longest_step=longest_step,
+        watch=watch(system, events), dense=dense, longest_step=longest_step, partly=True,
     )  # fmt: skip
     guards = (*(system.regimes.guards if system.regimes else ()), *(e.label for e in events))
     outcome = outcome_of(system, run, tolerance, guards)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +21,7 @@ from trunnion.driveline.operating_speed import speed_unit, stated_range
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.waiting import OutOfTime, keep_time, keeps_time, time_kept
 
 POINTS = 21
 """Points of a front at most."""
@@ -28,10 +31,14 @@ ALIKE = 1e-9
 """Share by which torques under all load cases may differ from those under the cases that were searched."""
 LOOKS = 4
 """Designs that tell which load cases come near the largest torque."""
+RESERVE, LEAST = 2.0, 0.5
+"""Of a time limit, what is kept for judging the best design, in times that one line takes; share of the time left that
+the search gets at least."""
 DESIGNS = 600
 """Designs of the search from everywhere; polishing adds to them."""
 
 
+@keeps_time
 def optimise(
     line: Driveline,
     free: Mapping[str, Sequence[object]],
@@ -43,6 +50,7 @@ def optimise(
     designs: int = DESIGNS,
     seed: int = 0,
     unit: str | None = None,
+    within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Optimum:
     """Choose numbers of the description, each within its bounds, for one aim or for two.
@@ -66,6 +74,7 @@ def optimise(
     designs : computed in the search from everywhere, about; of two aims for each of them.
     seed : of the search; the same seed gives the same design.
     unit : of speeds in print; default the one of the description.
+    within : seconds that it may take; the best design found until then is given, and ``ended`` says so.
     progress : called as progress(share done).
 
     Raises
@@ -73,6 +82,7 @@ def optimise(
     InputError : no such parameter, aim, check or load case; bounds that no line can have; no speeds where they are
         needed.
     ComputationError : no design within the bounds can be computed.
+    OutOfTime : none was computed ``within`` its time.
 
     Examples
     --------
@@ -94,7 +104,12 @@ def optimise(
         subject_of(line, span, load_case, unit)  # refuses speeds and load cases that there are not
     question = Question(wanted, span, load_case, unit or speed_unit(line), held if span is not None else frozenset())
     _require_checks(line, question, held or frozenset())
-    found, best, tried = _searched(space, question, designs * len(wanted), seed, progress)
+    begun = time.monotonic()
+    before = question.answer(line)
+    keep_time()
+    # So that the best design can still be judged wholly.
+    reserve = RESERVE * (time.monotonic() - begun)
+    found, best, tried, ended = _in_time(space, question, before, designs * len(wanted), seed, progress, reserve)
     after = _there(space, best)
     signs = np.array([-1.0 if aim.largest else 1.0 for aim in wanted])
     if progress:
@@ -110,7 +125,7 @@ def optimise(
         aims=tuple(aim.name for aim in wanted),
         aim_units=tuple(aim.unit for aim in wanted),
         largest=tuple(aim.largest for aim in wanted),
-        aim_before=np.array(question.answer(line).values),
+        aim_before=np.array(before.values),
         aim=signs * best.losses,
         front_value=np.array([space.values(one.shares) for one in found]),
         front=np.array([signs * one.losses for one in found]),
@@ -119,11 +134,72 @@ def optimise(
         designs=tried,
         seed=seed,
         findings=by_gravity(_findings(space, best, found)),
+        ended=ended,
     )
 
 
+def _in_time(
+    space: Space,
+    question: Question,
+    before: Answer,
+    most: int,
+    seed: int,
+    progress: Callable[[float], None] | None,
+    reserve: float,
+) -> tuple[list[Tried], Tried, int, str]:
+    """The front, the design to take, how many were computed, and what ended the search before it was done: a time
+    limit, of which ``reserve`` seconds are kept for judging the design. Where it left none, the line as it stands, of
+    which the answer is ``before``, if that lies within the bounds."""
+    made: list[Search] = []
+    try:
+        with time_kept(reserve, LEAST):
+            return *_searched(space, question, most, seed, progress, made), ""
+    except OutOfTime as error:
+        known = next((good for one in reversed(made) if (good := _possible(one))), [])
+        if not known:
+            known = _as_it_stands(space, question, before)
+        if not known:
+            raise
+        ended = error.why
+    count = sum(len(one.tried) for one in made)
+    found, best = _chosen(known)
+    with suppress(OutOfTime):  # the values of the search then stand, which are those of a coarser grid
+        best = _anew(Search(space, question, most, seed, None), best)
+    return (found if len(question.aims) > 1 else [best]), best, count, ended
+
+
+def _as_it_stands(space: Space, question: Question, before: Answer) -> list[Tried]:
+    stated = np.array([one.nominal for one in space.free])
+    if not (before.possible and np.allclose(space.values(space.start), stated, rtol=1e-9, atol=0.0)):
+        return []
+    signs = np.array([-1.0 if aim.largest else 1.0 for aim in question.aims])
+    return [Tried(space.start, before, signs * np.array(before.values))]
+
+
+def _possible(search: Search) -> list[Tried]:
+    """What a search has computed, without what cannot be."""
+    return [one for one in search.tried.values() if one.answer.possible]
+
+
+def _chosen(known: list[Tried]) -> tuple[list[Tried], Tried]:
+    """The front of what is known so far, and the design to take."""
+    if len(known[0].losses) == 1:
+        best = min(known, key=lambda one: (one.answer.violation, one.losses[0]))
+        return [best], best
+    found = thinned(nondominated(known), POINTS)
+    if not found:
+        nearest = min(known, key=lambda one: one.answer.violation)
+        return [nearest], nearest
+    return found, _balanced(found)
+
+
 def _searched(
-    space: Space, question: Question, most: int, seed: int, progress: Callable[[float], None] | None
+    space: Space,
+    question: Question,
+    most: int,
+    seed: int,
+    progress: Callable[[float], None] | None,
+    made: list[Search],
 ) -> tuple[list[Tried], Tried, int]:
     """The front, the design to take, and how many were computed.
 
@@ -133,16 +209,22 @@ def _searched(
     aims = replace(question, held=frozenset())
     before = 0
     if not aims.checking:
-        found, best, before = _by_aims(space, aims, most, seed, progress)
+        found, best, before = _by_aims(space, aims, most, seed, progress, made)
         if not question.checking or not any(question.answer(_there(space, one)).violation for one in found):
             return found, best, before
     search = Search(space, question, most, seed, progress)
+    made.append(search)
     found, best = _found(search)
     return found, best, before + len(search.tried)
 
 
 def _by_aims(
-    space: Space, question: Question, most: int, seed: int, progress: Callable[[float], None] | None
+    space: Space,
+    question: Question,
+    most: int,
+    seed: int,
+    progress: Callable[[float], None] | None,
+    made: list[Search],
 ) -> tuple[list[Tried], Tried, int]:
     """The same without checks. Of torques the load cases that come near the largest are searched alone; where another
     one turns out to bind, it is taken in and the search begins anew."""
@@ -150,6 +232,7 @@ def _by_aims(
     before = 0
     while True:
         search = Search(space, replace(question, cases=cases or None), most, seed, progress)
+        made.append(search)
         found, best = _found(search)
         before += len(search.tried)
         if not cases:
@@ -198,9 +281,14 @@ def _found(search: Search) -> tuple[list[Tried], Tried]:
         # Nothing holds all checks: the design that comes nearest to it.
         nearest = _anew(search, min(search.tried.values(), key=lambda one: one.answer.violation))
         return [nearest], nearest
+    return found, _balanced(found)
+
+
+def _balanced(found: list[Tried]) -> Tried:
+    """The design of a front that is nearest to the best of all aims."""
     losses = np.array([one.losses for one in found])
     off = (losses - losses.min(axis=0)) / np.maximum(np.ptp(losses, axis=0), 1e-300)
-    return found, found[int(np.argmin(np.hypot(off[:, 0], off[:, 1])))]
+    return found[int(np.argmin(np.linalg.norm(off, axis=1)))]
 
 
 def _span(line: Driveline, speeds: SpeedEnds | None, aims: Sequence[Aim]) -> tuple[float, float] | None:

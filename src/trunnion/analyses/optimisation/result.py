@@ -25,7 +25,8 @@ class Optimum(Result):
     computed anew on the full grid of speeds; largest (aim,): whether the largest was wanted; front_value (point, free)
     and front (point, aim): designs that no other one beats in all aims, by rising first aim (one point for one aim);
     broken: checks that the design violates, none where it holds all; assessment: of the design, None without speeds;
-    designs: how many were computed; seed: of the search.
+    designs: how many were computed; seed: of the search; ended: what ended the search before it was done, as a clause,
+    "" where it was done.
     """
 
     line: Driveline
@@ -47,6 +48,7 @@ class Optimum(Result):
     designs: int
     seed: int
     findings: tuple[Finding, ...] = ()
+    ended: str = ""
 
     @property
     def values(self) -> dict[str, float]:
@@ -60,7 +62,8 @@ class Optimum(Result):
             f"{name} {in_words(new, unit, 5)} instead of {in_words(old, unit, 5)}"
             for name, unit, old, new in zip(self.aims, self.aim_units, self.aim_before, self.aim, strict=True)
         )
-        return f"{reached}, with {self._chosen(self.value)}"
+        ended = f"; {self.ended} after {self.designs} designs, and a better one may be left" if self.ended else ""
+        return f"{reached}, with {self._chosen(self.value)}{ended}"
 
     def declared(self) -> Iterator[Held]:
         """Free numbers, aims, and the front over its points."""
@@ -77,7 +80,7 @@ class Optimum(Result):
         yield over("point free", "front_value", self.front_value, about="in the unit of the free number")
         yield over("point aim", "front", self.front, about="in the unit of the aim")
         yield remark("broken", list(self.broken))
-        yield from remarks_of(self, "designs", "seed", "sentence")
+        yield from remarks_of(self, "designs", "seed", "sentence", "ended")
         yield remark("findings", [str(f) for f in self.findings])
 
     def table(self) -> list[dict[str, object]]:

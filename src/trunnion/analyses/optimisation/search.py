@@ -17,6 +17,7 @@ from trunnion.analyses.assessment.subject import QUICK
 from trunnion.analyses.optimisation.aims import Answer, Question
 from trunnion.analyses.optimisation.space import Space
 from trunnion.arrays import Array
+from trunnion.waiting import keep_time
 
 BROKEN, REFUSED = 1e12, 1e18
 """Merit of what violates checks, and of what cannot be computed."""
@@ -73,14 +74,19 @@ class Search:
         shares = np.clip(np.asarray(shares, dtype=float), 0.0, 1.0)
         key = shares.tobytes()
         if key not in self.tried:
-            self.tried[key] = self._computed(shares, quick=True)
+            keep_time()
+            found = self._computed(shares, quick=True)
+            keep_time()  # what a limit cut short is no answer
+            self.tried[key] = found
             if self.progress:
                 self.progress(min(len(self.tried) / self.most, 0.99))
         return self.tried[key]
 
     def whole(self, shares: Array) -> Tried:
         """One design as ``assess`` judges it, computed anew."""
-        return self._computed(shares, quick=False)
+        found = self._computed(shares, quick=False)
+        keep_time()
+        return found
 
     def _computed(self, shares: Array, *, quick: bool) -> Tried:
         line = self.space.line(shares)

@@ -39,6 +39,7 @@ from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
+from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
     from trunnion.analyses.linear.own_motions import MotionsBySpeed
@@ -82,6 +83,7 @@ def order_spectrum(
     )
     parts: list[tuple[OrderSum, Array]] = []
     for done in range(0, len(speed), case.batch):
+        keep_time()
         parts.append(case.solved(case.numbers[done : done + case.batch]))
         if not done:
             _require_room(assembly, parts[0][0], len(speed))

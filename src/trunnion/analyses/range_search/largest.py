@@ -28,6 +28,7 @@ from trunnion.analyses.range_search.resonances import Resonances
 from trunnion.analyses.range_search.span import Piece
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
+from trunnion.waiting import OutOfTime
 
 POINTS = 65
 """Speeds of the even grid."""
@@ -76,12 +77,14 @@ class Quantity:
 @dataclass(frozen=True)
 class Largest:
     """Largest values (quantity,) over the speeds of ``response``, at which of them, and what each may be low by
-    (quantity,). Infinite where there is no steady state."""
+    (quantity,). Infinite where there is no steady state. ``ended``: what ended the search before it was done, as a
+    clause, "" where it was done; then nothing is known of what a value may be low by, and errors are infinite."""
 
     response: OrderResponse
     at: Array
     value: Array
     error: Array
+    ended: str = ""
 
 
 @dataclass(frozen=True)
@@ -152,16 +155,20 @@ def search(
 
     Raises
     ------
-    InputError, ComputationError : as of ``respond``.
+    InputError, ComputationError : as of ``respond``. OutOfTime : the time was up before the first speeds were known.
     """
     seen = _Seen(assembly, respond, quantities)
     seen.look([np.asarray(part) for part in first])
-    for _ in range(rounds):
-        wanted = seen.wanted(tolerance)
-        if not sum(map(len, wanted)):
-            break
-        seen.look(wanted)
-    seen.close_in()
+    try:
+        for _ in range(rounds):
+            wanted = seen.wanted(tolerance)
+            if not sum(map(len, wanted)):
+                break
+            seen.look(wanted)
+        seen.close_in()
+    except OutOfTime as error:
+        found = seen.largest(tolerance)
+        return replace(found, error=np.full(len(found.value), inf), ended=error.why)
     return seen.largest(tolerance)
 
 

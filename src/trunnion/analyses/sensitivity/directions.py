@@ -14,6 +14,7 @@ from trunnion.driveline.parameters import SPEED, Columns, PackedLine, Parameter
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.waiting import keep_time
 
 ANGLES = ("rad",)
 
@@ -108,6 +109,7 @@ def along_each(
     found = np.full((2, *shape, len(directions)), np.nan)
     for d, one in enumerate(directions):
         both = look(one)
+        keep_time()  # what a limit cut short is no derivative
         if both is not None:
             found[..., d] = np.array(both) / one.size
         if progress:

@@ -32,6 +32,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import keeps_time, time_is_up, to_the_end
 
 BATCH = {1: 48, 2: 24, 3: 8}
 """Boxes judged together, by unknowns: some 300 MB of matrices."""
@@ -50,7 +51,8 @@ class StabilityCertificate(Result):
     tolerances; counterexample: speed and values by parameter of a line that ``stability`` calls unstable; boxes: how
     many were judged; largest_radius: the largest multiplier at the middle of any box (a sample, no bound);
     undecided_low, undecided_high (boxes, 1 + parameters): what stays open, speed first, SI units; proved_low,
-    proved_high: what was proved; units of the parameters.
+    proved_high: what was proved; units of the parameters; ended: what ended the search before its last box, as a
+    clause, "" where nothing did.
     """
 
     parameters: tuple[str, ...]
@@ -67,6 +69,7 @@ class StabilityCertificate(Result):
     units: tuple[str, ...]
     unit: str
     findings: tuple[Finding, ...] = ()
+    ended: str = ""
 
     def declared(self) -> Iterator[Held]:
         """The verdict, the counterexample, and the boxes that stay open."""
@@ -80,7 +83,7 @@ class StabilityCertificate(Result):
         yield from fields_over("proved_box variable", self, proved_low="", proved_high="")
         yield over("", "largest_radius", self.largest_radius, "1", "largest multiplier at the middle of any box")
         yield from remarks_of(self, "verdict", "undecided_share")
-        yield from remarks(speeds=list(self.speeds), boxes=self.boxes)
+        yield from remarks(speeds=list(self.speeds), boxes=self.boxes, ended=self.ended)
 
     @property
     def ends(self) -> tuple[Array, Array]:
@@ -103,16 +106,19 @@ class StabilityCertificate(Result):
             head = f"not stable within {what}: at {at} the line with {values} is unstable"
         else:
             rest = "the rest is proved stable" if self.undecided_share < 1 else "no part of it is proved stable"
-            head = f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, {rest}"
+            ended = f"; {self.ended}" if self.ended else ""
+            head = f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
         return "\n".join([head, f"  {self.boxes} boxes", *(f"  {finding}" for finding in self.findings)])
 
 
+@keeps_time
 def certify_stability(
     line: Driveline | Assembly,
     tolerances: Tolerances | None = None,
     speeds: SpeedEnds | None = None,
     *,
     most_boxes: int = 20_000,
+    within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> StabilityCertificate:
     """Prove that no line within ``tolerances`` is unstable at any speed between ``speeds`` [rad/s], or find one that
@@ -125,6 +131,7 @@ def certify_stability(
         angle of a line's only joint. Normal distributions count as three standard deviations either way.
     speeds : lowest and highest [rad/s]; None for the range of the description.
     most_boxes : boxes judged before the rest is left undecided.
+    within : seconds after which the rest is left undecided, and ``ended`` says so.
 
     Raises
     ------
@@ -159,6 +166,7 @@ def certify_stability(
         units=tuple(s.unit for s in spreads),
         unit=speed_unit(assembly.line),
         findings=left_out("certify_stability", assembly.line),
+        ended=found.ended,
     )
 
 
@@ -215,6 +223,7 @@ class _Found:
     proved: Array
     boxes: int
     radius: float
+    ended: str = ""
 
 
 def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
@@ -226,15 +235,19 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
     proved = [np.zeros((0, 2, size))]
     batch_size, judged, radius = BATCH[space.assembly.topology.size], 0, 0.0
     while len(todo) and judged < most:
+        if ended := time_is_up():
+            return _Found(None, todo, np.concatenate(proved), judged, radius, ended)
         # The largest first: what is left when the budget ends is then as small as can be.
         order = np.argsort(-np.prod(todo[:, 1] - todo[:, 0], axis=1), kind="stable")
         batch, todo = todo[order[:batch_size]], todo[order[batch_size:]]
-        found = judge_boxes(space.assembly, *space.ends(batch))
+        with to_the_end():  # a batch takes a moment
+            found = judge_boxes(space.assembly, *space.ends(batch))
         judged, radius = judged + len(batch), max(radius, float(np.nanmax(found.radius)))
         left = batch[~found.proved]
         proved.append(batch[found.proved])
         for box in batch[found.radius > 1]:
-            example = _confirmed(space, box)
+            with to_the_end():
+                example = _confirmed(space, box)
             if example is not None:
                 return _Found(example, np.concatenate([left, todo]), np.concatenate(proved), judged, radius)
         todo = np.concatenate([todo, _halved(left, space.across(left, found.blame[~found.proved]))])

@@ -21,6 +21,7 @@ from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.declared import Held, Result, axis, over, remarks
+from trunnion.waiting import OutOfTime, time_is_up, to_the_end
 
 SECONDS = 30.0
 FEWEST, MOST = 4, 256
@@ -47,7 +48,8 @@ class CheckStudy(Result):
     (check,): share of lines in which it could be judged; decides (check,): whether the verdict rests on it; together
     and together_interval: that none of these is exceeded; lines: how many were judged, in ``seconds`` each;
     failed: how many could not be computed, which count as exceeding; worst: see ``WorstLine``; ranking: parameters by
-    the share of the scatter of the worst check's margin that a linear fit gives to each.
+    the share of the scatter of the worst check's margin that a linear fit gives to each; ended: what ended the study
+    before it was done, as a clause, "" where it was done.
     """
 
     check: tuple[str, ...]
@@ -64,6 +66,7 @@ class CheckStudy(Result):
     seconds: float
     worst: WorstLine | None
     ranking: tuple[tuple[str, float], ...]
+    ended: str = ""
 
     def declared(self) -> Iterator[Held]:
         """Probabilities by check, the worst line."""
@@ -116,7 +119,12 @@ def study_checks(
     seed: int,
     tell: Callable[[float], None],
 ) -> CheckStudy:
-    """Judge ``lines`` lines (None: as many as ``SECONDS`` allow) over ``speeds``; see ``tolerance_study``."""
+    """Judge ``lines`` lines (None: as many as ``SECONDS`` allow) over ``speeds``; see ``tolerance_study``.
+
+    Raises
+    ------
+    OutOfTime : the time was up before two scrambles, whose scatter is the interval, were judged.
+    """
     judge = _Judge(assembly, spreads, speeds)
     judge.of(np.full(len(spreads), 0.5))  # whatever the first of all takes to get going
     begun = perf_counter()
@@ -128,9 +136,17 @@ def study_checks(
         each //= 2
     shares = sobol(len(spreads), each, seed)
     found: list[dict[str, Check] | None] = []
-    for k, place in enumerate(shares):
-        found.append(judge.of(place))
-        tell((k + 1) / len(shares))
+    ended = ""
+    try:
+        for k, place in enumerate(shares):
+            found.append(judge.of(place))
+            tell((k + 1) / len(shares))
+    except OutOfTime as error:
+        ended = error.why
+        whole = len(found) // each
+        if whole < 2:
+            raise
+        shares, found = shares[: whole * each], found[: whole * each]
     computed = np.array([checks is not None for checks in found])
     every = [checks or {} for checks in found]
     names = tuple(dict.fromkeys(name for checks in every for name, own in checks.items() if own.judged))
@@ -147,7 +163,7 @@ def study_checks(
     decides = np.array([any(own[n].decides for own in every if n in own) for n in names], dtype=bool)
     together = holds[:, decides].all(axis=1) & computed
     worst, ranking = _worst(judge, shares, spare[:, decides], np.array(names)[decides].tolist())
-    grid = (SCRAMBLES, each)
+    grid = (len(shares) // each, each)
     return CheckStudy(
         names,
         holds.mean(axis=0),
@@ -163,6 +179,7 @@ def study_checks(
         seconds,
         worst,
         ranking,
+        ended,
     )
 
 
@@ -195,8 +212,9 @@ def _worst(
     slope = np.linalg.lstsq(np.column_stack([design, np.ones(len(design))]), spare[own, k], rcond=None)[0][:-1]
     candidates = [shares[at], *(shares[at] + part * (np.where(slope > 0, 0.0, 1.0) - shares[at]) for part in PARTS)]
     best: WorstLine | None = None
-    for place in candidates:
-        check = (judge.of(place) or {}).get(names[k])
+    for place in candidates if not time_is_up() else candidates[:1]:
+        with to_the_end():
+            check = (judge.of(place) or {}).get(names[k])
         if check is not None and np.isfinite(check.spare) and (best is None or check.spare < best.spare):
             best = WorstLine(numbers_at(judge.spreads, place), names[k], check.spare, check.because)
     scatter = float(spare[own, k].var())

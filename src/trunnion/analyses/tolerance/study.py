@@ -20,7 +20,7 @@ from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables, values_in_words
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Codes
 from trunnion.driveline.arguments import one_number, speeds_of, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
@@ -32,6 +32,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime, keeps_time, limited, time_is_up, to_the_end
 
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
@@ -62,7 +63,8 @@ class ToleranceStudy(Result):
     growth_rate (speeds, samples) of every sample [1/s], where the radius is smaller than its error that of the error,
     NaN where nothing is known of it; worst: by gradient from the fastest sample; ranking: parameters by the share of
     the scatter of the growth rate, at the speed where it is fastest, that each explains alone; checks: the same for the
-    checks of ``assess``, where they were asked for.
+    checks of ``assess``, where they were asked for; ended: what ended the study before it was done, as a clause, ""
+    where it was done.
     """
 
     parameters: tuple[str, ...]
@@ -81,6 +83,7 @@ class ToleranceStudy(Result):
     unit: str
     findings: tuple[Finding, ...] = ()
     checks: CheckStudy | None = None
+    ended: str = ""
 
     def declared(self) -> Iterator[Held]:
         """Tolerances with their ranking, shares over speed, the worst line."""
@@ -94,7 +97,7 @@ class ToleranceStudy(Result):
         yield axis("quantile", np.array(QUANTILES), "1")
         yield over("speed quantile", "growth_rate", np.nanquantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
         yield from remarks(probability=self.probability, interval=list(self.interval))
-        yield from remarks_of(self, "confidence", "undecided", "samples")
+        yield from remarks_of(self, "confidence", "undecided", "samples", "ended")
         yield from remarks(
             worst_speed=self.worst.speed,
             worst_growth_rate=self.worst.growth_rate,
@@ -116,7 +119,8 @@ class ToleranceStudy(Result):
         )
         lines = [
             f"stable {where} with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
-            f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances",
+            f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances"
+            f"{f'; {self.ended}, which left out the rest' if self.ended else ''}",
             f"  worst line found: {self.worst.verdict}, "
             f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
             f"{show_speed(self.worst.speed, self.unit)}, with {values_in_words(self.worst.values)}",
@@ -134,6 +138,7 @@ class ToleranceStudy(Result):
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 
+@keeps_time
 def tolerance_study(
     line: Driveline | Assembly,
     tolerances: Tolerances | None = None,
@@ -145,6 +150,7 @@ def tolerance_study(
     seed: int = 0,
     statically_twisted: bool = True,
     threads: int | None = None,
+    within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> ToleranceStudy:
     """The probability that a line within its tolerances is stable at every one of ``speeds`` [rad/s].
@@ -159,6 +165,7 @@ def tolerance_study(
         minute allows, or how many (rounded up to 16 powers of two, 64 to 4096).
     samples : lines in all, rounded up to 16 powers of two.
     seed : of the scrambles; the same seed gives the same numbers.
+    within : seconds that it may take; the lines judged until then are counted, and ``ended`` says so.
 
     Raises
     ------
@@ -182,27 +189,20 @@ def tolerance_study(
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip
     shares = sobol(len(spreads), each, seed)
-    growth, stable, undecided = (
-        np.empty((len(at), len(shares))),
-        np.ones(len(shares), bool),
-        np.zeros(len(shares), bool),
-    )
-    at_each = np.empty(len(at))
-    for k, speed in enumerate(at.tolist()):
-        table = tables(assembly, spreads, shares, speed)
-        _require_known(lines.judged(table[:FIRST], TOLERANCE), speed)
-        found = lines.judged(table, TOLERANCE)
-        growth[k] = lines.growth(table, found)
-        fine = np.isin(found.verdict, (Verdict.STABLE, Verdict.MARGINAL))
-        at_each[k] = fine.mean()
-        stable &= fine
-        undecided |= ~fine & (found.verdict != Verdict.UNSTABLE)
-        if progress:
-            progress((k + 1) / (len(at) + 1))
+    tell = progress or (lambda share: None)
+    growth, verdict, ended = _judged(lines, spreads, shares, at, tell)
+    shares = shares[: growth.shape[1]]
+    fine = np.isin(verdict, (Verdict.STABLE, Verdict.MARGINAL))
+    stable, at_each = fine.all(axis=0), fine.mean(axis=1)
+    undecided = np.any(~fine & (verdict != Verdict.UNSTABLE), axis=0)
     judged = None
-    if checks:
-        count, tell = None if checks is True else int(checks), progress or (lambda share: None)
-        judged = study_checks(assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, tell)
+    if checks and not ended:
+        count = None if checks is True else int(checks)
+        try:
+            judged = study_checks(assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, tell)
+            ended = judged.ended
+        except OutOfTime as error:
+            ended = error.why
     probability = float(stable.mean())
     fastest = int(np.nanmax(growth, axis=1).argmax())
     return ToleranceStudy(
@@ -212,7 +212,7 @@ def tolerance_study(
         at,
         len(shares),
         probability,
-        interval(stable.reshape(SCRAMBLES, each), confidence),
+        interval(stable.reshape(-1, each), confidence),
         confidence,
         float(undecided.mean()),
         at_each,
@@ -222,7 +222,38 @@ def tolerance_study(
         speed_unit(assembly.line),
         left_out("tolerance_study", assembly.line),
         judged,
+        ended,
     )
+
+
+def _judged(
+    lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, speeds: Array, tell: Callable[[float], None]
+) -> tuple[Array, Codes, str]:
+    """Growth rates and verdicts (speeds, samples) of all lines, or of as many scrambles as a time limit allows, and
+    what ended it then, as a clause.
+
+    Raises
+    ------
+    OutOfTime : the time was up before two scrambles, whose scatter is the interval, were judged.
+    """
+    each = len(shares) // SCRAMBLES
+    size = each if limited() else len(shares)
+    growth, verdict = np.empty((len(speeds), len(shares))), np.empty((len(speeds), len(shares)), dtype=np.int8)
+    for speed in speeds.tolist():
+        _require_known(lines.judged(tables(lines.assembly, spreads, shares[:FIRST], speed), TOLERANCE), speed)
+    for first in range(0, len(shares), size):
+        here = slice(first, first + size)
+        try:
+            for k, speed in enumerate(speeds.tolist()):
+                table = tables(lines.assembly, spreads, shares[here], speed)
+                found = lines.judged(table, TOLERANCE)
+                growth[k, here], verdict[k, here] = lines.growth(table, found), found.verdict
+                tell((first + size * (k + 1) / len(speeds)) / (len(shares) * (1 + 1 / len(speeds))))
+        except OutOfTime as error:
+            if first < 2 * each:
+                raise
+            return growth[:, :first], verdict[:, :first], error.why
+    return growth, verdict, ""
 
 
 def _require_known(found: Pixels, speed: float) -> None:
@@ -245,21 +276,26 @@ def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth:
         return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE))
 
     size = len(spreads)
-    for _ in range(CLIMBS):
+    for _ in range(0 if time_is_up() else CLIMBS):
         inside = np.clip(place, STEP, 1 - STEP)
         probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
-        found = rates(probes)
+        try:
+            found = rates(probes)
+        except OutOfTime:  # the fastest so far stands, as the study says that it was ended
+            break
         gradient = found[:size] - found[size:]
         corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
         parts = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01])[:, None]
         tried = place + parts * (corner - place)
-        reached = rates(tried)
+        with to_the_end():
+            reached = rates(tried)
         top = int(np.nanargmax(reached))
         if not reached[top] > best:
             break
         place, best = tried[top], float(reached[top])
     table = tables(lines.assembly, spreads, place[None], speed)
-    verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
+    with to_the_end():
+        verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
     return Worst(numbers_at(spreads, place), speed, best, verdict)
 
 

@@ -95,6 +95,13 @@ def unstable_intervals(region: Region, v: Array) -> list[Row]:
     return settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
 
 
+def unknown_row(region: Region, v: float) -> Row:
+    """A row of which nothing is known."""
+    none = np.zeros(0)
+    whole = np.array([[region.box.u0, region.box.u1]])
+    return Row(v, none, none, none, none.astype(np.int8), np.zeros((0, 2), bool), whole, none.astype(np.int8), ())
+
+
 def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
     """Rows with what lies in ``stretches`` (stretches, 2) of each row added to what was known of it."""
     known = [k for k, own in enumerate(stretches) if len(own)]

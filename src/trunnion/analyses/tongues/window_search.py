@@ -35,6 +35,7 @@ from trunnion.analyses.tongues.tongues import (
     regions_on,
 )
 from trunnion.arrays import Array
+from trunnion.waiting import OutOfTime, to_the_end
 
 ROUNDS = 6
 """Times that rows are put where columns are unstable and no region is known."""
@@ -74,8 +75,14 @@ class _Ways:
     words: Callable[[str, int], str]
 
 
-def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, list[Seen]]:
-    """Regions over speed and a parameter of a line, and the columns that confirm them."""
+def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, list[Seen], str]:
+    """Regions over speed and a parameter of a line, the columns that confirm them, and what ended the search before it
+    was done, as a clause: without columns nothing is confirmed.
+
+    Raises
+    ------
+    OutOfTime : the time was up before the rows were searched.
+    """
     family = task.family
     assert isinstance(family, LineFamily)
     if rows is None:
@@ -92,18 +99,25 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
     levels = np.unique(np.concatenate([levels, tops(some, met)]))
     regions = regions_on(ways.region, ways.rows, levels, lambda s: tell(0.3 + 0.3 * s))
     columns: list[Column] = []
-    for k in range(ROUNDS):
-        if len(places := np.setdiff1d(_places(ways.region, regions, resonances), [column.u for column in columns])):
-            columns += ways.columns(places)
-        wanted = np.unique([(a + b) / 2 for column in columns for a, b, _ in _left_out(ways.region, regions, column)])
-        tell(0.6 + 0.3 * (k + 1) / ROUNDS)
-        if not len(wanted):
-            break
-        regions = regions_on(ways.region, ways.rows, wanted, lambda s: None, regions.rows)
+    ended = ""
+    try:
+        for k in range(ROUNDS):
+            if len(places := np.setdiff1d(_places(ways.region, regions, resonances), [column.u for column in columns])):
+                columns += ways.columns(places)
+            left_out = [part for column in columns for part in _left_out(ways.region, regions, column)]
+            wanted = np.unique([(a + b) / 2 for a, b, _ in left_out])
+            tell(0.6 + 0.3 * (k + 1) / ROUNDS)
+            if not len(wanted):
+                break
+            regions = regions_on(ways.region, ways.rows, wanted, lambda s: None, regions.rows)
+    except OutOfTime as error:
+        ended = error.why
     words = ways.words
-    found = described(task, ways.region, ways.rows, regions, lambda apart, strands: words(apart, len(columns)))
+    with to_the_end():
+        found = described(task, ways.region, ways.rows, regions, lambda apart, strands: words(apart, len(columns)))
+        seen = [_seen(ways.region, regions, column) for column in columns]
     tell(1.0)
-    return found, [_seen(ways.region, regions, column) for column in columns]
+    return found, seen, ended
 
 
 def _completely(task: Task, family: LineFamily) -> bool:

@@ -26,6 +26,7 @@ from trunnion.errors import InputError
 from trunnion.results.declared import Held, Result, axis, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.speeds import show_speed
+from trunnion.waiting import keeps_time
 
 Progress = Callable[[float], None]
 
@@ -46,7 +47,8 @@ class StableWindows(Result):
     ends: what begins beyond each end of each window; low, high: the range searched; margin: by which share the speeds
     asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it;
     confirmed (speed,) [rad/s]: speeds at each of which the whole range was searched, and the windows found stable;
-    complete: whether every row and column was searched for every zero and told everywhere, and every tip confirmed.
+    complete: whether every row and column was searched for every zero and told everywhere, and every tip confirmed;
+    ended: what ended the search before it was done, as a clause, "" where it was done.
     """
 
     parameter: str
@@ -62,6 +64,7 @@ class StableWindows(Result):
     tongues: Tongues
     confirmed: Array
     complete: bool
+    ended: str = ""
 
     @property
     def largest(self) -> float | None:
@@ -85,11 +88,13 @@ class StableWindows(Result):
     def sentence_in(self, unit: str) -> str:
         """The answer in a sentence, speeds in ``unit``."""
         span = f"from {show_speed(self.speeds[0], unit)} to {show_speed(self.speeds[1], unit)}"
+        if self.ended and not len(self.confirmed):
+            return f"No {self.parameter} is known yet to keep every speed {span} stable: {self.ended}."
         if not len(self.windows):
             asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
             told = not self.tongues.unknown and not any(t.fades for t in self.tongues)
             known = "keeps" if told else "is known to keep"
-            return f"No {asked} {known} every speed {span} stable."
+            return f"No {asked} {known} every speed {span} stable{f'; {self.ended}' if self.ended else ''}."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
             begin = f"{self._value(low)}{_why(below, unit)}"
@@ -97,7 +102,7 @@ class StableWindows(Result):
         how = "confirmed" if self.complete else "checked"
         return (
             f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}; "
-            f"{how} at {len(self.confirmed)} speeds."
+            f"{how} at {len(self.confirmed)} speeds{f'; {self.ended}' if self.ended else ''}."
         )
 
     def _value(self, value: float) -> str:
@@ -122,6 +127,7 @@ class StableWindows(Result):
             complete=int(self.complete),
             confirmed=self.confirmed.tolist(),
             sentence=self.sentence,
+            ended=self.ended,
         )
 
     def plot(self, axes: Axes | None = None, *, unit: str | None = None, labelled: int = 12) -> Axes:
@@ -132,6 +138,7 @@ class StableWindows(Result):
         return "\n".join([self.sentence, f"  {self.search}", *(f"  note: {r}" for r in self.tongues.remarks)])
 
 
+@keeps_time
 def stable_windows(
     line: Driveline | Assembly,
     parameter: str | Parameter,
@@ -142,6 +149,7 @@ def stable_windows(
     margin: float = 0.0,
     rows: int | None = None,
     statically_twisted: bool = True,
+    within: float | None = None,
     progress: Progress | None = None,
 ) -> StableWindows:
     """The ranges of ``parameter`` between ``low`` and ``high`` in which every speed from one to another is stable.
@@ -152,6 +160,7 @@ def stable_windows(
     speeds : (lowest, highest) input speed [rad/s], or texts as ("300 rpm", "2400 rpm").
     margin : share by which the speeds are widened at either end, 0.1 for 10 %.
     rows : values of the parameter searched to begin with; by default 65, of lines of more than three unknowns 17.
+    within : seconds that it may take; no window is claimed then that no column confirmed, and ``ended`` says so.
 
     Raises
     ------
@@ -163,19 +172,20 @@ def stable_windows(
     assembly = assemble(line)
     span = (asked[0] * (1 - margin), asked[1] * (1 + margin))
     task = task_of(assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues")
-    found, columns = searched(
+    found, columns, ended = searched(
         task, None if rows is None else whole_number(rows, "rows", 3), progress or (lambda share: None)
     )
-    windows, ends = _free_of(found, columns)
+    windows, ends = _free_of(found, columns) if columns or not ended else (np.zeros((0, 2)), ())
     # A range that reaches below the slowest turn that can be computed was searched from there on.
     begin = asked[0] if found.x_range[0] <= span[0] * (1 + 1e-12) else found.x_range[0]
     return StableWindows(
         found.y_label, found.y_unit, windows, ends, (begin, asked[1]), float(margin),
         *found.y_range, found.search, speed_unit(assembly.line), found, np.sort([column.x for column in columns]),
-        found.complete and not any(column.left_out for column in columns),
+        found.complete and not ended and not any(column.left_out for column in columns), ended,
     )  # fmt: skip
 
 
+@keeps_time
 def minimum_damping(
     line: Driveline | Assembly,
     speeds: SpeedEnds,
@@ -184,6 +194,7 @@ def minimum_damping(
     maximum: float = 100.0,
     margin: float = 0.0,
     rows: int | None = None,
+    within: float | None = None,
     progress: Progress | None = None,
 ) -> StableWindows:
     """All ranges of damping, up to ``maximum``, that keep every speed from one to another stable.
@@ -193,6 +204,7 @@ def minimum_damping(
     damping : a factor of all damping that the line states by default, however it is stated, or the damping of one
         element, as "Shaft 2.damping".
     maximum : the largest value of it, in its unit (1 is what the line has where it is a factor).
+    within : seconds that it may take, as of ``stable_windows``.
 
     Raises
     ------

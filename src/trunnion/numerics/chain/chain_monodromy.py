@@ -20,6 +20,7 @@ from trunnion.numerics.chain.half_period import whole_periods
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.threads import on_threads
+from trunnion.waiting import keep_time
 
 MOST_STEPS = 200_000
 SMALL = 3
@@ -110,15 +111,17 @@ def _alike_together(lanes: ChainLanes) -> Places:
 
 
 def _in_pieces(run: Callable[[int, int], None], count: int, threads: int, few: int) -> None:
-    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together.
+    """Call run(first, last) over blocks of lanes, several pieces per thread: slow lanes stand together, and between
+    pieces a time limit is looked at.
 
     ``few`` lanes are done before other threads have begun.
     """
-    if threads <= 1 or count <= few:
+    if count <= few:
+        keep_time()
         run(0, count)
         return
     blocks = -(-count // LANES)
-    edges = np.unique(np.linspace(0, blocks, 8 * threads + 1).astype(int)) * LANES
+    edges = np.unique(np.linspace(0, blocks, 8 * max(threads, 1) + 1).astype(int)) * LANES
     pieces = [(int(a), min(int(b), count)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
     on_threads(lambda piece: run(*piece), pieces, threads)
 

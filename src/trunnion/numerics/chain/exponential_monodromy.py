@@ -19,6 +19,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
 from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.waiting import keep_time
 
 Rates = Callable[[Places, Array], Array]
 March = Callable[[Places, int], Array]
@@ -134,6 +135,7 @@ def marched(rates: Rates, which: Places, size: int, period: float, steps: int) -
         some = which[first : first + at_once]
         product = np.broadcast_to(np.eye(size), (len(some), size, size)).copy()
         for begin in range(0, steps, 16):
+            keep_time()
             count, h = min(16, steps - begin), period / steps
             tau = ((begin + np.arange(count))[:, None] + _NODES) * h
             a = rates(some, tau.ravel()).reshape(len(some), count, 3, size, size)

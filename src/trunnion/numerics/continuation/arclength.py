@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from trunnion.arrays import Array
+from trunnion.waiting import keep_time
 
 Equations = Callable[[Array], tuple[Array, Array]]
 """z (n + 1,) → residual (n,) and its Jacobian (n, n + 1); numbers that are not finite mean "not here"."""
@@ -163,6 +164,7 @@ def correct(
     y = np.asarray(predicted, dtype=float) / scale
     target, before = float(across @ y), np.inf
     for count in range(MOST_CORRECTIONS):
+        keep_time()
         residual, jacobian = equations(y * scale)
         matrix = np.vstack([jacobian * scale, across])
         # Both at once: the step, and the direction along the curve, on the side of ``across``.

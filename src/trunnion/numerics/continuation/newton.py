@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Flags, Places
 from trunnion.numerics.harmonics import solved
+from trunnion.waiting import keep_time
 
 Map = Callable[[Array], tuple[Array, Array]]
 """x → P(x) − x, (m,), and its derivative, (m, m); NaN where P cannot be computed."""
@@ -49,6 +50,7 @@ def solve(residual: Map, start: Array, scale: Array, *, tolerance: float, most: 
         done = size <= tolerance
         step = np.linalg.lstsq(slope * scale[None, :], -r, rcond=1e-13)[0] * scale
         for halving in range(7):
+            keep_time()
             trial = x + step / 2**halving
             r_new, slope_new = residual(trial)
             new = size_of(r_new, trial)
@@ -75,6 +77,7 @@ def solve_many(equations: Equations, start: Array, *, tolerance: float, most: in
     x, found = start.copy(), np.zeros(len(start), dtype=bool)
     before, left = np.full(len(x), np.inf), np.arange(len(x))
     for _ in range(most):
+        keep_time()
         residual, slope = equations(left, x[left])
         change = solved(slope, -residual)
         size = np.linalg.norm(change, axis=1)

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.numerics.compiled import kernel_file
+from trunnion.waiting import keep_time, time_is_up
 
 CHUNK = 4096
 MOST_STEPS = 1_000_000
@@ -38,6 +39,8 @@ class End(IntEnum):
     REFUSED = 6
     CHATTER = 7
     BEYOND = 8
+    OUT_OF_TIME = 9
+    """The time limit around it is over; only of an integration that keeps what it has."""
 
 
 _ALONG = (
@@ -145,6 +148,7 @@ def integrate(
     dense: bool = True,
     first_step: float = 0.0,
     longest_step: float = np.inf,
+    partly: bool = False,
 ) -> Trajectory:
     """Carry ``state`` from time ``start`` to ``end`` (later than ``start``).
 
@@ -157,6 +161,11 @@ def integrate(
     watch : functions whose zeros are located (and may stop the integration).
     dense : keep the coefficients for ``Trajectory.at`` (8n numbers a step).
     first_step : a first guess of the step; 0 finds one.
+    partly : keep what was computed where a time limit ends it, with ``End.OUT_OF_TIME``.
+
+    Raises
+    ------
+    OutOfTime : the time limit around it is over, unless ``partly``.
     """
     core, watch = kernel(), watch or Watch()
     n = equations.size
@@ -172,6 +181,8 @@ def integrate(
     first = y[:n].reshape(1, n).copy()
     parts: list[Trajectory] = []
     size = 256
+    if not partly:
+        keep_time()
     while True:
         room, events = size if dense else 0, size + 128 if len(sides) else 64
         kept = (
@@ -193,6 +204,10 @@ def integrate(
         parts.append(Trajectory(**found, final=y.reshape(1 + count, n), time=reached, end=End(code)))
         if code != End.FULL:
             return joined(parts)
+        if not partly:
+            keep_time()
+        elif time_is_up():
+            return replace(joined(parts), end=End.OUT_OF_TIME)
         size = CHUNK
 
 

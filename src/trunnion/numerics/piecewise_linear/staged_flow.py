@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.numerics.compiled import kernel_file
+from trunnion.waiting import keep_time
 
 MOST_EVENTS = 8192
 """Changes of stage in one call, unless told otherwise."""
@@ -113,6 +114,7 @@ def move(
     most_events: int = MOST_EVENTS,
 ) -> StagedPassage:
     """The motion from ``start`` to ``end``; ``times`` rise within it, ``watch`` fills ``seen``."""
+    keep_time()
     k, m = kernel(), flow.size
     z = np.array(state, dtype=float)
     z[m:] = z[m:][flow.source]

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.analyses.assessment.assess import checks_of, judgement, subject_of
 from trunnion.analyses.assessment.check import Check, Status, percent
 from trunnion.analyses.assessment.remedies.result import Remedies, Remedy
-from trunnion.analyses.assessment.remedies.search import Found, Search, goals_of
+from trunnion.analyses.assessment.remedies.search import Changes, Found, Search, goals_of
 from trunnion.analyses.assessment.remedies.trials import Trials
 from trunnion.analyses.assessment.remedies.variables import Design
 from trunnion.analyses.assessment.result import verdict_of
@@ -25,6 +25,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
 from trunnion.results.units import in_words
+from trunnion.waiting import OutOfTime, keeps_time, to_the_end
 
 NEAR = 0.1
 """Spare margin below which a check is nearly binding."""
@@ -33,6 +34,7 @@ MOVED = 0.02
 """Share by which a critical speed has to move to be named in a sentence."""
 
 
+@keeps_time
 def remedies(
     line: Driveline,
     speeds: SpeedEnds | None = None,
@@ -42,6 +44,7 @@ def remedies(
     checks: Iterable[str] | None = None,
     near: float = NEAR,
     most: int = MOST,
+    within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Remedies:
     """The smallest single changes of stiffness, inertia, damping, joint angle or phase that satisfy a check.
@@ -58,6 +61,7 @@ def remedies(
     checks : names of the checks to help; default all that decide and are exceeded or have less than ``near`` to spare.
     near : spare margin that a nearly binding check is to reach.
     most : changes to find for each check.
+    within : seconds that it may take; what was found until then is given, and ``ended`` says so.
     progress : called as progress(share done).
 
     Raises
@@ -74,7 +78,7 @@ def remedies(
     max torque of shaft: shaft stiffer by 11 % (11.1 kN*m/rad) moves order 2 on mode 2 from 1194 rpm to 1258 rpm: \
 margin 1.52 %
     """
-    subject = subject_of(line, speeds, load_case, unit)
+    subject = subject_of(line, speeds, load_case, unit, partly=True)
     return remedies_of(subject, checks_of(subject), checks=checks, near=near, most=most, progress=progress)
 
 
@@ -93,16 +97,23 @@ def remedies_of(
     design = Design(subject.line)
     by_name = {check.name: check for check in base}
     targets = [by_name[name] for name in goals]
-    slope, error, speed = _sensitivities(subject, design, targets)
-    found: list[Found] = []
-    closest: list[Found] = []
-    verified = ""
-    lines = 4 * len(targets) * len(design.variables)
-    if goals:
-        trials = Trials(subject, base, design, targets)
-        found, closest = Search(trials, goals, most, progress).run()
-        verified = trials.verified
-        lines += trials.count
+    changes, verified, lines = Changes([], [], ""), "", 0
+    slope, error = (np.full((len(targets), len(design.variables)), np.nan) for _ in range(2))
+    speed = np.full(len(targets), np.nan)
+    try:
+        # What a check follows takes far less time than what would help it.
+        slope, error, speed = _sensitivities(subject, design, targets)
+        lines += 4 * len(targets) * len(design.variables)
+        if goals:
+            trials = Trials(subject, base, design, targets)
+            changes = Search(trials, goals, most, progress).run()
+            verified = trials.verified
+            lines += trials.count
+    except OutOfTime as ending:
+        changes = replace(changes, ended=ending.why)
+    with to_the_end():
+        said = tuple(_remedy(subject, design, by_name[one.check], one) for one in changes.found)
+        closest = {one.check: _closest(one, by_name) for one in changes.closest}
     return Remedies(
         assessment=judged,
         checks=tuple(goals),
@@ -110,10 +121,11 @@ def remedies_of(
         sensitivity=slope,
         sensitivity_error=error,
         sensitivity_speed=speed,
-        remedies=tuple(_remedy(subject, design, by_name[one.check], one) for one in found),
-        closest={one.check: _closest(one, by_name) for one in closest},
+        remedies=said,
+        closest=closest,
         lines=lines,
         verified=verified,
+        ended=changes.ended,
     )
 
 

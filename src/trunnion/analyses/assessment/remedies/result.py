@@ -61,7 +61,8 @@ class Remedies(Result):
     d ln(value)/d ln p, of angles d ln(value)/dφ [1/rad], with sensitivity_error; sensitivity_speed (check,) [rad/s]:
     where it was taken; closest: for checks without a remedy the smallest change that would satisfy them, and what it
     breaks; assessment: of the line as it is; lines: how many were judged; verified: which checks of the
-    changed lines were judged anew, and where.
+    changed lines were judged anew, and where; ended: what ended the search before it was done, as a clause, "" where it
+    was done.
     """
 
     assessment: Assessment
@@ -74,6 +75,7 @@ class Remedies(Result):
     closest: dict[str, str]
     lines: int
     verified: str
+    ended: str = ""
 
     def of(self, check: str) -> tuple[Remedy, ...]:
         """What helps one check, smallest change first."""
@@ -94,17 +96,23 @@ class Remedies(Result):
     def sentences(self) -> tuple[str, ...]:
         """One sentence a remedy, or that there is none, for every check."""
         if not self.checks:
+            if self.assessment.ended:
+                return (f"nothing that is judged is exceeded or nearly binding; {self.assessment.ended}",)
             return ("no check is exceeded or nearly binding: nothing to remedy",)
         found = []
         for check in self.checks:
             known = self.of(check)
             found += [f"{check}: {remedy.sentence}" for remedy in known]
-            if not known:
+            if not known and self.ended:
+                found.append(f"{check}: no change was found that satisfies it and breaks no other check: {self.ended}")
+            elif not known:
                 none = (
                     f"{check}: no single change of up to a factor of two, 21 deg of a joint or half a turn of a phase "
                     "satisfies it and breaks no other check"
                 )
                 found.append("; ".join([none, *([self.closest[check]] if check in self.closest else [])]))
+            elif self.ended:
+                found.append(f"{check}: {self.ended}, so that other changes may help too")
         return tuple(found)
 
     def declared(self) -> Iterator[Held]:
@@ -124,7 +132,7 @@ class Remedies(Result):
         yield over("remedy", "remedy_verdict", [str(r.verdict) for r in self.remedies])
         yield over("remedy", "sentence", [r.sentence for r in self.remedies])
         yield remark("verdict", str(self.assessment.verdict))
-        yield from remarks_of(self, "lines", "verified")
+        yield from remarks_of(self, "lines", "verified", "ended")
 
     def __str__(self) -> str:
         rows = [

@@ -17,6 +17,7 @@ from trunnion.analyses.assessment.check import Check, Status
 from trunnion.analyses.assessment.remedies.trials import Checks, Trial, Trials
 from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
 from trunnion.numerics.threads import on_threads
+from trunnion.waiting import OutOfTime
 
 SIZES = (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7)
 """Sizes of changes tried; the largest is a factor of two."""
@@ -48,6 +49,16 @@ class Found:
         return abs(self.variable.size(self.value))
 
 
+@dataclass(frozen=True)
+class Changes:
+    """What a search found: changes that satisfy goals, smallest first; the closest where there is none; and what ended
+    it before it was done, as a clause, "" where it was done."""
+
+    found: list[Found]
+    closest: list[Found]
+    ended: str
+
+
 class Search:
     """Looks for changes of one line that satisfy its ``goals``: by check, the spare margin to reach."""
 
@@ -57,11 +68,22 @@ class Search:
         self.sizes: tuple[float, ...] = FEWER_SIZES if trials.costly else SIZES
         self.probes: tuple[float, ...] = PROBES[1:] if trials.costly else PROBES
 
-    def run(self) -> tuple[list[Found], list[Found]]:
+    def run(self) -> Changes:
         """The smallest changes for every goal, smallest first; of each variable the smaller direction. For goals
         without any, the smallest change that would do if it broke nothing."""
-        matter = self._that_matter()
         passed: dict[str, dict[str, Found]] = {name: {} for name in self.goals}
+        closest: list[Found] = []
+        ended = ""
+        try:
+            self._search(passed, closest)
+        except OutOfTime as error:
+            ended = error.why
+        found = [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
+        return Changes(found, closest, ended)
+
+    def _search(self, passed: dict[str, dict[str, Found]], closest: list[Found]) -> None:
+        """Fill in what is found, by goal and variable, and the closest of goals without any."""
+        matter = self._that_matter()
         last = 0.0
         for step, size in enumerate(self.sizes):
             open_goals = [name for name in self.goals if len(passed[name]) < self.most]
@@ -72,10 +94,10 @@ class Search:
                 self._step(name, matter[name], last, size, passed[name])
             last = size
             self._tell((step + 2) / (len(self.sizes) + 1))
+        for name in self.goals:
+            if not passed[name] and (one := self._closest(name, matter[name])):
+                closest.append(one)
         self._tell(1.0)
-        found = [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
-        closest = (self._closest(name, matter[name]) for name in self.goals if not passed[name])
-        return found, [one for one in closest if one]
 
     def _tell(self, share: float) -> None:
         if self.progress:

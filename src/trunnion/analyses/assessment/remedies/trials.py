@@ -23,6 +23,7 @@ from trunnion.analyses.assessment.separation import ONE as SEPARATION_OF_ONE
 from trunnion.analyses.assessment.separation import separation
 from trunnion.analyses.assessment.subject import QUICK, WHOLE, Case, Effort, Subject, cases_of
 from trunnion.driveline.driveline import Driveline
+from trunnion.waiting import keep_time
 
 WORSE = 1e-3
 """Share of a limit by which what is exceeded already may be exceeded more."""
@@ -121,6 +122,7 @@ class Trials:
         self, known: Known, variable: DesignVariable, value: float, judge: Callable[[Driveline], Trial]
     ) -> Trial | None:
         key = variable.path, value
+        keep_time()
         if key not in known:
             line = self.design.changed(variable, value)
             known[key] = None if line is None else judge(line)
