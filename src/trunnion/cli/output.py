@@ -130,7 +130,7 @@ def progress(what: str, within: str | None = None) -> Iterator[Callable[[float],
     Time spent on compiling, which happens once, is not taken for the pace of the work. What is computed inside ends
     ``within`` its time and on Ctrl-C with what it has, see ``stoppable``.
     """
-    with stoppable(within), compile_notice() as clock:
+    with stoppable(read_time(within, "--within")), compile_notice() as clock:
         if not sys.stderr.isatty():
             with _Lines(what, clock) as lines:
                 yield lines
@@ -293,17 +293,17 @@ def stopped() -> bool:
 
 
 @contextmanager
-def stoppable(within: str | None = None) -> Iterator[TimeLimit]:
-    """What is computed inside ends ``within`` its time ("30 s"), and on Ctrl-C, with what it has.
+def stoppable(seconds: float | None = None) -> Iterator[TimeLimit]:
+    """What is computed inside ends within its time, and on Ctrl-C, with what it has.
 
     A second Ctrl-C, or one that nothing has answered after some seconds, ends the command at once.
 
     Raises
     ------
-    InputError : no positive time. KeyboardInterrupt : it was stopped before anything was known.
+    KeyboardInterrupt : it was stopped before anything was known.
     """
     global _stopped
-    with time_limit(read_time(within, "--within")) as limit, _first_ctrl_c(limit):
+    with time_limit(seconds) as limit, _first_ctrl_c(limit):
         try:
             yield limit
         except OutOfTime:

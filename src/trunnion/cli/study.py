@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -23,13 +24,19 @@ from trunnion.cli.options import (
     read_line,
     read_points,
     read_speed,
+    read_time,
 )
 from trunnion.cli.places import DEFAULT_FOLDER, answer, check_places, deliver, write_result
+from trunnion.waiting import TimeLimit, to_the_end
 
 if TYPE_CHECKING:
     from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
     from trunnion.reporting.report import Report
+
+
+REST, LEAST = 20.0, 0.05
+"""Seconds that report and chart may take where no time is given, and at least where it is."""
 
 
 def analyze(
@@ -49,30 +56,49 @@ def analyze(
     points: Annotated[
         str | None, typer.Option("--points", metavar="NXxNY", help="Of the chart; default as its picture needs.")
     ] = None,
+    within: Annotated[
+        str | None,
+        typer.Option(
+            "--within",
+            metavar="TIME",
+            help='End within this time, "30 s" say, with what is known by then; default: as long as the verdict '
+            "takes, then 20 s.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
+    begun = time.monotonic()
     line, unit = read_case(file, unit, load_case)
     size, at = read_points(points) if points else None, read_speed(speed, unit)
+    seconds = read_time(within, "--within")
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_answer, print_overview
     from trunnion.reporting.answer import answer as answer_of
 
     check_report(to)
-    with output.compile_notice():
+    with output.progress("verdict", within):
         given = answer_of(line, speed=at, unit=unit)
     if not as_json:
         print_answer(given)
-    seen, written = _reported(given, file, to, size)
+    left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
+    with output.stoppable(left) as limit:
+        seen, left_out, written = _reported(given, file, to, size, limit)
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
     print_overview(seen, given)
+    if left_out:
+        output.heading("Left out of the report")
+    for sentence in left_out:
+        output.say(f"  {sentence}")
     output.written(written)
 
 
-def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) -> tuple[Overview, list[Path]]:
-    """Write the report, then once more with the chart: what is interrupted leaves the first."""
+def _reported(
+    given: Answer, file: str, to: Path, size: tuple[int, int] | None, limit: TimeLimit
+) -> tuple[Overview, tuple[str, ...], list[Path]]:
+    """Write the report, then once more with the chart: what is interrupted leaves the first. Also what it left out."""
     from trunnion.reporting.overview import at_speed, charted
     from trunnion.reporting.report import report
 
@@ -81,11 +107,14 @@ def _reported(given: Answer, file: str, to: Path, size: tuple[int, int] | None) 
         page = report(seen, source=file, progress=advance)
     written = _written(page, to, file)
     if not seen.chartable:
-        return seen, written
+        return seen, page.contents.left_out, written
     try:
         with output.progress("stability chart") as advance:
             seen = charted(seen, size, advance)
-        return seen, _written(page.charted(seen), to, file)
+        if limit.stopped:
+            raise KeyboardInterrupt
+        with to_the_end():
+            return seen, page.contents.left_out, _written(page.charted(seen), to, file)
     except KeyboardInterrupt:
         kept = f"the report without its chart is in {', '.join(map(str, written))}"
         raise KeyboardInterrupt(kept) from None

@@ -41,7 +41,7 @@ from trunnion.reporting.overview_findings import (
 from trunnion.reporting.ranges import speed_range
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.waiting import OutOfTime
+from trunnion.waiting import OutOfTime, time_is_up
 
 NEARLY = 0.1
 """Spare margin below which a check deserves a word though it is satisfied."""
@@ -183,6 +183,9 @@ def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:
     inside = {check.name for check in assessment.checks if check.exceeded}
     found = []
     for ends, side in (((1 - BEYOND) * low, low), "below"), ((high, (1 + BEYOND) * high), "above"):
+        if why := time_is_up():
+            found.append(Finding(Gravity.NOTE, f"{_just(side)} nothing was searched: {why}."))
+            continue
         if not 0 < ends[0] < ends[1]:
             continue
         cases = [replace(case, low=ends[0], high=ends[1], effort=QUICK) for case in subject.cases]

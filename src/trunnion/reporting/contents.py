@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from math import inf
 from typing import TypeVar
 
 import numpy as np
@@ -26,8 +28,11 @@ from trunnion.reporting.overview import Overview
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import rounded_speed
+from trunnion.waiting import OutOfTime, time_kept
 
 Found = TypeVar("Found")
+HELPED = inf, 0.4
+"""Of a time limit around a report, what the search for remedies leaves to the chart, and the share that it takes."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,9 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         except (InputError, ComputationError) as error:
             left_out.append(f"{question}: {error}")
             return None
+        except OutOfTime as error:
+            left_out.append(f"{question}: not computed, {error.why}")
+            return None
 
     turn = sweep = None
     if hooke_joints(seen.line):
@@ -67,6 +75,9 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
+    helped = _helped(seen)
+    if helped is not None and helped.ended:
+        left_out.append(f"Remedies: {helped.ended} before all was tried; assess --remedies looks further")
     more = [
         *(_torque_findings(sweep, seen) if sweep else []),
         *load_findings(loaded, seen.unit),
@@ -80,7 +91,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         bending=bending,
         loaded=loaded,
         campbell=campbell,
-        helped=_helped(seen),
+        helped=helped,
         findings=by_gravity([*seen.findings, *more]),
         left_out=tuple(left_out),
     )
@@ -90,7 +101,9 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
 def with_chart(contents: Contents, seen: Overview) -> Contents:
     """The same with the chart of ``seen`` and the limit angle that follows from it."""
     before = {finding.sentence for finding in contents.findings}
-    limit = _limit(seen, resonance_speeds(seen.assembly))
+    limit = None
+    with suppress(OutOfTime):  # the chart stands without it
+        limit = _limit(seen, resonance_speeds(seen.assembly))
     more = [*seen.findings, *(_limit_findings(limit, seen) if limit else [])]
     new = [finding for finding in more if finding.sentence not in before]
     return replace(contents, overview=seen, limit=limit, findings=by_gravity([*contents.findings, *new]))
@@ -102,7 +115,8 @@ def _helped(seen: Overview) -> Remedies | None:
     if not any(c.exceeded or (c.satisfied and c.spare < NEARLY) for c in checks):
         return None
     try:
-        return remedies_of(seen.subject, checks)
+        with time_kept(*HELPED):
+            return remedies_of(seen.subject, checks)
     except (InputError, ComputationError):  # help beyond the answer, which stands without it
         return None
 

@@ -24,8 +24,9 @@ from trunnion.reporting.answer import Answer, answer
 from trunnion.reporting.overview_findings import chart_findings
 from trunnion.reporting.ranges import angle_range
 from trunnion.results.chart import StabilityChart
-from trunnion.results.finding import by_gravity
+from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
 
 ALL_ANGLES = "HookeJoint *.angle"
 FINE, COARSE = (200, 150), (56, 32)
@@ -90,8 +91,13 @@ def overview(
 def at_speed(given: Answer) -> Overview:
     """An answer with what belongs to the operating speed, without the chart."""
     judged = given.speed is not None and not lossy(given.assembly)  # which the findings say
-    here = stability(given.assembly, given.speed) if judged and given.speed is not None else None
-    said = here.findings_in(given.unit) if here else ()
+    here, said = None, ()
+    try:
+        if judged and given.speed is not None:
+            here = stability(given.assembly, given.speed)
+            said = here.findings_in(given.unit)
+    except OutOfTime as error:
+        said = (Finding(Gravity.CAUTION, f"Stability at the operating speed was not computed: {error.why}."),)
     known = {finding.sentence for finding in given.findings}
     new = [finding for finding in said if finding.sentence not in known]
     whole = {**vars(given), "findings": by_gravity([*new, *given.findings])}
@@ -107,13 +113,17 @@ def at_speed(given: Answer) -> Overview:
 def charted(
     seen: Overview, points: tuple[int, int] | None = None, progress: Callable[[float], None] | None = None
 ) -> Overview:
-    """An overview with its chart, if it is to have one."""
+    """An overview with its chart, if it is to have one and the time allows."""
     if not seen.chartable:
         return seen
     low, high = seen.speed_range
-    across, up = points or (FINE if _has_borders(seen) else COARSE)
-    axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
-    chart = chart_of_report(seen.assembly, *axes, TOLERANCE, progress)
+    try:
+        across, up = points or (FINE if _has_borders(seen) else COARSE)
+        axes = ("speed", low, high, across), (ALL_ANGLES, *seen.angle_range, up)
+        chart = chart_of_report(seen.assembly, *axes, TOLERANCE, progress)
+    except OutOfTime as error:
+        left = Finding(Gravity.NOTE, f"The stability chart was not computed: {error.why}; ask stability-chart for it.")
+        return replace(seen, findings=by_gravity([*seen.findings, left]))
     return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
 
 

@@ -21,6 +21,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import about_speed, rounded_span, rounded_speed, speed_factor
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
 
 if TYPE_CHECKING:
     from trunnion.results.chart import StabilityChart
@@ -140,7 +141,7 @@ def response_findings(
     usual = np.linspace(low, high, 2 * len(forced) + 9)
     try:
         sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
-    except (InputError, ComputationError):  # without a linear response, which the checks say
+    except (InputError, ComputationError, OutOfTime):  # without a linear response, which the checks say
         return
     torque = sweep.torque_amplitude[: len(places)]
     raised = torque / np.maximum(np.median(sweep.torque_amplitude[len(places) :], axis=0), 1e-300)

@@ -9,6 +9,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.errors import ComputationError, InputError
 from trunnion.results.finding import Finding, Gravity
+from trunnion.waiting import OutOfTime
 
 AS_DESCRIBED = "as described"
 
@@ -35,6 +36,9 @@ def loaded_motions(line: Driveline, speed: float | None) -> tuple[tuple[LoadedMo
             response = periodic_response(loaded, speed)
         except (InputError, ComputationError) as error:
             left_out.append(f"Motion under load ({name}): {error}")
+            continue
+        except OutOfTime as error:
+            left_out.append(f"Motion under load ({name}): not computed, {error.why}")
             continue
         assert isinstance(response, PeriodicResponse)
         if response.outcome.ok:
