@@ -34,12 +34,12 @@ class OutOfTime(TrunnionError):
 class TimeLimit:
     """How long what is computed inside may take; ``stop`` ends it at once.
 
-    seconds: allowed, None for any; noticed: whether a computation has ended by it.
+    seconds: allowed, None for any; noticed: whether a computation has ended by it; clock: what tells the time [s].
     """
 
-    def __init__(self, seconds: float | None = None) -> None:
-        self.seconds = seconds
-        self.ends = inf if seconds is None else time.monotonic() + seconds
+    def __init__(self, seconds: float | None = None, clock: Callable[[], float] = time.monotonic) -> None:
+        self.seconds, self.clock = seconds, clock
+        self.ends = inf if seconds is None else clock() + seconds
         self.stopped = self.noticed = False
         self.outer = _LIMIT.get()
 
@@ -50,18 +50,18 @@ class TimeLimit:
     @property
     def over(self) -> bool:
         """Whether the time is up or an end was asked for, of this limit or one around it."""
-        return self.stopped or time.monotonic() >= self.ends or (self.outer is not None and self.outer.over)
+        return self.stopped or self.clock() >= self.ends or (self.outer is not None and self.outer.over)
 
     @property
     def left(self) -> float:
         """Seconds left, infinite without a limit."""
         outer = inf if self.outer is None else self.outer.left
-        return 0.0 if self.stopped else max(min(self.ends - time.monotonic(), outer), 0.0)
+        return 0.0 if self.stopped else max(min(self.ends - self.clock(), outer), 0.0)
 
     @property
     def why(self) -> str:
         """What ended the search, as a clause."""
-        if not self.stopped and time.monotonic() < self.ends and self.outer is not None:
+        if not self.stopped and self.clock() < self.ends and self.outer is not None:
             return self.outer.why
         if self.stopped or self.seconds is None:
             return "the search was stopped"
@@ -78,12 +78,14 @@ _LIMIT: ContextVar[TimeLimit | None] = ContextVar("time_limit", default=None)
 
 
 @contextmanager
-def time_limit(seconds: float | None = None) -> Iterator[TimeLimit]:
+def time_limit(seconds: float | None = None, *, of_processor: bool = False) -> Iterator[TimeLimit]:
     """A limit for everything that is computed inside; of limits within one another the one that ends first counts.
 
     Parameters
     ----------
     seconds : allowed; None for as long as it takes, or until ``stop`` of what it gives is called.
+    of_processor : whether they are counted while this process computes, all its threads together, so that a busy
+        machine leaves out no more than an idle one.
 
     Raises
     ------
@@ -99,7 +101,7 @@ def time_limit(seconds: float | None = None) -> Iterator[TimeLimit]:
     """
     if seconds is not None and not (_is_number(seconds) and 0 < seconds < inf):
         raise InputError("must be a positive time", key="within", value=seconds, remedy="seconds, 30.0 say")
-    limit = TimeLimit(seconds)
+    limit = TimeLimit(seconds, time.process_time if of_processor else time.monotonic)
     token = _LIMIT.set(limit)
     try:
         yield limit
@@ -148,9 +150,9 @@ def time_kept(reserve: float, share: float) -> Iterator[None]:
     """The limit around it ends ``reserve`` seconds earlier inside, for what is to be done with the outcome; at least a
     ``share`` of the time left stays."""
     outer = _LIMIT.get()
-    limit = TimeLimit(None if outer is None else outer.seconds)
+    limit = TimeLimit() if outer is None else TimeLimit(outer.seconds, outer.clock)
     if outer is not None and outer.left < inf:
-        limit.ends = time.monotonic() + max(outer.left - reserve, share * outer.left)
+        limit.ends = limit.clock() + max(outer.left - reserve, share * outer.left)
     token = _LIMIT.set(limit)
     try:
         yield

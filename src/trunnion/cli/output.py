@@ -293,8 +293,8 @@ def stopped() -> bool:
 
 
 @contextmanager
-def stoppable(seconds: float | None = None) -> Iterator[TimeLimit]:
-    """What is computed inside ends within its time, and on Ctrl-C, with what it has.
+def stoppable(seconds: float | None = None, *, of_processor: bool = False) -> Iterator[TimeLimit]:
+    """What is computed inside ends within its time, see ``time_limit``, and on Ctrl-C, with what it has.
 
     A second Ctrl-C, or one that nothing has answered after some seconds, ends the command at once.
 
@@ -303,7 +303,7 @@ def stoppable(seconds: float | None = None) -> Iterator[TimeLimit]:
     KeyboardInterrupt : it was stopped before anything was known.
     """
     global _stopped
-    with time_limit(seconds) as limit, _first_ctrl_c(limit):
+    with time_limit(seconds, of_processor=of_processor) as limit, _first_ctrl_c(limit):
         try:
             yield limit
         except OutOfTime:

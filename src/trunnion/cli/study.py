@@ -35,8 +35,10 @@ if TYPE_CHECKING:
     from trunnion.reporting.report import Report
 
 
+DRAWN = 3.0
+"""Seconds that the pictures of a report take: with less left than that none is made."""
 REST, LEAST = 20.0, 0.05
-"""Seconds that report and chart may take where no time is given, and at least where it is."""
+"""Seconds of processor time that report and chart may take where no time is given; seconds at least where it is."""
 
 
 def analyze(
@@ -62,7 +64,7 @@ def analyze(
             "--within",
             metavar="TIME",
             help='End within this time, "30 s" say, with what is known by then; default: as long as the verdict '
-            "takes, then 20 s.",
+            "takes, then 20 s of processor time.",
         ),
     ] = None,
     as_json: Json = False,
@@ -75,6 +77,7 @@ def analyze(
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_answer, print_overview
     from trunnion.reporting.answer import answer as answer_of
+    from trunnion.reporting.overview import at_speed
 
     check_report(to)
     with output.progress("verdict", within):
@@ -82,8 +85,12 @@ def analyze(
     if not as_json:
         print_answer(given)
     left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-    with output.stoppable(left) as limit:
-        seen, left_out, written = _reported(given, file, to, size, limit)
+    with output.stoppable(left, of_processor=seconds is None) as limit:
+        if left < DRAWN:
+            seen, written = at_speed(given), list[Path]()
+            left_out: tuple[str, ...] = (f"The report itself: the time limit of {within} left no time to draw it",)
+        else:
+            seen, left_out, written = _reported(given, file, to, size, limit)
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return

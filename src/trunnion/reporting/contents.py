@@ -70,8 +70,10 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
     turn = sweep = None
     if hooke_joints(seen.line):
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
-        speeds = sweep_speeds(assembly, low, high)
-        sweep = unless_refused("Torque over speed", lambda: speed_sweep(assembly, speeds, progress=progress))
+        sweep = unless_refused(
+            "Torque over speed",
+            lambda: speed_sweep(assembly, sweep_speeds(assembly, low, high), progress=progress),
+        )
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)

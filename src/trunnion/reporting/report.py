@@ -24,6 +24,7 @@ from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
 from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.waiting import to_the_end
 from trunnion.writing import written_whole
 
 
@@ -91,8 +92,9 @@ def report(
     )
     contents = gather(seen)
     path = None if source is None else Path(source)
-    shown = pictures(contents)
-    return Report(_page(contents, shown, path), contents, shown, path)
+    with to_the_end():  # what there is is drawn
+        shown = pictures(contents)
+        return Report(_page(contents, shown, path), contents, shown, path)
 
 
 def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None) -> str:
