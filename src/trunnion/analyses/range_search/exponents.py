@@ -28,6 +28,7 @@ from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.topology import require_period
+from trunnion.waiting import keep_time
 
 REACH = 2
 """Layers of side orders about the mode's own: what is left out shifts it by the fourth power of the joints' spread."""
@@ -94,6 +95,7 @@ def meeting_exponents(
     both = replace(sides, harmonics=np.union1d(sides.harmonics, sides.harmonics + away))
     found = np.full((len(table), 2), np.nan, dtype=complex)
     for some in _batches(np.arange(len(table)), both, assembly):
+        keep_time()
         blocks = _Blocks(assembly, both, table[some])
         partner = starts[1][some].conj() + 1j * float(cycles) * table[some, 0]
         x = np.zeros((len(some), len(both.harmonics), assembly.topology.size, 2), dtype=complex)
@@ -133,6 +135,7 @@ class _Blocks:
 
     def step_from(self, value: Complex, x: Complex) -> Complex:
         """A⁻¹A′x of x (case, m, …)."""
+        keep_time()
         right = self.slope(value) @ x
         try:
             return np.asarray(np.linalg.solve(self.at(value), right))
