@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import http.client
+import re
 import signal
 import socket
 import subprocess
@@ -18,22 +19,45 @@ from served import ROOT, Server, start_server
 from trunnion.app.serve import left
 
 
-def ask(server: Server, path: str = "/", **headers: str) -> tuple[int, str]:
-    """Status and text of a request with the given headers."""
+def answer(server: Server, path: str = "/", method: str = "GET", **headers: str) -> tuple[int, str, dict[str, str]]:
+    """Status, text and headers of what a request with the given headers is answered."""
     name, _, port = server.host.partition(":")
     connection = http.client.HTTPConnection(name, int(port), timeout=120)
-    connection.putrequest("GET", path, skip_host=True)
+    connection.putrequest(method, path, skip_host=True)
     for key, value in ({"Host": server.host} | {k.replace("_", "-"): v for k, v in headers.items()}).items():
         connection.putheader(key, value)
     connection.endheaders()
-    answer = connection.getresponse()
-    return answer.status, answer.read().decode("utf-8", "replace")
+    got = connection.getresponse()
+    return got.status, got.read().decode("utf-8", "replace"), {k.lower(): v for k, v in got.getheaders()}
 
 
-def test_own_page_is_served(server: Server) -> None:
-    status, text = ask(server)
+def ask(server: Server, path: str = "/", **headers: str) -> tuple[int, str]:
+    """Status and text of a request with the given headers."""
+    return answer(server, path, **headers)[:2]
+
+
+def test_own_page_is_served_with_a_policy_that_lets_no_other_script_run(server: Server) -> None:
+    status, text, headers = answer(server)
     assert status == 200
-    assert "Content-Security-Policy" in text
+    policy = dict(part.split(" ", 1) for part in headers["content-security-policy"].split("; "))
+    nonce = re.search(r"'nonce-([\w-]{20,})'", policy["script-src"])
+    assert nonce and policy["script-src"] == f"'self' blob: {nonce.group()}"
+    assert policy["default-src"] == policy["frame-ancestors"] == policy["base-uri"] == policy["form-action"] == "'none'"
+    assert "http:" not in headers["content-security-policy"] and "'unsafe-eval'" not in policy.values()
+    scripts = re.findall("<script[^>]*>", text)
+    assert len(scripts) > 3 and all(f'nonce="{nonce.group(1)}"' in script for script in scripts)
+    assert nonce.group() not in answer(server)[2]["content-security-policy"]
+    assert headers["x-frame-options"] == "DENY" and headers["cache-control"] == "no-store"
+
+
+@pytest.mark.parametrize("path", ["/", "/static/js/bokeh.min.js", "/download/x/driveline/driveline.toml", "/nowhere"])
+@pytest.mark.parametrize("site", ["same-origin", "cross-site"])
+def test_every_answer_carries_the_headers_that_browsers_go_by(server: Server, path: str, site: str) -> None:
+    headers = answer(server, path, Sec_Fetch_Site=site)[2]
+    assert headers["x-content-type-options"] == "nosniff"
+    assert headers["referrer-policy"] == "same-origin"
+    assert headers["cross-origin-resource-policy"] == headers["cross-origin-opener-policy"] == "same-origin"
+    assert "frame-ancestors 'none'" in headers["content-security-policy"]
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1", "0.0.0.0:1", ""])
@@ -47,6 +71,73 @@ def test_foreign_origin_is_refused(server: Server, origin: str) -> None:
     assert ask(server, Origin=origin)[0] == 403
     upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
     assert ask(server, "/ws", Origin=origin, Sec_WebSocket_Key="AAAAAAAAAAAAAAAAAAAAAA==", **upgrade)[0] == 403
+
+
+OWN_NAMES = ("127.0.0.1", "localhost", "[::1]", "127.0.0.2", "127.0.0.1.evil.example", "evil.example")
+FOREIGN = [f"{scheme}://{name}{port}" for scheme in ("http", "https") for name in OWN_NAMES for port in ("", ":1")]
+FOREIGN += [
+    "null",
+    "",
+    "file://",
+    "http://",
+    "ws://127.0.0.1",
+    "chrome-extension://abc",
+    "http://127.0.0.1:{port}.evil.example",
+]
+FOREIGN += ["https://127.0.0.1:{port}", "http://user@127.0.0.1:{port}", "ftp://localhost:{port}"]
+
+
+def test_no_page_of_another_origin_gets_an_answer_whatever_it_asks_for(server: Server) -> None:
+    """Each of more than thirty origins, with a page, its socket, a file and the script that hands out sessions."""
+    port = server.host.partition(":")[2]
+    upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
+    upgrade |= {"Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA==", "Sec-WebSocket-Protocol": "bokeh"}
+    assert len(FOREIGN) > 30
+    for origin in FOREIGN:
+        there = origin.format(port=port)
+        for path, more in (("/?view=verdict", {}), ("/ws", upgrade), ("/download/x/verdict/view.py", {}),
+                           ("/autoload.js?bokeh-autoload-element=x", {}), ("/static/js/bokeh.min.js", {})):  # fmt: skip
+            status, text = ask(server, path, Origin=there, **more)
+            assert (status, "token" in text, "Bokeh" in text) == (403, False, False), (there, path)
+    assert ask(server, "/ws", Sec_WebSocket_Origin="http://evil.example", **upgrade)[0] == 403
+
+
+DESTINATIONS = {
+    "no-cors": ("image", "script", "style", "audio", "video", "font", "object", "embed", "empty", "worker", "manifest"),
+    "cors": ("empty", "script", "track", "xslt"),
+    "navigate": ("iframe", "frame", "object", "embed", "document"),
+    "websocket": ("empty",),
+}
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site", "Cross-Site"])
+def test_what_another_site_has_the_browser_ask_for_is_refused(server: Server, site: str) -> None:
+    """Pictures, scripts, framings: nothing is computed, and no session begun. A link says first where it leads."""
+    query = "/?view=verdict&line=eJw%27%22%3E%3Cscript%3E"
+    for mode, destinations in DESTINATIONS.items():
+        for destination in destinations:
+            asked = {"Sec-Fetch-Site": site, "Sec-Fetch-Mode": mode, "Sec-Fetch-Dest": destination}
+            status, text = ask(server, query, **asked)
+            assert (status, "token" in text, "<script" in text) == (403, False, False), asked
+            link = (mode, destination) == ("navigate", "document")
+            assert (f"<a href='{query.replace('&', '&amp;')}'>Open it in Trunnion</a>" in text) == link
+    assert ask(server, Referer="https://mail.example/inbox")[0] == 403
+    assert ask(server, Referer="http://[")[0] == 403
+
+
+def test_own_pages_bookmarks_and_other_programs_are_answered(server: Server) -> None:
+    for site in ("same-origin", "none"):
+        assert ask(server, Sec_Fetch_Site=site, Sec_Fetch_Mode="navigate", Sec_Fetch_Dest="document")[0] == 200
+    assert ask(server, Referer=f"http://{server.host}/?view=verdict")[0] == 200
+    assert ask(server)[0] == 200
+
+
+@pytest.mark.parametrize("path", ["/autoload.js", "/metadata", "/liveness", "/autoload.js?bokeh-autoload-element=1"])
+def test_no_address_hands_a_session_to_whoever_asks(server: Server, path: str) -> None:
+    for method in ("GET", "OPTIONS", "HEAD", "POST"):
+        status, text, headers = answer(server, path, method)
+        assert (status, "token" in text) == (404, False)
+        assert "access-control-allow-origin" not in headers
 
 
 def test_own_origin_is_admitted(server: Server) -> None:

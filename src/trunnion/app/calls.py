@@ -83,9 +83,9 @@ def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft:
         now = of
     return "\n".join(
         [
-            f'"""{title}: what the application showed."""',
+            _docstring(f"{title}: what the application showed."),
             "",
-            "import numpy as np" if any("np." in part for part in body) else "",
+            *(["import numpy as np"] if any("np." in part for part in body) else []),
             "import trunnion as tn",
             "",
             f"line = tn.loads({_block(toml)})",
@@ -93,7 +93,13 @@ def script(toml: str, results: Mapping[str, tuple[Call, str]], title: str, soft:
             *body,
             "",
         ]
-    ).replace('"""\n\n\nimport', '"""\n\nimport')
+    )
+
+
+def _docstring(text: str) -> str:
+    """A text as what a program begins with; one that would end the usual quotes, or hold more than a line, escaped."""
+    plain = text.isprintable() and '"' not in text and "\\" not in text
+    return f'"""{text}"""' if plain else repr(text)
 
 
 def _block(text: str) -> str:

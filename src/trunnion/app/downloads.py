@@ -42,7 +42,7 @@ class Download(RequestHandler):
             return
         self.set_header("Content-Type", TYPES[ending])
         self.set_header("Content-Disposition", f'attachment; filename="{view}-{name}.{ending}"')
-        self.set_header("X-Content-Type-Options", "nosniff")
+        self.set_header("Cache-Control", "no-store")
         self.finish(body)
 
     def write_error(self, status_code: int, **settings: Any) -> None:

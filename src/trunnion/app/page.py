@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import html
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import panel as pn
 
-from trunnion.app.guard import POLICY
-from trunnion.app.pieces import Quiet, column, heading, pane
+from trunnion.app.pieces import Quiet, Shown, column, heading, joined, markup, pane
 from trunnion.app.views.base import View
 
 MOST_OFTEN = 0.1
@@ -20,7 +18,6 @@ _TEMPLATE = """
 {% extends base %}
 {% block title %}Trunnion{% endblock %}
 {% block preamble %}
-<meta http-equiv="Content-Security-Policy" content="POLICY">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 {% endblock %}
 {% block postamble %}
@@ -50,7 +47,7 @@ h2 { font-size: 16px; margin: 10px 0 2px; }
 </div>
 {{ embed(roots.location) }}
 {% endblock %}
-""".replace("POLICY", POLICY.replace("; frame-ancestors 'none'", ""))
+"""
 
 _STYLE = """
 table.plain { border-collapse: collapse; font-size: 14px; }
@@ -87,10 +84,10 @@ class Page:
         self.bar = pn.indicators.Progress(
             name="progress", value=0, max=100, width=220, active=False, visible=False, margin=(8, 0)
         )
-        self.state = pn.pane.HTML("", margin=(4, 10))
+        self.state = Shown("", margin=(4, 10))
         self.cancel_button = pn.widgets.Button(label="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
-        self.mark = pn.pane.HTML("", width=0, height=0, margin=0)
+        self.mark = Shown("", width=0, height=0, margin=0)
         told = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
         self.status = column(self.said, told)
         self.main, self.aside = column(), column()
@@ -125,14 +122,13 @@ class Page:
             above = [] if one else [heading(titles[variant])]
             pictures.append(column(*above, side.panel, min_width=460 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
-        about = pane(f"<p style='margin:0'>{html.escape(view.about)}</p>")
+        about = pane(markup("<p style='margin:0'>{}</p>", view.about))
         self.main.objects = [about, view.controls, whole, view.downloads]
 
     def message(self, text: str) -> None:
         """Say what went wrong, or nothing more."""
-        lines = [line for line in text.splitlines() if line]
-        body = "".join(f"<div>{html.escape(line)}</div>" for line in lines)
-        self.said.object = f"<div role='alert'>{body}</div>" if body else ""
+        body = joined(markup("<div>{}</div>", line) for line in text.splitlines() if line)
+        self.said.object = markup("<div role='alert'>{}</div>", body) if body else ""
 
     def busy(self, share: float) -> None:
         """A computation is under way."""
@@ -144,21 +140,21 @@ class Page:
             return
         self._told = now
         self.bar.value = int(100 * min(1.0, max(0.0, share)))
-        self.state.object = "<span role='status' data-state='busy'>computing …</span>"
+        self.state.object = markup("<span role='status' data-state='busy'>computing …</span>")
 
     def send_rest(self) -> None:
         """Change what nobody sees, so that changes which still wait to be sent go with it."""
         self._marks += 1
-        self.mark.object = f"<span hidden data-mark='{self._marks}'></span>"
+        self.mark.object = markup("<span hidden data-mark='{}'></span>", self._marks)
 
     def idle(self, text: str = "", remarks: Sequence[str] = ()) -> None:
         """Nothing is under way."""
         self.bar.value, self.bar.visible = 0, False
         self.cancel_button.disabled = True
-        said = html.escape(text or "ready")
-        extra = "".join(f"<div>remark: {html.escape(r)}</div>" for r in remarks)
+        extra = joined(markup("<div>remark: {}</div>", r) for r in remarks)
         self._done += 1
-        self.state.object = f"<span role='status' data-state='idle' data-done='{self._done}'>{said}</span>{extra}"
+        idle = "<span role='status' data-state='idle' data-done='{}'>{}</span>{}"
+        self.state.object = markup(idle, self._done, text or "ready", extra)
 
     def failed(self, text: str) -> None:
         """A computation was refused or failed."""

@@ -18,6 +18,8 @@ from trunnion.results.written import write_numbers
 Plain = dict[str, Any]
 MOST_ORDERS = 8
 MOST_SAMPLES = 3000
+ROUNDING = 1e-12
+"""Share of the largest number beside it below which a value is rounding."""
 
 
 def nothing(result: Any) -> None:
@@ -221,17 +223,31 @@ def turn(result: Any) -> Plain:
     return {
         "input_angle": result.input_angle,
         "shafts": list(result.shafts),
-        "deviation": result.speed / mean - 1,
+        "deviation": _without_noise(result.speed / mean - 1, 1.0),
         "torque": result.transmitted,
         "joints": list(result.joints),
         "joint_angle": result.joint_angle,
         "forks": list(result.forks),
-        "couple": couple,
+        "couple": _without_noise(couple, float(np.abs(result.transmitted).max(initial=0.0))),
+        "outputs": [_output(result.on_branch(name), len(result.branches) > 1) for name in result.branches],
+        "findings": [str(f) for f in result.findings],
+    }
+
+
+def _output(result: Any, is_named: bool) -> Plain:
+    """How evenly the output of ``result`` turns; its name where there are others."""
+    return {
+        "name": result.branch if is_named else "",
+        "ratio": abs(result.mean_ratio),
         "irregularity": result.irregularity,
         "equivalent": result.equivalent_angle,
         "acceleration": result.peak_acceleration,
-        "findings": [str(f) for f in result.findings],
     }
+
+
+def _without_noise(values: Any, size: float) -> Any:
+    """Values whose rounding, beside numbers of this size, is zero: a picture would be scaled to it."""
+    return np.where(np.abs(values) > ROUNDING * size, values, 0.0)
 
 
 def phasing(result: Any) -> Plain:

@@ -8,7 +8,7 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.pieces import Quiet, column, plain
+from trunnion.app.pieces import Html, Quiet, Shown, column, joined, markup
 from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
@@ -55,7 +55,7 @@ class Sliders:
         self.value = pn.widgets.FloatInput(label="Value as a number", width=105)
         self.low = pn.widgets.FloatInput(label="Slider from", width=72)
         self.high = pn.widgets.FloatInput(label="to", width=72)
-        self.message = pn.pane.HTML("", css_classes=["refusal"])
+        self.message = Shown("", css_classes=["refusal"])
         self.which.param.watch(lambda event: self._chosen(), "value")
         for number in (self.slider, self.value):
             number.param.watch(lambda event: self._moved(event.new), "value")
@@ -109,7 +109,7 @@ class Sliders:
         try:
             line = with_number(self.line, path, value * self.size)
         except InputError as error:
-            self.message.object = plain(error)
+            self.message.object = str(error)
             return
         with self.quiet:
             self.message.object = ""
@@ -128,19 +128,18 @@ def _ends(value: float, unit: str) -> tuple[float, float]:
     return float(f"{low:.3g}"), float(f"{high:.3g}")
 
 
-def difference(kept: str | None, line: Driveline) -> str:
+def difference(kept: str | None, line: Driveline) -> Html:
     """What changed since a variant was kept, as HTML."""
     if kept is None:
-        return ""
+        return Html()
     rows = changes(loads(kept), line)
     if not rows:
-        return "<p>The two variants are alike so far: change a value.</p>"
-    cells = "".join(
-        f"<tr><td>{plain(one.place)}</td><td>{plain(one.before)}</td><td>{plain(one.after)}</td></tr>"
-        for one in rows[:MOST_ROWS]
-    )
-    more = f"<p>and {len(rows) - MOST_ROWS} more</p>" if len(rows) > MOST_ROWS else ""
-    return f"<table class='plain'><tr><th>what changed</th><th>kept</th><th>now</th></tr>{cells}</table>{more}"
+        return markup("<p>The two variants are alike so far: change a value.</p>")
+    row = "<tr><td>{}</td><td>{}</td><td>{}</td></tr>"
+    cells = joined(markup(row, one.place, one.before, one.after) for one in rows[:MOST_ROWS])
+    more = markup("<p>and {} more</p>", len(rows) - MOST_ROWS) if len(rows) > MOST_ROWS else ""
+    head = markup("<tr><th>what changed</th><th>kept</th><th>now</th></tr>")
+    return markup("<table class='plain'>{}{}</table>{}", head, cells, more)
 
 
 def buttons(keep: Callable[[], None], drop: Callable[[], None], swap: Callable[[], None]) -> tuple[Any, ...]:

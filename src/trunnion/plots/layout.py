@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,8 @@ SHAFT_COLOURS = COLOURS[:6]
 PLANE_COLOUR = "#888888"
 TOP = 0.93
 """Share of the picture's height below its title."""
+LETTERS = 120
+"""In a line of the note below the picture."""
 SIDES = np.array([-1.0, 1.0])
 UNKNOWN_LENGTH = 1.0
 """Length [m] drawn for a shaft of unknown length where no other is known."""
@@ -67,13 +70,14 @@ class _Place:
 
 @dataclass(frozen=True)
 class _Scene:
-    """Joints in order, ends and names of the shafts between and around them, sense of rotation."""
+    """Joints in order, ends and names of the shafts between and around them, sense of rotation, joints elsewhere."""
 
     joints: list[_Joint]
     ends: list[tuple[Array, Array]]
     names: list[str]
     guessed: bool
     sense: float = 1.0
+    left_out: Sequence[str] = ()
 
 
 def sketch(
@@ -116,9 +120,9 @@ def sketch(
     _frame(axes, scene)
     title = subject.name if isinstance(subject, Driveline) and subject.name else "layout"
     head(figure, f"{title}: forks at input angle {input_angle / DEGREE:.4g}°")
-    if scene.guessed:
-        note = "lengths between joints not all known: not to scale"
-        figure.text(0.01, 0.01, note, fontsize=SMALL, color=FAINT)
+    notes = [f"not drawn, on another branch or behind a ratio: {', '.join(scene.left_out)}"] if scene.left_out else []
+    notes += ["lengths between joints not all known: not to scale"] if scene.guessed else []
+    figure.text(0.01, 0.01, fill("; ".join(notes), LETTERS), fontsize=SMALL, color=FAINT)
     _write_labels(figure, axes, scene, size, labels)
     return figure
 
@@ -150,7 +154,8 @@ def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> 
     guessed = not all(np.isfinite(x) for x in inner)
     turning = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 1)).angle[train.steps[joints[0]].parent]
     sense = float(np.sign(turning[1][0]))  # behind a ratio
-    return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed, sense)
+    left_out = [train.steps[m.joint].name for m in train.members if m.joint >= 0 and m.train != bent[0]]
+    return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed, sense, left_out)
 
 
 def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float) -> list[_Joint]:

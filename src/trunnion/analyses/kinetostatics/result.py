@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from trunnion._version import __version__
-from trunnion.analyses.kinetostatics.measures import Parts, equivalent_angle, extremes, irregularity, largest, parts
+from trunnion.analyses.kinetostatics.measures import ROUNDING, Parts, equivalent_angle, extremes, irregularity, largest, parts
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
@@ -177,8 +177,9 @@ class Kinetostatics(Described):
 
     @property
     def peak_acceleration(self) -> float:
-        """Largest angular acceleration of the output [rad/s²]."""
-        return float(largest(self.output_acceleration))
+        """Largest angular acceleration of the output [rad/s²]; 0 where it is only rounding."""
+        peak = float(largest(self.output_acceleration))
+        return peak if peak > ROUNDING * self.input_speed**2 * abs(self.mean_ratio) else 0.0
 
     @property
     def deviation(self) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -16,7 +15,7 @@ from trunnion.app.calls import Call
 from trunnion.app.curves import Curves
 from trunnion.app.document import Document
 from trunnion.app.jobs import Job
-from trunnion.app.pieces import Quiet, pane
+from trunnion.app.pieces import Html, Quiet, joined, markup, pane, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
@@ -268,7 +267,7 @@ class View(ABC):
 
     def row(self, *keys: str) -> Any:
         """The controls of settings beside each other, as far as there is place."""
-        return pn.FlexBox(*(self.widgets[key] for key in keys))
+        return wrapped(*(self.widgets[key] for key in keys))
 
     def choose(self, key: str, choices: list[str]) -> None:
         """Give a widget its choices; a setting that is none of them becomes the first."""
@@ -282,22 +281,22 @@ class View(ABC):
             widget.disabled = not choices
 
 
-def links(token: str, view: View, line: Driveline) -> str:
+def links(token: str, view: View, line: Driveline) -> Html:
     """Links to everything of a view that may be downloaded."""
     rows = {}
     for step in view.steps(line):
         if step.endings:
-            parts = " ".join(_link(token, view.name, step.name, ending, NAMES[ending]) for ending in step.endings)
+            parts = joined(_link(token, view.name, step.name, ending, NAMES[ending]) for ending in step.endings)
             rows[step.title or step.name] = parts
     rows["Python that computes what is shown"] = _link(token, view.name, "view", "py", "Python")
     whole = [_link(token, view.name, "driveline", ending, NAMES[ending]) for ending in ("toml", "html")]
-    rows["the driveline"] = f"{whole[0]}, its report: {whole[1]}"
-    found = "".join(f"<li>{html.escape(title)}: {parts}</li>" for title, parts in rows.items())
-    return f"<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{found}</ul>"
+    rows["the driveline"] = markup("{}, its report: {}", *whole)
+    found = joined(markup("<li>{}: {}</li>", title, parts) for title, parts in rows.items())
+    return markup("<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{}</ul>", found)
 
 
-def _link(token: str, view: str, name: str, ending: str, text: str) -> str:
-    return f"<a href='download/{token}/{view}/{name}.{ending}' download>{text}</a>"
+def _link(token: str, view: str, name: str, ending: str, text: str) -> Html:
+    return markup("<a href='download/{}/{}/{}.{}' download>{}</a> ", token, view, name, ending, text)
 
 
 def _as(text: str, default: Setting) -> Setting:

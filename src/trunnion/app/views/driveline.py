@@ -9,7 +9,7 @@ import panel as pn
 from trunnion.app.calls import LINE, Call
 from trunnion.app.document import LARGEST_FILE, Document
 from trunnion.app.editor import Editor
-from trunnion.app.pieces import column, pane, picture, pre
+from trunnion.app.pieces import column, pane, picture, pre, wrapped
 from trunnion.app.upload import Upload
 from trunnion.app.views.base import Side, Step, View
 from trunnion.driveline.driveline import Driveline
@@ -57,7 +57,7 @@ class DrivelineView(View):
         self.redo = pn.widgets.Button(label="Redo", width=70, align="end")
         self.undo.on_click(lambda event: self.session.edit(Document.undo))
         self.redo.on_click(lambda event: self.session.edit(Document.redo))
-        return pn.FlexBox(self.begin, load, upload, self.undo, self.redo, gap="4px", align_items="end")
+        return wrapped(self.begin, load, upload, self.undo, self.redo, styles={"gap": "4px", "align-items": "end"})
 
     def _begin(self, document: Document) -> None:
         name = self.begin.value

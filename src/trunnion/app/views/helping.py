@@ -9,7 +9,7 @@ import panel as pn
 
 from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.app.calls import LINE, Call
-from trunnion.app.pieces import column, pane, plain
+from trunnion.app.pieces import column, markup, pane
 from trunnion.app.variants import with_number
 from trunnion.app.views.base import Host
 from trunnion.equations.coefficients import assemble
@@ -51,10 +51,10 @@ class Help:
         for remedy in found:
             button = pn.widgets.Button(label="Try it", width=80, align="center")
             button.on_click(lambda event, remedy=remedy: self._try(remedy))
-            text = pane(f"<span>{plain(remedy['sentence'])}</span>")
+            text = pane(remedy["sentence"])
             rows.append(pn.Row(button, text, sizing_mode="stretch_width", margin=0))
-        none = "<p>No single change of stiffness, inertia, damping, angle or phase was found that helps.</p>"
-        self.list.objects = rows or [pn.pane.HTML(none)]
+        none = markup("<p>No single change of stiffness, inertia, damping, angle or phase was found that helps.</p>")
+        self.list.objects = rows or [pane(none)]
 
     def _try(self, remedy: dict[str, Any]) -> None:
         line = with_number(self.session.document.line, remedy["variable"], remedy["after"])

@@ -12,7 +12,7 @@ from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curve, Curves
 from trunnion.app.document import Document
-from trunnion.app.pieces import column, items, pane, picture, plain, small
+from trunnion.app.pieces import Html, Shown, column, items, joined, lines, markup, pane, picture, small
 from trunnion.app.views.base import (
     Setting,
     Side,
@@ -59,8 +59,7 @@ class _Side(Side["JointsView"]):
 
     def show_phasing(self, step: Step, data: Any) -> None:
         """The fork offsets that are best."""
-        said = data["text"].replace("\n", "<br>")
-        self.phasing.object = small(f"<b>best fork offsets</b>: {said}")
+        self.phasing.object = small(markup("<b>best fork offsets</b>: {}", lines(data["text"])))
 
     def show_drawn(self, step: Step, svg: str) -> None:
         """The forks in space."""
@@ -69,7 +68,7 @@ class _Side(Side["JointsView"]):
     def refused(self, step: Step, sentence: str) -> None:
         """A line without joints has no phasing."""
         where = self.phasing if step.name == "phasing" else self.space
-        where.object = small(plain(sentence))
+        where.object = small(sentence)
 
     def show_turn(self, step: Step, data: Any) -> None:
         """Curves, the largest of each, and the forks where the input is turned to."""
@@ -77,13 +76,7 @@ class _Side(Side["JointsView"]):
         self._draw(self.speed, data, "shafts", 100 * data["deviation"], "speed of the shafts over one turn")
         self._draw(self.torque, data, "shafts", data["torque"], "torque of the shafts over one turn")
         self._draw(self.couple, data, "forks", data["couple"], "couple that bends each fork's shaft")
-        self.text.object = (
-            f"<table class='plain'><tr><th>irregularity of the output</th><td data-value='irregularity'>"
-            f"{data['irregularity']:.6g}</td></tr>"
-            f"<tr><th>as one joint of</th><td>{data['equivalent'] * DEGREES:.4g}°</td></tr>"
-            f"<tr><th>largest acceleration</th><td>{data['acceleration']:.5g} rad/s²</td></tr></table>"
-            f"{items(data['findings'])}"
-        )
+        self.text.object = joined([*map(_uniformity, data["outputs"]), items(data["findings"])])
         self._forks(data, cursor)
 
     def _draw(self, into: Curves, data: Any, names: str, values: Any, title: str) -> None:
@@ -107,6 +100,19 @@ class _Side(Side["JointsView"]):
         figures.put_rows(self.rings, [(centre, 0.0) for centre, _, _ in labels])
         figures.put_rows(self.labels, labels)
         self.forks.title.text = f"forks at input angle {cursor:g}°\njoint plane upright, output dashed"
+
+
+def _uniformity(output: Any) -> Html:
+    """How evenly the end of a branch turns; ``name`` is empty where there is one end."""
+    of = f" of {output['name']}" if output["name"] else ""
+    rows = {
+        "irregularity": (f"irregularity of the output{of}", f"{output['irregularity']:.6g}"),
+        "equivalent": ("as one joint of", f"{output['equivalent'] * DEGREES:.4g}°"),
+        "ratio": ("turns of the output to one of the input", f"{output['ratio']:.6g}"),
+        "acceleration": (f"largest acceleration of the output{of}", f"{output['acceleration']:.5g} rad/s²"),
+    }
+    row = "<tr><th>{1}</th><td data-value='{0}'>{2}</td></tr>"
+    return markup("<table class='plain'>{}</table>", joined(markup(row, key, *said) for key, said in rows.items()))
 
 
 class JointsView(View):
@@ -138,7 +144,7 @@ class JointsView(View):
         best.on_click(lambda event: self.session.beside(self._phase()))
         use = pn.widgets.Button(label="Use this angle", width=130, align="end")
         use.on_click(lambda event: self.session.edit(self._use))
-        self.compound = pn.pane.HTML("", margin=(18, 8))
+        self.compound = Shown("", margin=(18, 8))
         forks, angles = self.row("shaft"), self.row("side", "top", "joint")
         forks.extend([self.offset, best])
         angles.extend([use, self.compound])

@@ -11,7 +11,7 @@ from trunnion.app import figures
 from trunnion.app.axis import Axis
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, pane, pre
+from trunnion.app.pieces import column, pane, pre, wrapped
 from trunnion.app.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
     MOST_POINTS,
@@ -176,7 +176,7 @@ class LimitsView(View):
         self.use = pn.widgets.Button(label="Use the best value", width=160, align="end", disabled=True)
         self.use.on_click(lambda event: self._use())
         self.says = pane(margin=(0, 5))
-        return column(pn.FlexBox(*self.widgets.values(), self.use), self.says)
+        return column(wrapped(*self.widgets.values(), self.use), self.says)
 
     def adapt(self, line: Driveline) -> None:
         """Parameters of the line."""

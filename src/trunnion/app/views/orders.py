@@ -11,6 +11,7 @@ from bokeh.models import LegendItem
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curve, Curves
+from trunnion.app.mover import Mover
 from trunnion.app.pieces import column, items, pane
 from trunnion.app.views.base import (
     Side,
@@ -41,21 +42,8 @@ class Mode:
         self.figure.line("x", "y", source=self.source, line_width=2, color=figures.BLUE)
         self.figure.scatter("x", "y", source=self.source, size=11, color=figures.BLUE)
         self.figure.y_range.update(start=-1.15, end=1.15)
-        move = pn.widgets.Toggle(label="Move the mode", width=140)
-        move.jscallback(
-            args={"source": self.source},
-            value="""
-            const move = () => {
-              if (!cb_obj.active) { set(1); return }
-              set(Math.cos(performance.now() / 300)); requestAnimationFrame(move)
-            }
-            const set = (c) => {
-              source.data = {...source.data, y: Array.from(source.data.shape, v => v * c)}
-            }
-            move()
-            """,
-        )
-        self.panel = column(pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"), move)
+        self.source.name = f"mode-{self.source.id}"
+        self.panel = column(pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"), Mover(source=self.source.name))
 
     def set(self, data: Any, mode: int) -> None:
         """Show a mode by its number from 1."""

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import RangesUpdate, Tap
-from bokeh.models import BoxAnnotation, ColorBar, CustomJSTickFormatter, LinearColorMapper
+from bokeh.models import BoxAnnotation, ColorBar, LinearColorMapper
 
 from trunnion.app import figures
 from trunnion.app.axis import Axis
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, pane, plain, small
+from trunnion.app.pieces import column, lines, pane, small
 from trunnion.app.point import Point
 from trunnion.app.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
@@ -49,6 +49,7 @@ REST = 0.3
 MOST_NAMED = 6
 """Regions of instability that the page lists, those that grow fastest."""
 UNDISTURBED, DISTURBED = "undisturbed", "motion"
+PERCENT = 100.0
 GROWTH = 0.05
 """Growth per turn at the ends of the colours."""
 _STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
@@ -56,8 +57,8 @@ _UNSTABLE = ("#f6c49a", "#e8935a", "#d55e00", "#9c4300", "#5c2700")
 
 
 _ABOUT_MOTION = (
-    f"<p style='font-size:13px;margin:0'>The motion with a disturbance of {DISTURBANCE:g} rad in the mode that grows "
-    "fastest, less the motion without it: the forced vibration, which both have, is taken away.</p>"
+    f"The motion with a disturbance of {DISTURBANCE:g} rad in the mode that grows fastest, less the motion without it: "
+    "the forced vibration, which both have, is taken away."
 )
 _ENDS = {"x_low": "x from", "x_high": "x to", "y_low": "y from", "y_high": "y to"}
 _AT = {"at_x": "Look at x", "at_y": "Look at y"}
@@ -76,12 +77,12 @@ class _Side(Side["StabilityView"]):
         self.figure = figures.plot("", "", height=430, title="stability chart", x_range=(0, 1), y_range=(0, 1))
         self.figure.grid.visible = False
         self.image = figures.source(image=[], x=[], y=[], dw=[], dh=[])
-        mapper = LinearColorMapper(palette=[*_STABLE, *_UNSTABLE], low=-GROWTH, high=GROWTH, nan_color="#9a9a9a")
-        drawn = self.figure.image("image", "x", "y", "dw", "dh", source=self.image, color_mapper=mapper)
-        percent = CustomJSTickFormatter(code="return (100 * tick).toFixed(0)")
-        bar = ColorBar(color_mapper=mapper, title="growth per turn [%]", width=14, padding=4, formatter=percent)
+        ends = {"low": -PERCENT * GROWTH, "high": PERCENT * GROWTH}
+        self.colours = LinearColorMapper(palette=[*_STABLE, *_UNSTABLE], nan_color="#9a9a9a", **ends)
+        drawn = self.figure.image("image", "x", "y", "dw", "dh", source=self.image, color_mapper=self.colours)
+        bar = ColorBar(color_mapper=self.colours, title="growth per turn [%]", width=14, padding=4)
         self.figure.add_layout(bar, "right")
-        figures.hover(self.figure, [drawn], [("growth per turn", "@image{0.000 %}")])
+        figures.hover(self.figure, [drawn], [("growth per turn", "@image{0.000} %")])
         self.box = BoxAnnotation(line_color=figures.BLUE, line_width=2, fill_alpha=0.0)
         self.figure.add_layout(self.box)
         self.names = figures.source(x0=[], y0=[], x1=[], y1=[], name=[])
@@ -105,7 +106,7 @@ class _Side(Side["StabilityView"]):
         self.picture = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
         # Before its axes are known a chart would show false ones, and take a click on them for a point.
         self.picture.visible = self.figure.visible = False
-        about = pane(_ABOUT_MOTION)
+        about = pane(small(_ABOUT_MOTION))
         self.panel = column(self.picture, self.regions, self.said, self.point.panel, self.motion.panel, about)
 
     def narrow(self, narrow: bool) -> None:
@@ -137,7 +138,7 @@ class _Side(Side["StabilityView"]):
             return
         self.whole, self.ends = None, []
         self.picture.visible = self.figure.visible = False
-        self.said.object = small(f"no chart: {plain(sentence)}", "class='refusal'")
+        self.said.object = small(f"no chart: {sentence}", class_="refusal")
 
     def show_chart(self, step: Step, data: Any) -> None:
         """The chart, coarse or full, with the point and the operating range."""
@@ -165,8 +166,8 @@ class _Side(Side["StabilityView"]):
             if self.ends:
                 self.view.session.beside(self._refine(self.ends))
         self.count += 1
-        text = data["text"].replace("\n", "<br>") if full else "coarse, the full chart follows"
-        self.said.object = small(text, f"data-chart='{step.name}' data-count='{self.count}'")
+        text = data["text"] if full else "coarse, the full chart follows"
+        self.said.object = small(lines(text), data_chart=step.name, data_count=self.count)
 
     def show_tongues(self, step: Step, data: Any) -> None:
         """Outlines over the chart, however narrow."""
@@ -182,11 +183,11 @@ class _Side(Side["StabilityView"]):
         self._say_regions(f"{count} of instability found{': ' if rows else ''}{'; '.join(parts)}.\n{data['search']}")
 
     def _say_regions(self, text: str) -> None:
-        self.regions.object = f"<div style='font-size:13px;white-space:pre-line'>{plain(text)}</div>"
+        self.regions.object = small(lines(text))
 
     def _image(self, data: Any, x: Axis, y: Axis) -> None:
         (left, width), (bottom, height) = x.pixels(data["x"]), y.pixels(data["y"])
-        image = {"image": [data["growth"].astype(np.float32)], "x": [left], "y": [bottom]}
+        image = {"image": [(PERCENT * data["growth"]).astype(np.float32)], "x": [left], "y": [bottom]}
         figures.put(self.image, image | {"dw": [width], "dh": [height]})
 
     def _operating(self, x: Axis, y: Axis) -> None:

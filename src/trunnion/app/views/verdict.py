@@ -12,7 +12,7 @@ from trunnion.analyses.assessment.own_limits import WITHOUT_LIMIT
 from trunnion.app import figures
 from trunnion.app.calls import LINE, Call
 from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, items, pane, plain
+from trunnion.app.pieces import Html, column, items, joined, markup, pane
 from trunnion.app.views.base import Side, Step, View, load_cases, select, speed_range, unit_of
 from trunnion.app.views.helping import Help
 from trunnion.driveline.driveline import Driveline
@@ -65,8 +65,8 @@ class _Side(Side["VerdictView"]):
         self.course = data["course"] if data["quantity"] != "N*m" else {}
         if self.course:
             self._binding_course(self.course)
-        kind = plain(data["verdict"].replace(" ", "-"))
-        self.sentence.object = f"<p class='verdict {kind}' data-verdict='{kind}'>{plain(data['sentence'])}</p>"
+        kind = data["verdict"].replace(" ", "-")
+        self.sentence.object = markup("<p class='verdict {0}' data-verdict='{0}'>{1}</p>", kind, data["sentence"])
         judged = [(r, m) for r, m in zip(data["rows"], data["margin"], strict=True)
                   if np.isfinite(m) and r["status"] in COLOURS]  # fmt: skip
         rows = judged[:MOST] + [(r, 0.0) for r in data["rows"] if r["status"] in UNJUDGED][:MOST]
@@ -135,19 +135,20 @@ def _words(status: str, margin: float) -> str:
     return {"satisfied": far, "within guideline": f"{far} (guideline)".strip()}.get(status, status)
 
 
-def _table(data: Any) -> str:
+def _table(data: Any) -> Html:
     unit = data["unit"]
-    head = "".join(f"<th>{h}</th>" for h in ("check", "status", "margin", "speed", "because", "rule"))
-    body = ""
+    head = joined(markup("<th>{}</th>", h) for h in ("check", "status", "margin", "speed", "because", "rule"))
+    body = []
     for row, rule in zip(data["rows"], data["rules"], strict=True):
         if row["check"] == WITHOUT_LIMIT:
             row = row | {"because": row["because"].partition(";")[0] + "; press State limits and type what they bear"}
         cells = (
             f"{v} {unit}" if v and key.startswith("speed") else str(v) for key, v in (row | {"rule": rule}).items()
         )
-        body += "<tr>" + "".join(f"<td>{plain(cell)}</td>" for cell in cells) + "</tr>"
+        body.append(markup("<tr>{}</tr>", joined(markup("<td>{}</td>", cell) for cell in cells)))
     said = [data["rests_on"], *(f"Switched off: {one}" for one in data["switched_off"]), *data["findings"]]
-    return f"<div class='held'><table class='plain checks'><tr>{head}</tr>{body}</table></div>{items(said)}"
+    table = "<div class='held'><table class='plain checks'><tr>{}</tr>{}</table></div>{}"
+    return markup(table, head, joined(body), items(said))
 
 
 class VerdictView(View):

@@ -1,0 +1,48 @@
+"""A button that sets a picture of a shape moving, in the browser alone.
+
+Panel's own callbacks in JavaScript are compiled from text there, which the content policy forbids.
+"""
+
+from __future__ import annotations
+
+import param
+from panel.custom import JSComponent
+
+_SCRIPT = """
+export function render({ model }) {
+  const button = document.createElement("button")
+  button.type = "button"; button.textContent = model.label
+  let moving = false
+  const set = (share) => {
+    const source = Bokeh.documents.map(d => d.get_model_by_name(model.source)).find(found => found)
+    if (source) source.data = {...source.data, y: Array.from(source.data.shape, v => v * share)}
+  }
+  const move = () => {
+    if (!moving || !button.isConnected) { set(1); return }
+    set(Math.cos(performance.now() / 300)); requestAnimationFrame(move)
+  }
+  button.onclick = () => {
+    moving = !moving
+    button.setAttribute("aria-pressed", moving)
+    move()
+  }
+  button.setAttribute("aria-pressed", false)
+  return button
+}
+"""
+_STYLE = """
+button { font: inherit; font-size: 14px; padding: 5px 12px; margin: 5px; border: 1px solid #8a929b; cursor: pointer;
+  border-radius: 4px; background: #f2f4f6; color: #1a1a1a; }
+button[aria-pressed="true"] { background: #12324a; color: #fff; }
+button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
+"""
+
+
+class Mover(JSComponent):
+    """The column "y" of the source of that name swings through its column "shape" while the button is pressed."""
+
+    source = param.String()
+    label = param.String(default="Move the mode")
+
+    _esm = _SCRIPT
+    _stylesheets = [_STYLE]
