@@ -99,7 +99,7 @@ def one_question(path: str) -> str:
 
 def with_nonce(page: bytes, nonce: str) -> bytes:
     """The page with the scripts that stand in it marked as its own."""
-    return _SCRIPT.sub(f'<script nonce="{nonce}"'.encode(), page)
+    return _SCRIPT.sub(b'<script nonce="' + nonce.encode() + b'"', page)
 
 
 class _Headed:
