@@ -61,6 +61,9 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
   table.checks td { display: block; border: 0 !important; padding: 0 !important; }
   table.checks td:first-child { font-weight: 600; }
 }
+.stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: #1a1a1a;
+  background: #fff3d6; border: 1px solid #b58900; animation: late 0.3s step-end; }
+@keyframes late { from { visibility: hidden; } }
 .refusal, .refusal * { color: #8d0016; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
@@ -119,7 +122,7 @@ class Page:
         for variant in variants:
             side = view.of(variant)
             side.narrow(not one)
-            above = [] if one else [heading(titles[variant])]
+            above = [side.stamp] if one else [heading(titles[variant]), side.stamp]
             pictures.append(column(*above, side.panel, min_width=460 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
         about = pane(markup("<p style='margin:0'>{}</p>", view.about))

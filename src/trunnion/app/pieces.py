@@ -15,6 +15,12 @@ from typing import Any
 
 import panel as pn
 
+FAINT = {"opacity": "0.35", "transition": "opacity 0.15s 0.25s"}
+FULL = {"opacity": "1", "transition": "none"}
+"""How a part is shown that belongs to another line, or to other settings, than the page; and how one is that does not.
+
+Panel leaves a style of a picture as it was that is not named any more."""
+
 
 class Html(str):
     """Text that is HTML; made by ``markup`` and ``joined`` only."""
@@ -84,6 +90,13 @@ def wrapped(*parts: Any, **more: Any) -> Any:
     Panel's FlexBox compiles text to JavaScript in the browser, and its Row is never narrower than all of its parts."""
     styles = {"flex-direction": "row", "flex-wrap": "wrap", **more.pop("styles", {})}
     return pn.Column(*parts, sizing_mode="stretch_width", margin=0, styles=styles, **more)
+
+
+def faint(panel: Any, is_faint: bool) -> None:
+    """Show a part faintly, or as it is; what lasts shorter than the eye minds changes nothing."""
+    now = FAINT if is_faint else FULL
+    if any(panel.styles.get(key, FULL[key]) != value for key, value in now.items()):
+        panel.styles = {**panel.styles, **now}
 
 
 def heading(text: str) -> Any:

@@ -20,7 +20,7 @@ from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
 from trunnion.app.jobs import Answer, Job
 from trunnion.app.page import Page
-from trunnion.app.pieces import pane
+from trunnion.app.pieces import Html, markup, pane
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.variants import Sliders, buttons, difference
 from trunnion.app.views import VIEWS
@@ -59,6 +59,7 @@ class Session:
         self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
         self.took: dict[tuple[str, str], float] = {}
         self.query = _query()
+        self.unread = False
         failure = self._read_lines()
         self.page = Page({kind.name.capitalize(): kind.name for kind in VIEWS}, self.show_view, self.cancel)
         self.sliders = Sliders(
@@ -91,10 +92,14 @@ class Session:
         try:
             if "line" in self.query:
                 self.document = Document(address.unpack(self.query["line"]))
+        except InputError as error:
+            self.unread = True
+            return f"The address holds no driveline that can be read: {error}"
+        try:
             if "kept" in self.query:
                 self.kept = Document(address.unpack(self.query["kept"])).toml
         except InputError as error:
-            return f"The address holds no driveline that can be read: {error}"
+            return f"The address holds no kept variant that can be read: {error}"
         return ""
 
     def _destroyed(self, sessions: dict[str, Session]) -> None:
@@ -115,6 +120,8 @@ class Session:
         except Exception as error:
             traceback.print_exc()
             self.page.message(f"unexpected {type(error).__name__}: {error}. The page goes on; undo the last change.")
+            for side in self.view.sides.values():
+                side.disown("After an unexpected failure: what is shown may be of an earlier line or other settings.")
         finally:
             self._send_rest_soon()
 
@@ -138,6 +145,7 @@ class Session:
         def work() -> None:
             self.page.message("")
             change(self.document)
+            self.unread = False
             self._line_changed()
 
         self.guarded(work)
@@ -179,7 +187,6 @@ class Session:
 
     def _view_changed(self) -> None:
         self.view.adapt(self.document.line)
-        self.view.downloads.object = links(self.token, self.view, self.document.line)
         self._look()
 
     def setting_chosen(self) -> None:
@@ -191,12 +198,46 @@ class Session:
         """Compute what the visible view shows; whatever was under way for it is dropped."""
         sides = [NOW] if self.kept is None else [KEPT, NOW]
         self.page.show(self.view, sides)
-        self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
+        if not self.unread:
+            self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
         under_way = self.task is not None and not self.task.done() and not self.resting
         if self.task:
             self.task.cancel(SUPERSEDED)
+        try:
+            self._expect(sides)
+            self.view.downloads.object = self._links()
+        except TrunnionError as error:
+            self.task, self.view.downloads.object = None, ""
+            for side in sides:
+                self.view.of(side).disown(f"Not of the settings above, which are refused: {error}")
+            self.page.failed(str(error))
+            return
         work = self._compute(sides, QUIET if under_way else 0.0)
         self.task = asyncio.get_event_loop().create_task(self._watched(work))
+
+    def _expect(self, sides: list[str]) -> None:
+        """Have the pictures know which line and settings they are to be of."""
+        wanted = {side: [(s, s.job(self._toml(side))) for s in self.view.steps(self.line(side))] for side in sides}
+        for side in sides:
+            self.view.of(side).expect(wanted[side], self._doubt(side))
+
+    def _doubt(self, side: str) -> str:
+        """Why the pictures of a side are not of what stands in the table or in the address."""
+        if side == NOW and self.unread:
+            return "Of the line that a new page begins with: the address holds none that can be read."
+        if side == NOW and self.document.problems:
+            return "Of the line as it was last accepted: what is typed in the table of Driveline is refused."
+        return ""
+
+    def _links(self) -> Html:
+        doubt = self._doubt(NOW)
+        found = links(self.token, self.view, self.document.line)
+        return markup("{}<p class='refusal'>{}</p>", found, doubt) if doubt else found
+
+    def _tell(self, fate: str) -> None:
+        """Say what became of pictures that are not of the present line or settings."""
+        for side in self.view.sides.values():
+            side.tell(fate)
 
     # -- computations ---------------------------------------------------------------------------------------------
 
@@ -210,6 +251,7 @@ class Session:
         """End what is under way."""
         self._drop_tasks()
         self.page.idle("cancelled")
+        self._tell("the computation was cancelled")
 
     def _drop_tasks(self) -> None:
         for task in (self.task, *self.side_tasks):
@@ -222,7 +264,12 @@ class Session:
         except Exception as error:
             if not isinstance(error, TrunnionError):
                 traceback.print_exception(error)
-            self.locked(partial(self.page.failed, str(error) or type(error).__name__))
+            self.locked(partial(self._failed, str(error) or type(error).__name__))
+
+    def _failed(self, sentence: str) -> None:
+        """A computation was refused or failed: what was to be replaced by its result stays faint."""
+        self.page.failed(sentence)
+        self._tell("it could not be computed anew")
 
     async def _compute(self, sides: list[str], quiet: float) -> None:
         await asyncio.sleep(quiet)
@@ -249,12 +296,12 @@ class Session:
             except TrunnionError as error:
                 if not step.soft:
                     raise
-                self.locked(partial(view.of(side).refused, step, str(error)))
+                self.locked(partial(view.of(side).refuse, step, job, str(error)))
             else:
                 remarks += answer.remarks
                 if step.lasting:
                     self.known[view.name, side, step.name] = job, answer
-                self.locked(partial(view.of(side).show, step, answer.value))
+                self.locked(partial(view.of(side).take, step, job, answer.value))
             self.took[view.name, step.name] = asyncio.get_running_loop().time() - begin
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
         self.pool.warm(WARMING, self)
@@ -271,18 +318,18 @@ class Session:
     def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[Step]:
         """The steps of a side that are to be computed; what is known is shown at once, its remarks are added."""
         left: list[Step] = []
-        known: list[tuple[Step, Any]] = []
+        known: list[tuple[Step, Job, Any]] = []
         for step in view.steps(self.line(side)):
             job, answer = self.known.get((view.name, side, step.name), (None, None))
             if answer is None or job != step.job(toml):
                 left.append(step)
             else:
-                known.append((step, answer.value))
+                known.append((step, job, answer.value))
                 remarks += answer.remarks
 
         def show_known() -> None:
-            for known_step, value in known:
-                view.of(side).show(known_step, value)
+            for known_step, of, value in known:
+                view.of(side).take(known_step, of, value)
 
         if known:
             self.locked(show_known)
@@ -297,8 +344,14 @@ class Session:
         return self.took.get((view.name, name), QUICK) >= QUICK
 
     async def ask(self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None) -> Any:
-        """What one further computation for a side gives; ``options`` of what makes plain data of it."""
-        return (await self.pool.run(Job(self._toml(side), call, show, options or {}), self)).value
+        """What one further computation for a side gives; ``options`` of what makes plain data of it.
+
+        Where the line has changed meanwhile nobody wants it any more: the work that asked ends."""
+        toml = self._toml(side)
+        value = (await self.pool.run(Job(toml, call, show, options or {}), self)).value
+        if self._toml(side) != toml:
+            raise asyncio.CancelledError
+        return value
 
     def line(self, side: str) -> Driveline:
         """The present line, or the kept one."""

@@ -15,7 +15,7 @@ from trunnion.app.calls import Call
 from trunnion.app.curves import Curves
 from trunnion.app.document import Document
 from trunnion.app.jobs import Job
-from trunnion.app.pieces import Html, Quiet, joined, markup, pane, wrapped
+from trunnion.app.pieces import Html, Quiet, faint, joined, markup, pane, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
@@ -29,6 +29,8 @@ NAMES = {
     "png": "PNG", "svg": "SVG", "csv": "CSV", "nc": "netCDF", "html": "HTML", "py": "Python", "toml": "TOML",
 }  # fmt: skip
 PICTURES = ("png", "svg")
+ANEW = "it is being computed anew"
+"""What becomes of a result that is shown though the line or the settings have changed."""
 MOST_POINTS = 400
 """Points along an axis that the browser may ask for."""
 
@@ -98,7 +100,7 @@ class Host(Protocol):
     def ask(
         self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None
     ) -> Coroutine[Any, Any, Any]:
-        """One further computation for the line of a variant."""
+        """One further computation for the line of a variant; nothing follows where the line changes meanwhile."""
 
     def beside(self, work: Coroutine[Any, Any, None]) -> None:
         """Begin what a click asks for, beside the computation of the view."""
@@ -114,15 +116,69 @@ class Side(ABC, Generic[V]):
     """The picture of one variant, "now" or "kept": a method ``show_KIND`` for what each kind of step gives."""
 
     panel: Any
+    parts: Mapping[tuple[str, ...], Sequence[Any]]
+    """Panels by the kinds of steps (``Step.show``) that draw in them."""
 
     def __init__(self, view: V, variant: str) -> None:
         self.view, self.variant = view, variant
         self.what = ""
+        self.shown: dict[str, Job] = {}
+        self.wanted: Mapping[str, Sequence[Job]] = {}
+        self.doubt = ""
+        self.stamp = pane(height=0, margin=0, styles={"position": "sticky", "top": "4px", "z-index": "9"})
         self.make()
 
     @abstractmethod
     def make(self) -> None:
-        """Make ``panel``, and what in it changes."""
+        """Make ``panel`` and ``parts``, and what in them changes."""
+
+    # -- whose result it is ---------------------------------------------------------------------------------------
+
+    def expect(self, wanted: Sequence[tuple[Step, Job]], doubt: str) -> None:
+        """From now on ``wanted`` is asked for: what is shown of other jobs, or all of it in ``doubt``, is stamped."""
+        jobs: dict[str, list[Job]] = {}
+        for step, job in wanted:
+            jobs.setdefault(step.show, []).append(job)
+        for kind in [kind for kind in self.shown if kind not in jobs]:
+            del self.shown[kind]
+            self.forget(kind)
+        self.wanted, self.doubt = jobs, doubt
+        self.tell(ANEW)
+
+    def disown(self, doubt: str) -> None:
+        """What is shown is of nothing that stands on the page."""
+        self.doubt = doubt
+        self.tell(ANEW)
+
+    def take(self, step: Step, job: Job, data: Any) -> None:
+        """Show what a job gave."""
+        self.show(step, data)
+        self.shown[step.show] = job
+        self.tell(ANEW)
+
+    def refuse(self, step: Step, job: Job, sentence: str) -> None:
+        """Show that a job gave nothing, and why."""
+        self.refused(step, sentence)
+        self.shown[step.show] = job
+        self.tell(ANEW)
+
+    def is_current(self, kind: str) -> bool:
+        """Whether what a kind of step shows belongs to the line and settings as they are."""
+        return not self.doubt and (kind not in self.shown or self.shown[kind] in self.wanted.get(kind, ()))
+
+    def tell(self, fate: str) -> None:
+        """Stamp what is shown of another line or other settings, with what becomes of it."""
+        stale = False
+        for kinds, panels in self.parts.items():
+            is_old = not all(map(self.is_current, kinds))
+            for panel in panels:
+                faint(panel, is_old)
+            stale |= is_old and any(kind in self.shown for kind in kinds)
+        words = self.doubt or f"What is faint belongs to an earlier line or other settings: {fate}."
+        self.stamp.object = markup("<div class='stamp' role='status'>{}</div>", words) if stale else ""
+
+    def forget(self, kind: str) -> None:
+        """Take away what a kind of step shows that is not asked for any more."""
 
     @property
     def line(self) -> Driveline:
@@ -139,7 +195,9 @@ class Side(ABC, Generic[V]):
         """Forget what belongs to another question."""
         if what != self.what:
             self.what = what
+            self.shown = {}
             self.clear()
+            self.tell(ANEW)
 
     def clear(self) -> None:
         """Show nothing."""

@@ -25,6 +25,7 @@ class _Side(Side["DrivelineView"]):
         self.sketch, self.modes = pane(), pane()
         table = [self.view.editor] if self.variant == "now" else []
         self.panel = column(self.sketch, *table, self.modes)
+        self.parts = {("sketch",): [self.sketch], ("text",): [self.modes]}
 
     def show_sketch(self, step: Step, svg: str) -> None:
         """The line as a picture."""

@@ -56,6 +56,9 @@ class _Side(Side["JointsView"]):
         forks = pn.pane.Bokeh(self.forks, sizing_mode="stretch_width")
         pictures = (self.speed.panel, self.torque.panel, self.couple.panel)
         self.panel = column(self.text, self.phasing, forks, self.space, *pictures)
+        self.parts = {
+            ("turn",): [self.text, forks, *pictures], ("phasing",): [self.phasing], ("drawn",): [self.space],
+        }  # fmt: skip
 
     def show_phasing(self, step: Step, data: Any) -> None:
         """The fork offsets that are best."""

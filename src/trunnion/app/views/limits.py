@@ -15,6 +15,7 @@ from trunnion.app.pieces import column, pane, pre, wrapped
 from trunnion.app.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
     MOST_POINTS,
+    Setting,
     Side,
     Step,
     View,
@@ -84,6 +85,8 @@ class _Side(Side["LimitsView"]):
         self.bars.visible = False
         self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
         self.panel = column(self.curves.panel, self.bar_panel, self.text)
+        kinds = ("best", "tolerances", "ranked", "assembly", "limit", "windows")
+        self.parts = {kinds: [self.curves.panel, self.bar_panel, self.text]}
 
     def clear(self) -> None:
         """Show neither picture."""
@@ -94,7 +97,7 @@ class _Side(Side["LimitsView"]):
         """The best value in words, and for the button."""
         self.text.object = pre(data["text"])
         if self.variant == "now":
-            self.view.found(data["value"])
+            self.view.found(step.options["path"], data["value"])
 
     def _bars(self, step: Step, data: Any) -> None:
         """What matters most, the largest on top."""
@@ -190,7 +193,7 @@ class LimitsView(View):
             tell_default(self.widgets[key], value)
         torques = [f"{kind} torque of {n}" for n in springs_of(line) for kind in ("vibratory", "peak")]
         self.choose("aim", [*AIMS, *torques])
-        self.best: float | None = None
+        self.best: tuple[str, float] | None = None
         self.show_question()
 
     def show_question(self) -> None:
@@ -200,13 +203,18 @@ class LimitsView(View):
         self.use.visible, self.use.disabled = what == BEST, True
         self.says.object = SAYS[what]
 
-    def found(self, value: float) -> None:
-        """The best value of the parameter in SI units, which the button takes over."""
-        self.best, self.use.disabled = value, False
+    def chosen(self, key: str, value: Setting) -> None:
+        """A best value that was found for other settings is not this question's."""
+        self.best, self.use.disabled = None, True
+        super().chosen(key, value)
+
+    def found(self, path: str, value: float) -> None:
+        """The best value of a parameter in SI units, which the button takes over."""
+        self.best, self.use.disabled = (path, value), False
 
     def _use(self) -> None:
         if self.best is not None:
-            line = with_number(self.session.document.line, str(self.settings["parameter"]), self.best)
+            line = with_number(self.session.document.line, *self.best)
             self.session.edit(lambda document: document.set_numbers(line))
 
     def axis(self, line: Driveline) -> Axis:

@@ -77,6 +77,8 @@ class _Side(Side["MotionView"]):
         self.curves.mark(LINEAR, "circle", figures.INK, SMALL)
         self.picture, self.text = pane(), pane()
         self.panel = column(self.curves.panel, self.picture, self.text)
+        kinds = ("plotted", "periodic", "waves", "run_up", "swept", "followed")
+        self.parts = {kinds: [self.curves.panel, self.picture, self.text]}
         self.found: dict[str, Any] = {}
 
     def clear(self) -> None:

@@ -73,6 +73,10 @@ class _Side(Side["OrdersView"]):
         self.mode = Mode()
         self.said = pane()
         self.panel = column(self.orders.panel, self.wave.panel, self.campbell.panel, self.mode.panel, self.said)
+        self.parts = {
+            ("orders",): [self.orders.panel], ("wave",): [self.wave.panel], ("campbell",): [self.campbell.panel],
+            ("modes",): [self.mode.panel], ("findings",): [self.said],
+        }  # fmt: skip
 
     def _speeds(self) -> tuple[str, float, float]:
         """Unit of speeds, how many of it a rad/s is, and the speed looked at in it."""

@@ -108,6 +108,10 @@ class _Side(Side["StabilityView"]):
         self.picture.visible = self.figure.visible = False
         about = pane(small(_ABOUT_MOTION))
         self.panel = column(self.picture, self.regions, self.said, self.point.panel, self.motion.panel, about)
+        self.parts = {
+            ("chart", "resonances"): [self.picture], ("chart",): [self.said], ("tongues",): [self.regions],
+            ("point",): [self.point.panel], ("motion",): [self.motion.panel],
+        }  # fmt: skip
 
     def narrow(self, narrow: bool) -> None:
         """Beside its colours half of the page holds three numbers."""
@@ -147,8 +151,9 @@ class _Side(Side["StabilityView"]):
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
         if fresh:
             self._image(data, x, y)
-            figures.put_rows(self.outlines, [])
-            self._say_regions("Regions narrower than the points lie apart are being searched for …")
+            if not ("tongues" in self.shown and self.is_current("tongues")):
+                figures.put_rows(self.outlines, [])
+                self._say_regions("Regions narrower than the points lie apart are being searched for …")
         if self.extent != (x, y):
             self.extent, self.ends = (x, y), []
             self.figure.x_range.update(start=x.ends[0], end=x.ends[1])
@@ -202,6 +207,11 @@ class _Side(Side["StabilityView"]):
                 ends[low], ends[high] = span[0] / axis.size, span[1] / axis.size
         self.box.update(**ends, visible=any(v is not None for v in ends.values()))
 
+    def forget(self, kind: str) -> None:
+        """The lines at named speeds, where no axis is the speed any more."""
+        if kind == "resonances":
+            figures.put_rows(self.names, [])
+
     def show_resonances(self, step: Step, data: Any) -> None:
         """Lines at the named speeds across the chart."""
         x, y = self.view.axes(self.line)
@@ -224,6 +234,8 @@ class _Side(Side["StabilityView"]):
             self._image(self.whole, *self.extent)
             return
         self.ends = ends
+        if not self.is_current("chart"):
+            return  # another chart is on its way, and will be refined
         self.view.session.beside(self._refine(ends))
 
     async def _refine(self, ends: list[tuple[float, float]]) -> None:

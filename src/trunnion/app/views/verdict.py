@@ -55,6 +55,8 @@ class _Side(Side["VerdictView"]):
         self.help = Help(self.view.session)
         margins = pn.pane.Bokeh(self.margins, sizing_mode="stretch_width")
         self.panel = column(self.sentence, margins, self.help.panel, self.torque.panel, self.table)
+        judged = [self.sentence, margins, self.help.list, self.table]
+        self.parts = {("assessment",): judged, ("assessment", "torque_limits"): [self.torque.panel]}
         self.binding = ""
         self.course: Any = {}
 
@@ -126,6 +128,9 @@ class _Side(Side["VerdictView"]):
         if len(shown) == 1 and quantity == "N*m" and np.isfinite(limit):
             curves.append(Curve("limit", x, np.full(len(x), limit), figures.ORANGE, "dotted"))
         whose = springs[shown[0]] if len(shown) == 1 else "all shafts"
+        case = self.view.settings["load"]
+        if load_cases(self.line):
+            whose += ", the line as stated without its load cases" if case == ALL else f", {case}"
         self.torque.set(curves, x=f"input speed [{unit}]", y="torque [N·m]", title=f"torque of {whose}")
 
 
