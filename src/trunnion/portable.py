@@ -35,7 +35,7 @@ def carried(value: Any) -> bytes:
 
     before = _WITHIN.set(True)
     try:
-        content: bytes = cloudpickle.dumps(value)
+        content: bytes = cloudpickle.dumps(value)  # type: ignore[no-untyped-call]
     finally:
         _WITHIN.reset(before)
     return content

@@ -141,8 +141,9 @@ def pool() -> Iterator[ProcessPoolExecutor]:
 
 
 EVERY = [
-    pytest.param(name, marks=() if name in (*QUICK, *OWN) and name not in LONG else pytest.mark.slow) for name in (*RUN, *OWN)
-]  # fmt: skip
+    pytest.param(name, marks=() if name in (*QUICK, *OWN) and name not in LONG else pytest.mark.slow)
+    for name in (*RUN, *OWN)
+]
 
 
 @pytest.mark.parametrize("name", EVERY)

@@ -91,7 +91,8 @@ def overview(
 def at_speed(given: Answer) -> Overview:
     """An answer with what belongs to the operating speed, without the chart."""
     judged = given.speed is not None and not lossy(given.assembly)  # which the findings say
-    here, said = None, ()
+    here: Stability | None = None
+    said: tuple[Finding, ...] = ()
     try:
         if judged and given.speed is not None:
             here = stability(given.assembly, given.speed)

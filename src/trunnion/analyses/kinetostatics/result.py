@@ -12,7 +12,15 @@ from typing import Any
 import numpy as np
 
 from trunnion._version import __version__
-from trunnion.analyses.kinetostatics.measures import ROUNDING, Parts, equivalent_angle, extremes, irregularity, largest, parts
+from trunnion.analyses.kinetostatics.measures import (
+    ROUNDING,
+    Parts,
+    equivalent_angle,
+    extremes,
+    irregularity,
+    largest,
+    parts,
+)
 from trunnion.analyses.kinetostatics.supports import Supports
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
