@@ -132,6 +132,7 @@ def test_json_says_what_was_not_reached(run, here, long):
 
 
 @posix
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["certify-chaos", "assess --remedies"])
 def test_ctrl_c_gives_what_there_is(start, here, long, command):
     """The first one asks for an end; the answer is that of what was known by then, and the exit code says so."""
@@ -223,7 +224,7 @@ def test_a_search_that_is_cut_short_does_not_call_its_largest_value_the_largest(
         found = search(assembly, respond, [grid], [torque])
     assert found.ended == "the search was stopped" and np.all(np.isinf(found.error))
     assert found.value[0] == pytest.approx(values.max(), rel=1e-12)
-    assert not whole.ended and whole.value[0] > 1.5 * found.value[0]  # the resonance lies between the nine
+    assert not whole.ended and whole.value[0] > 1.2 * found.value[0]  # the resonance lies between the nine
 
 
 @pytest.mark.parametrize("within", [0.01, 0.4])

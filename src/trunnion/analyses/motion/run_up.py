@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
@@ -37,8 +38,10 @@ from trunnion.equations.loads import drive_torques, given_shares, static_torque
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes_in
-from trunnion.waiting import OutOfTime, keeps_time, time_is_up
+from trunnion.waiting import OutOfTime, keeps_time, time_is_up, time_kept
 
+BEGINNING = inf, 0.3
+"""Of a time limit, what finding the motion to begin on leaves to the run, and the share that it takes."""
 STEADY_SPEEDS = 81
 STATIC_SPEEDS = 65
 """Speeds at which the static torque is computed; between them it is interpolated."""
@@ -92,14 +95,21 @@ def run_up(
     prepared = line_system(line, first)
     require_share(prepared.assembly)
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)
-    begun, extra = _begin(prepared)
+    ended = ""
+    try:
+        with time_kept(*BEGINNING):
+            begun, extra = _begin(prepared)
+    except OutOfTime as error:
+        begun, extra = prepared.twisted() if prepared.assembly.topology.free else prepared.rest(), 0.0
+        ended = f"{error.why}: the run does not begin on the periodic motion at the first speed"
     run, ending = _run(prepared, asked, begun, extra, tolerance)
-    ended = f"{time_is_up()}: the run is not whole" if not run.outcome.ok and time_is_up() else ""
-    if ending is not None and not ending.on_time and not ended:
+    if not run.outcome.ok and (why := time_is_up()):
+        ended = f"{why}: the run is not whole"
+    elif ending is not None and not ending.on_time:
         other = LOOSER * tolerance if LOOSER * tolerance <= LOOSEST else tolerance / LOOSER
         again = _run(prepared, asked, begun, extra, other)[1]
-        if ended := time_is_up():
-            ended = f"{ended}: no run at another tolerance confirms how it ends"
+        if why := time_is_up():
+            ended = f"{why}: no run at another tolerance confirms how it ends"
         elif again is not None and again.kind != ending.kind:
             ending = replace(ending, kind="undecided", ways=(ending.kind, again.kind))
     # Windows of equal angle, a turn or a little more, so that none is left over.
