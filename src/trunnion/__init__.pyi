@@ -120,5 +120,6 @@ from trunnion.systems.second_order import Spring as Spring
 from trunnion.systems.second_order import backlash_spring as backlash_spring
 from trunnion.systems.second_order import cubic_spring as cubic_spring
 from trunnion.systems.system import System as System
+from trunnion.waiting import time_limit as time_limit
 
 __version__: str

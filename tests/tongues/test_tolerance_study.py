@@ -239,3 +239,15 @@ def test_lines_are_chosen_by_cost_and_the_result_says_so(monkeypatch: pytest.Mon
     monkeypatch.setattr(module, "SECONDS", 1e-3)
     found = tn.tolerance_study(OSCILLATOR, speeds=48.0, checks=True, samples=256).checks
     assert found is not None and found.chosen_by_cost and found.lines == 64 and "0.001 s allow" in str(found)
+
+
+def test_a_share_of_a_load_that_load_cases_alone_state_is_one_of_the_heaviest():
+    """Taken under that case, and told; without load cases there is nothing to take a share of."""
+    parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=3.0), tn.Disk(inertia=0.5, name="roll")]
+    cases = [tn.LoadCase(name="rolling", loads={"roll": 60.0}), tn.LoadCase(name="bite", loads={"roll": -110.0})]
+    line = tn.Driveline(parts, operation=tn.Operation(speed=100.0, load_cases=cases))
+    found = tn.tolerance_study(line, {"roll.load_torque": 0.1}, samples=256)
+    assert (found.low[0], found.high[0]) == pytest.approx((-121.0, -99.0))
+    assert "load case bite" in str(found.findings[0])
+    with pytest.raises(tn.errors.InputError, match=r"roll\.load_torque.*is zero"):
+        tn.tolerance_study(tn.Driveline(parts, operation=tn.Operation(speed=100.0)), {"roll.load_torque": 0.1})

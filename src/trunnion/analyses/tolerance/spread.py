@@ -20,6 +20,7 @@ Tolerances = Mapping[str, object]
 """Path → what it scatters by; see ``read_tolerances``."""
 LEAST = 1e-12
 """Shares closer to 0 or 1 would be infinite quantiles of a normal distribution, before it is cut."""
+ZERO = "is zero, so no share of it is a tolerance"
 EXAMPLE = '{"Shaft 1.stiffness": 0.1} for ±10 %, ("range", low, high), ("normal", 0.03) or ("deviation", size)'
 
 
@@ -61,7 +62,7 @@ def _spread(assembly: Assembly, path: str, given: object) -> Spread:
     columns = columns_of(assembly, path)
     nominal, scatter = assembly.packed.value(path), _read(path, given)
     if nominal == 0 and scatter.form in ("share", "normal"):
-        raise InputError("is zero, so no share of it is a tolerance", key=path, remedy='("range", low, high)')
+        raise InputError(ZERO, key=path, remedy='("range", low, high)')
     return Spread(columns.label, columns.unit, columns, nominal, *scatter.ends(nominal), scatter.deviation(nominal))
 
 

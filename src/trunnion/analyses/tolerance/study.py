@@ -19,7 +19,15 @@ from trunnion.analyses.features import left_out
 from trunnion.analyses.tolerance.checks import CheckStudy, study_checks
 from trunnion.analyses.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
 from trunnion.analyses.tolerance.sampling import SCRAMBLES, interval, sobol
-from trunnion.analyses.tolerance.spread import Spread, Tolerances, numbers_at, read_tolerances, tables, values_in_words
+from trunnion.analyses.tolerance.spread import (
+    ZERO,
+    Spread,
+    Tolerances,
+    numbers_at,
+    read_tolerances,
+    tables,
+    values_in_words,
+)
 from trunnion.arrays import Array, Codes
 from trunnion.driveline.arguments import one_number, speeds_of, whole_number
 from trunnion.driveline.driveline import Driveline
@@ -29,7 +37,7 @@ from trunnion.errors import InputError
 from trunnion.results.chart import require_pixels
 from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks, remarks_of
 from trunnion.results.drawing import Axes, drawing
-from trunnion.results.finding import Finding
+from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import OutOfTime, keeps_time, limited, time_is_up, to_the_end
@@ -180,8 +188,7 @@ def tolerance_study(
         raise InputError("must be True, False or a number of lines", key="checks", value=checks)
     if not 0.5 <= one_number(confidence, "confidence", "0.95, say") < 1:
         raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
-    assembly = assemble(line)
-    spreads = read_tolerances(assembly, tolerances)
+    assembly, spreads, taken = _read(line, tolerances)
     each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
     require_pixels(each * SCRAMBLES, len(at))
     lines = ManyLines.of(
@@ -220,10 +227,30 @@ def tolerance_study(
         _worst(lines, spreads, shares, growth, at),
         _ranking(spreads, shares, growth[fastest]),
         speed_unit(assembly.line),
-        left_out("tolerance_study", assembly.line),
+        (*taken, *left_out("tolerance_study", assembly.line)),
         judged,
         ended,
     )
+
+
+def _read(
+    line: Driveline | Assembly, tolerances: Tolerances | None
+) -> tuple[Assembly, tuple[Spread, ...], tuple[Finding, ...]]:
+    """The line and what scatters. A share of a load that load cases alone state is one of the case that loads the line
+    most, under which the line then is, as a finding says."""
+    assembly = assemble(line)
+    try:
+        return assembly, read_tolerances(assembly, tolerances), ()
+    except InputError as error:
+        name, _, key = error.key.rpartition(".")
+        operation = assembly.line.operation
+        cases = [case for case in (operation.load_cases if operation else ()) if case.loads.get(name)]
+        if error.problem != ZERO or key != "load_torque" or not cases:
+            raise
+        most, path = max(cases, key=lambda case: abs(case.loads[name])), error.key
+    said = f"{path} is 0 as stated: the line is studied under load case {most.name}, where it is largest"
+    assembly = assemble(assembly.line.with_load(most.name))
+    return assembly, read_tolerances(assembly, tolerances), (Finding(Gravity.NOTE, f"{said}."),)
 
 
 def _judged(
