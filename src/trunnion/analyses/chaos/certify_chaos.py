@@ -18,8 +18,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,6 +30,7 @@ from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum, shear_bound
 from trunnion.analyses.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
 from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.analyses.chaos.usual_section import turn_of, usual_section
 from trunnion.analyses.motion.long_motion import motion_size
 from trunnion.analyses.motion.repetition import modulo
 from trunnion.arrays import Array, Flags
@@ -413,7 +412,7 @@ def _map(
             system, points, every=every, start=run.states[-1], transient=0, tolerance=spectrum.tolerance
         )
     if section is None:
-        section = _usual_section(system, run.states, turning)
+        section = usual_section(system, run.states, turning)
     longest = max(len(run.growth) * spectrum.interval, 100 * spectrum.interval)
     return poincare_map(
         system, min(points, max(len(run.growth) // 2, 1)), section=section, start=run.states[-1], transient=0,
@@ -421,39 +420,12 @@ def _map(
     )  # fmt: skip
 
 
-def _usual_section(system: System, states: Array, turning: Array) -> Event:
-    """The mean of the state that moves most, rising; where all are angles, the first of them passing whole turns."""
-    free = [j for j in range(system.size) if not turning[:, j].any()]
-    if not free:
-        # An angle that wanders away from its mean for ever passes whole turns again and again.
-        turn = _turn_of(0, turning)
-        angle = system.states[0] if turn == 2 * np.pi else f"{system.states[0]}·2π/{turn:.6g}"
-        return Event(_sine_of(0, turn), direction=1, name=f"sin({angle}) = 0")
-    j = max(free, key=lambda j: float(np.ptp(states[:, j])) / float(np.asarray(system.scale)[j]))
-    return Event(system.states[j], float(np.mean(states[:, j])), direction=1)
-
-
-def _turn_of(place: int, turning: Array) -> float:
-    """By how much a state turns once around; 0 of one that does not turn."""
-    return float(np.abs(turning[:, place]).max(initial=0.0))
-
-
-@cache
-def _sine_of(place: int, turn: float) -> Callable[..., Any]:
-    factor = 2 * np.pi / turn
-
-    def sine(t: float, x: Any, p: Any) -> Any:
-        return np.sin(factor * x[place])
-
-    return sine
-
-
 def _test(system: System, mapped: PoincareMap, free: list[int], turning: Array) -> ZeroOne | None:
     """The test on the state that moves most over its scale; of an angle its sine."""
     if len(mapped.points) < FEWEST_FOR_TEST:
         return None
     points = mapped.points[-POINTS:]
-    turn = {j: _turn_of(j, turning) for j in free}
+    turn = {j: turn_of(j, turning) for j in free}
     columns = {j: np.sin(2 * np.pi / turn[j] * points[:, j]) if turn[j] else points[:, j] for j in free}
     scales = {j: 1.0 if turn[j] else float(np.asarray(system.scale)[j]) for j in free}
     best = max(free, key=lambda j: float(np.ptp(columns[j])) / (scales[j] + float(np.abs(columns[j]).max())))

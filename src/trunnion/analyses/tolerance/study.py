@@ -244,12 +244,14 @@ def _read(
     except InputError as error:
         name, _, key = error.key.rpartition(".")
         operation = assembly.line.operation
-        cases = [case for case in (operation.load_cases if operation else ()) if case.loads.get(name)]
+        cases = [case.name for case in (operation.load_cases if operation else ()) if case.loads.get(name)]
         if error.problem != ZERO or key != "load_torque" or not cases:
             raise
-        most, path = max(cases, key=lambda case: abs(case.loads[name])), error.key
-    said = f"{path} is 0 as stated: the line is studied under load case {most.name}, where it is largest"
-    assembly = assemble(assembly.line.with_load(most.name))
+        path = error.key
+    loaded = {case: assemble(assembly.line.with_load(case)) for case in cases}
+    most = max(cases, key=lambda case: abs(loaded[case].packed.value(path)))
+    said = f"{path} is 0 as stated: the line is studied under load case {most}, where it is largest"
+    assembly = loaded[most]
     return assembly, read_tolerances(assembly, tolerances), (Finding(Gravity.NOTE, f"{said}."),)
 
 
