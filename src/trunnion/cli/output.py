@@ -269,16 +269,16 @@ class _Lines:
     def __call__(self, share: float) -> None:
         left = self.clock.left(share)
         if share > 0 and time.monotonic() - self.last >= LONG:
-            self._say(f"{100 * share:.0f} %{f', {left}' if left else ''}")
+            self._say(f"{self.what}: {100 * share:.0f} %{f', {left}' if left else ''}")
 
     def _tell(self) -> None:
         while not self.done.wait(QUIET):
             if time.monotonic() - self.last >= QUIET:
-                self._say(f"{time.monotonic() - self.clock.start:.0f} s so far")
+                self._say(f"still at work after {time.monotonic() - self.clock.start:.0f} s: {self.what}")
 
     def _say(self, told: str) -> None:
         self.last = time.monotonic()
-        note(f"{self.what}: {told}")
+        note(told)
 
 
 STOPPING = "stopping with what is known by now; Ctrl-C again leaves at once"
