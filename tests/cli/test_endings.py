@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import subprocess
 import sys
@@ -26,9 +27,11 @@ def test_an_unexpected_error_is_one_line_and_a_file_to_send(run, here, monkeypat
     monkeypatch.setattr(catalogue, "entries", breaks)
     monkeypatch.setattr(tempfile, "tempdir", str(here))
     result = run("catalogue", "--json")
-    assert result.exit_code == 1 and result.stdout == ""
+    assert result.exit_code == 1
     (line,) = result.stderr.splitlines()
     assert line.startswith("error: unexpected RuntimeError: wheels came off xxx") and len(line) < 500
+    said = json.loads(result.stdout)
+    assert (said["error"], said["exit_code"]) == ("defect", 1) and f"error: {said['problems'][0]['message']}" == line
     (report,) = here.glob("trunnion-*-crash.txt")
     assert line.endswith(str(report))
     text = report.read_text(encoding="utf-8")

@@ -111,16 +111,18 @@ def test_a_narrow_encoding_does_not_break_the_output(start):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
 @pytest.mark.parametrize("later", [False, True], ids=["while it starts", "while it computes"])
-def test_ctrl_c_leaves_nothing(start, here, later):
+@pytest.mark.parametrize("asked", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_who_is_asked_to_end_leaves_nothing(start, here, later, asked):
+    """Ctrl-C, and what a scheduler, a service or a closing terminal sends."""
     before = sorted(os.listdir(here))
     process = start("stability-chart", "line.toml", "--points", "3000x3000", program=("-c", HEARD))
     assert process.stdout.readline() == "ready\n"
     if later:
         time.sleep(3)  # whatever it is doing by then
     assert process.poll() is None
-    process.send_signal(signal.SIGINT)
+    process.send_signal(getattr(signal, asked))
     out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}[asked]
     assert out == ""
     assert err.splitlines()[-1] == "error: interrupted; nothing was written"
     assert "Traceback" not in err

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 CHART = ("stability-chart", "line.toml", "--points", "4x3")
@@ -109,14 +111,34 @@ def test_one_line_exit_code_2_and_nothing_written(run, here, args, says, as_json
         (here / name).write_bytes(content)
     (here / "folder").mkdir()
     before = contents(here)
-    result = run(*args, *(["--json"] if as_json and len(args) > 1 else []))
+    with_json = as_json and len(args) > 1
+    result = run(*args, *(["--json"] if with_json else []))
     assert result.exit_code == 2, result.output
-    assert result.stdout == ""
+    if with_json:
+        said = json.loads(result.stdout)
+        (problem,) = said["problems"]
+        assert (said["command"], said["exit_code"]) == (args[0], 2) and said["error"] in ("input", "usage")
+        assert set(problem) == {"element", "key", "value", "problem", "remedy", "message"}
+        assert f"error: {problem['message']}\n" == result.stderr and problem["problem"] in result.stderr
+        assert said["error"] == "usage" or problem["key"] or problem["element"] or "too long" in result.stderr
+    else:
+        assert result.stdout == ""
     assert result.stderr.count("\n") == 1 and result.stderr.startswith("error: ")
     for part in says:
         assert part in result.stderr
     assert "Traceback" not in result.stderr
     assert contents(here) == before
+
+
+def test_json_has_every_mistake_of_a_file(run, here):
+    (here / "bad.toml").write_text('formt = 1\n[[element]]\ntype = "Disk"\ninertia = -1\n[[element]]\ntype = "Shft"\n')
+    result = run("stability", "bad.toml", "--json")
+    said = json.loads(result.stdout)
+    assert result.exit_code == said["exit_code"] == 2
+    assert [f"error: {one['message']}" for one in said["problems"]] == result.stderr.splitlines()
+    inertia = next(one for one in said["problems"] if one["key"] == "inertia")
+    assert (inertia["element"], inertia["value"]) == ("bad.toml: Disk 1 (element 1)", -1)
+    assert all(one["remedy"] for one in said["problems"] if one["key"] != "inertia")
 
 
 def contents(folder):

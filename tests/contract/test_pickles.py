@@ -140,10 +140,8 @@ def pool() -> Iterator[ProcessPoolExecutor]:
         yield made
 
 
-EVERY = [
-    pytest.param(name, marks=() if name in (*QUICK, *OWN) and name not in LONG else pytest.mark.slow)
-    for name in (*RUN, *OWN)
-]
+NOW = [name for name in (*QUICK, *OWN) if name not in LONG]
+EVERY = [pytest.param(name, marks=() if name in NOW else pytest.mark.slow) for name in (*RUN, *OWN)]
 
 
 @pytest.mark.parametrize("name", EVERY)

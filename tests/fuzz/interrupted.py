@@ -1,5 +1,7 @@
 """Runs a command until it begins to write, and from there again and again: killed at random moments, on a full disk.
 
+One kill in three is SIGKILL, after which the next run sweeps; Ctrl-C and SIGTERM leave nothing to sweep.
+
 A process of its own, since it forks and mounts: ``python interrupted.py KILLS SIZES SEED COMMAND…`` in a folder of its
 own, whose sub-folder ``disk`` is the working folder of the command. It exits with 1 and a line for each
 fault. Where no file system may be mounted the size of files is limited instead.
@@ -22,7 +24,11 @@ from pathlib import Path
 
 from trunnion import writing
 from trunnion.cli import app
+from trunnion.cli.failures import EndedBy
 
+SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
+HEARS = 0.02
+"""Seconds after which a copy of this process hears signals as a command does."""
 OLD = b"the old result"
 ENDS = {".png": b"IEND\xaeB`\x82", ".html": b"</html>", ".csv": b"\n", ".toml": b"\n"}
 MOUNT = ["mount", "-t", "tmpfs", "-o"]
@@ -80,10 +86,12 @@ class Trial:
         self.faults += [f"{name} is not whole" for name, content in self.results.items() if not whole(name, content)]
         needed = sum(len(content) // 4096 + 2 for content in self.results.values())
         self.reset()
-        for _ in range(self.kills):
+        for k in range(self.kills):
             if not (child := started()):
+                signal.signal(signal.SIGINT, signal.default_int_handler)  # as in the foreground
+                EndedBy.hear()
                 return sweep(folder)
-            self.kill(child, self.random.uniform(0, self.lasts))
+            self.kill(child, self.random.uniform(0, self.lasts), SIGNALS[k % len(SIGNALS)])
         for k in range(self.sizes):
             self.reset()
             undone = limited(round(1.1 * needed * k / max(1, self.sizes - 1)))
@@ -99,16 +107,21 @@ class Trial:
         for name in self.results:
             Path(name).write_bytes(OLD)
 
-    def kill(self, child: int, after: float) -> None:
-        time.sleep(after)
-        os.kill(child, signal.SIGKILL)
-        ended(child)
-        self.old_or_new(f"killed after {after:.4f} s")
+    def kill(self, child: int, after: float, how: signal.Signals) -> None:
+        time.sleep(max(after, 0.0 if how is signal.SIGKILL else HEARS))
+        os.kill(child, how)
+        code = ended(child)
+        where = f"{how.name} after {after:.4f} s"
+        self.old_or_new(where)
+        if how is not signal.SIGKILL:
+            self.nothing_else(f"{where}, before the next run")
+            if code not in (0, 128 + how):
+                self.faults.append(f"{where}: code {code}, {LOG.read_text()[-300:]}")
         for folder in {Path(), *(Path(name).parent for name in self.results)}:
             with writing.written_whole(folder / "next.toml") as temporary:  # the next run
                 temporary.write_bytes(b"\n")
             (folder / "next.toml").unlink()
-        self.nothing_else(f"after the next run, killed after {after:.4f} s")
+        self.nothing_else(f"{where}, after the next run")
         self.reset()
 
     def after_full_disk(self, code: int, where: str) -> None:

@@ -54,7 +54,7 @@ def tried(folder: Path, command: str, kills: int, sizes: int, seed: int) -> str:
 
 
 def test_a_few_moments_and_sizes(tmp_path):
-    assert tried(tmp_path, COMMANDS[0], 3, 2, 0) == "whole\n"
+    assert tried(tmp_path, COMMANDS[0], 12, 2, 0) == "whole\n"
 
 
 @pytest.mark.slow

@@ -1,16 +1,11 @@
-"""The program around the commands: exit codes, one-line errors, remarks, Ctrl-C.
-
-Exit codes are 0, 1 (computation failed), 2 (bad input, mistyped commands included) and 130 (Ctrl-C).
-"""
+"""The program around the commands: what they are, remarks, and one line for whatever fails, see ``failures``."""
 
 from __future__ import annotations
 
-import errno
 import os
 import sys
 import warnings
-from contextlib import suppress
-from typing import Any, cast
+from typing import Any
 
 import typer
 from rich.markup import escape
@@ -21,8 +16,8 @@ from trunnion.cli import describe, output, study
 from trunnion.cli.app import app as serve_app
 from trunnion.cli.assess import assess, campbell_diagram, envelope
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
-from trunnion.cli.crash import crash_line
 from trunnion.cli.design import compare, optimise, sensitivity
+from trunnion.cli.failures import EndedBy, Interrupted, answer
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import certify_stability, minimum_damping, stable_windows, tolerance_study, tongues
 from trunnion.cli.motion import linearity_check, periodic_response, run_up, simulate
@@ -31,18 +26,10 @@ from trunnion.cli.orders import order_response, speed_sweep, stable_limit
 from trunnion.cli.rattle import frequency_response, sweep
 from trunnion.cli.reproduce import reproduce
 from trunnion.cli.warm_up import warm_up
-from trunnion.errors import InputRemark, TrunnionError, short
-
-# Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
-_UsageError = cast("type[Exception]", typer.BadParameter.__mro__[1])
-
+from trunnion.errors import InputRemark
 
 INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it."""
-
-
-class _Interrupted(Exception):
-    """Ctrl-C, under a name that typer does not answer itself."""
+"""What typer answers a Ctrl-C with, in silence."""
 
 
 class OneLineGroup(TyperGroup):
@@ -57,9 +44,9 @@ class OneLineGroup(TyperGroup):
         try:
             result = super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
-            raise _Interrupted(*interrupt.args) from None
+            raise Interrupted(*interrupt.args) from None
         if output.stopped():
-            raise _Interrupted("this is what was known by then")
+            raise Interrupted("this is what was known by then")
         return result
 
     def main(self, args: Any = None, prog_name: str | None = None, **extra: Any) -> Any:  # type: ignore[override]
@@ -71,10 +58,10 @@ class OneLineGroup(TyperGroup):
             try:
                 code = super().main(arguments, prog_name or "trunnion", **extra)
                 if code == INTERRUPTED:  # typer's own answer, before and after a command runs, is silent
-                    raise _Interrupted
+                    raise Interrupted
                 sys.stdout.flush()
             except Exception as error:
-                code = _answer(error, arguments)
+                code = answer(error, arguments)
         sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -93,49 +80,6 @@ def _open_streams() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
         elif hasattr(stream, "reconfigure"):  # an old Windows console has no ω
             stream.reconfigure(errors="replace")
-
-
-def _answer(error: Exception, arguments: list[str]) -> int:
-    """Exit code of a failure, said on stderr in one line, or in one line per complaint."""
-    match error:
-        case _Interrupted():
-            return _fail(f"interrupted; {str(error) or 'nothing was written'}", INTERRUPTED)
-        case BrokenPipeError():  # who reads us has gone, as "head" does
-            _discard_stdout()
-            return 1
-        case TrunnionError():
-            for line in str(error).splitlines():
-                _fail(line, error.exit_code)
-            return error.exit_code
-        case _UsageError():
-            return _fail(_message(error), 2)
-        case MemoryError():
-            return _fail("not enough memory; ask for fewer points", 1)
-        case OSError(errno=errno.ENAMETOOLONG):
-            return _fail(f"{short(str(error.filename))}: is too long for the name of a file; choose a shorter one", 2)
-        case OSError():
-            if error.filename is None:
-                _discard_stdout()
-            where = f"{error.filename}: " if error.filename else ""
-            return _fail(f"{where}{error.strerror or error}", 1)
-    return _fail(crash_line(error, arguments), 1)
-
-
-def _discard_stdout() -> None:
-    """What is still buffered cannot be written and must not fail again when Python leaves."""
-    with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _message(error: Any) -> str:
-    text: str = error.format_message()
-    text = short(text, 300)
-    return text if "--help" in text else f"{text.rstrip('.')}; try --help"
-
-
-def _fail(message: str, code: int) -> int:
-    print(f"error: {' '.join(message.split())}", file=sys.stderr)
-    return code
 
 
 def _print_remarks() -> None:
@@ -224,7 +168,8 @@ for command in COMMANDS:
 
 def main(args: list[str] | None = None) -> None:
     """Entry point of the ``trunnion`` script."""
+    EndedBy.hear()
     try:
         app(args)
     except KeyboardInterrupt:  # before a command was reached, or after it
-        sys.exit(_answer(_Interrupted(), []))
+        sys.exit(answer(Interrupted(), sys.argv[1:] if args is None else args))
