@@ -160,7 +160,7 @@ def answered(name: str) -> Any:
 def test_a_copy_answers_as_the_original(name: str, way: Callable[[Any], Any]) -> None:
     found = computed(name)
     again = way(found)
-    assert again is not found and type(again) is type(found)
+    assert type(again) is type(found) and (again is not found or isinstance(found, tuple))
     assert repr(answers(again)) == repr(answers(found))
 
 

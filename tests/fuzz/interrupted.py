@@ -27,8 +27,6 @@ from trunnion.cli import app
 from trunnion.cli.failures import EndedBy
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
-HEARS = 0.02
-"""Seconds after which a copy of this process hears signals as a command does."""
 OLD = b"the old result"
 ENDS = {".png": b"IEND\xaeB`\x82", ".html": b"</html>", ".csv": b"\n", ".toml": b"\n"}
 MOUNT = ["mount", "-t", "tmpfs", "-o"]
@@ -50,12 +48,16 @@ def whole(name: str, content: bytes) -> bool:
 
 
 def started() -> int:
-    """A copy of this process; in it, what comes after is heard by the log alone."""
+    """A copy of this process, which hears signals as a command does; what it says is heard by the log alone."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS[1:])  # until it hears them
     child = os.fork()
     if not child:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # as in the foreground
+        EndedBy.hear()
         log = os.open(LOG, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1)
         os.dup2(log, 2)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS[1:])
     return child
 
 
@@ -88,8 +90,6 @@ class Trial:
         self.reset()
         for k in range(self.kills):
             if not (child := started()):
-                signal.signal(signal.SIGINT, signal.default_int_handler)  # as in the foreground
-                EndedBy.hear()
                 return sweep(folder)
             self.kill(child, self.random.uniform(0, self.lasts), SIGNALS[k % len(SIGNALS)])
         for k in range(self.sizes):
@@ -108,7 +108,7 @@ class Trial:
             Path(name).write_bytes(OLD)
 
     def kill(self, child: int, after: float, how: signal.Signals) -> None:
-        time.sleep(max(after, 0.0 if how is signal.SIGKILL else HEARS))
+        time.sleep(after)
         os.kill(child, how)
         code = ended(child)
         where = f"{how.name} after {after:.4f} s"
@@ -184,4 +184,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:  # while it was leaving already
+        os._exit(EndedBy.code())

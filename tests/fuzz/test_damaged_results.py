@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 
 import h5py
 import numpy as np
 import pytest
 import xarray as xr
 
+import trunnion as tn
 from trunnion.errors import ComputationError, InputError
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.results.chart import StabilityChart, read_chart
@@ -157,3 +159,99 @@ def test_a_full_disk_leaves_the_old_chart(content, tmp_path, room, monkeypatch):
     with pytest.raises(ComputationError, match=r"chart\.nc: cannot be written \(No space left"):
         chart().save(path)
     assert path.read_bytes() == content and [p.name for p in tmp_path.iterdir()] == ["chart.nc"]
+
+
+def put(name, place, value):
+    """One number of an array changed."""
+    return lambda file: file[name].__setitem__(place, value)
+
+
+def of_shape(name, shape, value=0.5):
+    def change(file):
+        kind = file[name].dtype
+        del file[name]
+        file.create_dataset(name, shape=shape, dtype=kind, fillvalue=value)
+
+    return change
+
+
+def bomb(file):
+    """2.6 GB of zeros in some kilobytes."""
+    del file["spectral_radius"]
+    file.create_dataset("spectral_radius", shape=(18_000, 18_000), dtype="f8", compression="gzip", chunks=(1000, 1000))
+
+
+def elsewhere(file):
+    """Numbers of another file."""
+    del file["spectral_radius"]
+    file["spectral_radius"] = h5py.ExternalLink("/etc/passwd", "/x")
+
+
+def raw(file):
+    del file["spectral_radius"]
+    file.create_dataset("spectral_radius", (3, 4), "f8", external=[("/etc/passwd", 0, 96)])
+
+
+WRONG = {
+    "a radius beyond numbers": (put("spectral_radius", (0, 0), 1e300), "spectral_radius lies outside"),
+    "a negative radius": (put("spectral_radius", (1, 1), -0.5), "spectral_radius lies outside"),
+    "an infinite radius": (put("spectral_radius", (1, 1), np.inf), "spectral_radius lies outside"),
+    "a radius that is no multiplier's": (put("spectral_radius", (1, 1), 0.7), "spectral_radius differ"),
+    "a missing radius": (put("spectral_radius", (1, 1), np.nan), "failed points"),
+    "a negative error": (put("error_estimate", (2, 3), -1e-9), "error_estimate is negative"),
+    "a missing error": (put("error_estimate", (2, 3), np.nan), "error_estimate is negative or missing"),
+    "an unknown verdict": (put("verdict", (0, 1), 77), "verdict is none of the known ones"),
+    "a verdict that is not so": (put("verdict", (0, 1), 1), "verdict contradicts"),
+    "an axis that falls": (put("x", 1, 9.0), "x does not rise"),
+    "an axis without a number": (put("y", 1, np.nan), "y does not rise"),
+    "another shape": (of_shape("spectral_radius", (4, 3)), "spectral_radius is not 3 × 4 numbers"),
+    "one row": (of_shape("error_estimate", (4,)), "error_estimate is not 3 × 4 numbers"),
+    "no pixels": (of_shape("verdict", (0, 0), 0), "verdict is not 3 × 4 numbers"),
+    "another patch box": (of_shape("patch_box", (1, 3)), "is no whole stability chart"),
+    "an infinite period": (said("period", np.inf), "its period is not positive"),
+    "a negative tolerance": (said("tolerance", -1.0), "its tolerance is not positive"),
+    "a speed of zero": (said("speed", -3.0), "its speed is not positive"),
+    "deep remarks": (said("remarks", "[" * 30_000), "is no whole stability chart"),
+    "numbers for remarks": (said("remarks", "[1, 2]"), "its texts are none"),
+    "a long remark": (said("remarks", json.dumps(["x" * 100_000])), "its texts are none"),
+    "a negative check": (
+        said("spot_check", json.dumps({"points": 3, "worst_ratio": -1.0, "worst_difference": 0.0})), "is negative"
+    ),
+    "a bomb": (bomb, "unpacks to 2.41 GB, at most 2 GB is read"),
+    "a link to another file": (elsewhere, "has parts that this program does not write"),
+    "bytes of another file": (raw, "has parts that this program does not write"),
+    "a group": (lambda file: file.create_group("more"), "has parts that this program does not write"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "says"), WRONG.values(), ids=WRONG.keys())
+def test_contents_that_no_computation_gives_are_refused(content, tmp_path, change, says):
+    """Whose checksum fits: somebody made them, or a defect did."""
+    assert says in refused(tmp_path / "chart.nc", edited(content, change))
+
+
+@pytest.mark.parametrize(
+    ("number", "says"), [(3, "is of an older format"), (1, "is of an older format"), (5, "is of a later format")]
+)
+def test_another_format_is_said_to_be_older_or_later(content, tmp_path, number, says):
+    line = refused(tmp_path / "chart.nc", edited(content, said("format", f"trunnion stability chart {number}")))
+    assert says in line and "this Trunnion reads 4" in line
+    assert ("use a newer Trunnion" in line) == (number > 4)
+
+
+def test_real_charts_pass(tmp_path):
+    """Of lines far into instability, with collisions, with failed points, of a family of one's own, on one column."""
+    line = tn.catalogue("two-shaft-cardan")
+    charts = [
+        tn.stability_chart(line, ("speed", 0.3, 2.0, 30), ("HookeJoint 1.angle", 0.0, 1.2, 20)),
+        tn.stability_chart(line, ("speed", 0.02, 0.03, 3), ("Shaft *.damping", 0.0, 1.0, 4)),
+        tn.stability_chart(line, ("speed", 1.0, 1.0, 1), ("HookeJoint 1.angle", 0.0, 1.2, 5)),
+    ]
+    for k, made in enumerate(charts):
+        made.save(tmp_path / f"{k}.nc")
+        again = tn.load_chart(tmp_path / f"{k}.nc")
+        assert np.array_equal(again.spectral_radius, made.spectral_radius, equal_nan=True)
+        assert (
+            again.at(float(made.x[0]), float(made.y[-1])).verdict
+            == made.at(float(made.x[0]), float(made.y[-1])).verdict
+        )

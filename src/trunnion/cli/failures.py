@@ -48,6 +48,12 @@ class EndedBy:
                     signal.signal(number, cls._stop)
 
     @classmethod
+    def ignore(cls) -> None:
+        """From now on nothing is left to clean up, and the exit code stands."""
+        if cls.number == signal.SIGINT:
+            cls.number = 0
+
+    @classmethod
     def _stop(cls, number: int, frame: Any) -> None:
         if cls.number == signal.SIGINT:
             cls.number = number
@@ -56,7 +62,7 @@ class EndedBy:
     @classmethod
     def code(cls) -> int:
         """The exit code, as shells have it."""
-        return 128 + cls.number
+        return 128 + (cls.number or signal.SIGINT)
 
 
 @dataclass(frozen=True)

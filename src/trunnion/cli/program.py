@@ -173,3 +173,5 @@ def main(args: list[str] | None = None) -> None:
         app(args)
     except KeyboardInterrupt:  # before a command was reached, or after it
         sys.exit(answer(Interrupted(), sys.argv[1:] if args is None else args))
+    finally:
+        EndedBy.ignore()

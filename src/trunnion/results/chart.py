@@ -21,6 +21,7 @@ from trunnion.driveline.parameters import Parameter, Term
 from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
+from trunnion.results.chart_contents import what_is_wrong
 from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.files import read_dataset, save_numbers
@@ -267,11 +268,17 @@ def require_pixels(*points: float) -> None:
 def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
     """Read what ``StabilityChart.save`` wrote, without the means to integrate new points."""
     data = read_dataset(path, FORMAT)
+    remedy = "give a saved chart, or compute it again"
     try:
-        return _chart_of(data)
-    except (KeyError, ValueError, TypeError, AttributeError):  # of another hand: parts are missing or misshapen
-        problem = "is no whole stability chart"
-        raise InputError(problem, key=str(path), remedy="give a saved chart, or compute it again") from None
+        chart = _chart_of(data)
+        wrong = what_is_wrong(chart)
+    except (KeyError, ValueError, TypeError, AttributeError, IndexError, RecursionError):  # of another hand
+        raise InputError("is no whole stability chart", key=str(path), remedy=remedy) from None
+    if wrong:
+        raise InputError(
+            f"is no stability chart that this program could have saved: {wrong}", key=str(path), remedy=remedy
+        )
+    return chart
 
 
 def _chart_of(data: xr.Dataset) -> StabilityChart:

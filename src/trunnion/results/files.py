@@ -11,13 +11,13 @@ import hashlib
 import io
 import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from trunnion._version import __version__
-from trunnion.errors import InputError
-from trunnion.numerics.memory import MOST
+from trunnion.errors import InputError, short
+from trunnion.numerics.memory import MOST, size_text
 from trunnion.reading import regular_bytes
 from trunnion.writing import written_whole
 
@@ -106,6 +106,7 @@ def read_dataset(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
     content = _whole(path)
     import xarray as xr
 
+    _require_plain(path, content)
     try:
         data = xr.load_dataset(io.BytesIO(content), engine="h5netcdf")
     except Exception:  # the bytes are those that were written, so they are no dataset: xarray has many errors for it
@@ -113,8 +114,46 @@ def read_dataset(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
     if data.attrs.get("format_version") != FORMAT_VERSION:
         raise _refusal(path, "is of another version of the format", data.attrs.get("format_version"))
     if data.attrs.get("format") != kind:
-        raise _refusal(path, f'is no "{kind}"', data.attrs.get("format"))
+        _refuse_kind(path, kind, data)
     return data
+
+
+def _refuse_kind(path: str | os.PathLike[str], kind: str, data: xr.Dataset) -> NoReturn:
+    """Say of a file of another kind, or of another version of this kind, which it is."""
+    found = str(data.attrs.get("format"))
+    (what, _, number), (its, _, other) = kind.rpartition(" "), found.rpartition(" ")
+    if its != what or not other.isdecimal() or len(other) > 4:
+        raise _refusal(path, f'is no "{kind}"', data.attrs.get("format"))
+    older = int(other) < int(number)
+    writer = short(str(data.attrs.get("trunnion", "unknown")), 20)
+    remedy = f"compute it again, or read it with Trunnion {writer}, which wrote it" if older else "use a newer Trunnion"
+    problem = f"is of {'an older' if older else 'a later'} format, {its} {other}; this Trunnion reads {number}"
+    raise InputError(problem, key=str(path), remedy=remedy)
+
+
+def _require_plain(path: str | os.PathLike[str], content: bytes) -> None:
+    """Refuse what unpacks to more than memory is given to, and what takes its numbers from other files.
+
+    Raises
+    ------
+    InputError : so, or these bytes are no HDF5 file.
+    """
+    import h5py
+
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            links = [file.get(name, getlink=True) for name in file]
+            alone = all(isinstance(link, h5py.HardLink) for link in links)
+            arrays = [file[name] for name in file] if alone else []
+            alone = alone and not any(a.external or a.is_virtual for a in arrays if isinstance(a, h5py.Dataset))
+            size = sum(float(a.size or 0) * a.dtype.itemsize for a in arrays if isinstance(a, h5py.Dataset))
+            groups = any(not isinstance(a, h5py.Dataset) for a in arrays)
+    except Exception:  # damaged structures have many errors
+        raise _refusal(path, "is not a netCDF file") from None
+    if not alone or groups:
+        raise _refusal(path, "has parts that this program does not write")
+    if size > LARGEST:
+        raise _refusal(path, f"unpacks to {size_text(size)}, at most {size_text(LARGEST)} is read")
 
 
 def _whole(path: str | os.PathLike[str]) -> bytes:
