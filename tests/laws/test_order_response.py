@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 import warnings
 from typing import Any
 
@@ -292,3 +293,32 @@ def test_the_drawing_shows_the_limits_of_the_description() -> None:
     assert not any("N·m" in str(line.get_label()) for line in bare.plot().get_lines())
     asked = bare.plot(limits={"rating": 50.0})
     assert any(line.get_label() == "rating 50 N·m" for line in asked.get_lines())
+
+
+def test_orders_that_would_not_fit_are_refused_before_anything_is_solved():
+    """By what they need, not by their number: with straight joints each is solved by itself, and all are taken."""
+    orders = [{"order": 5.0 * k + 1.0, "amplitude": 1.0} for k in range(2000)]
+
+    def line(angle: float) -> tn.Driveline:
+        return tn.Driveline(
+            [
+                tn.ConstantSpeed(),
+                tn.Shaft(stiffness=1e4, damping=5.0),
+                tn.Disk(inertia=0.1),
+                tn.HookeJoint(angle=angle),
+                tn.Shaft(stiffness=1e4, damping=5.0),
+                tn.Disk(name="load", inertia=0.2, excitation=orders),
+            ]
+        )
+
+    tracemalloc.start()
+    try:
+        with pytest.raises(tn.InputError, match="would need .* GB of memory, at most 2 GB") as caught:
+            tn.order_response(line(0.2), [90.0, 100.0])
+        assert tracemalloc.get_traced_memory()[1] < 2**29
+    finally:
+        tracemalloc.stop()
+    assert (caught.value.element, caught.value.key, caught.value.value) == ("load", "excitation", "2000 orders")
+    assert "leave out the orders" in caught.value.remedy and "\n" not in str(caught.value)
+    found = tn.order_response(line(0.0), [90.0])
+    assert len(found.order) >= 2000

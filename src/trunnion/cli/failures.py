@@ -41,6 +41,7 @@ class EndedBy:
     def hear(cls) -> None:
         """From now on signals that ask a process to end raise KeyboardInterrupt, so that it cleans up; the first of
         them alone."""
+        cls.number = int(signal.SIGINT)
         for name in ENDINGS:
             number = getattr(signal, name, None)
             with suppress(ValueError, OSError):  # not in the main thread

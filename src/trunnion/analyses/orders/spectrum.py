@@ -6,6 +6,7 @@ Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}]
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -267,6 +268,7 @@ class _Case:
             table[:, 0] = self.few
         co = self.coefficients(table)
         groups, layers, times = self._plan(reach)
+        self._require_room_for(max(len(g.harmonics(layers, reach)[0]) for g in groups), times, len(table))
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
         matrices, base = line_matrices(self.topo, co, tau), self._base(table, co, tau)
         step = table[:, 0] / float(self.turns)
@@ -275,6 +277,21 @@ class _Case:
         if self.few is not None:
             self.written[reach] = found
         return found
+
+    def _require_room_for(self, harmonics: int, times: int, nodes: int) -> None:
+        """Refuse orders whose equations would not fit: ``harmonics`` of a group on ``times`` samples, at ``nodes``."""
+        n = self.topo.size
+        # Complex: the matrices of the nodes, those of a batch of cases and their factors; and what is sampled.
+        matrices = nodes + 2 * min(self.batch, len(self.numbers))
+        needed = 16.0 * (matrices * (harmonics * n) ** 2 + 4 * nodes * times * n**2)
+        element, orders = Counter(e.element for e in self.shaken).most_common(1)[0] if self.shaken else ("driveline", 0)
+        require_memory(
+            needed,
+            element=element,
+            key="excitation",
+            value=f"{orders} orders",
+            remedy="leave out the orders that matter least; with straight joints each is solved by itself",
+        )
 
     def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
         topo, speed = self.topo, cases[:, 0]
