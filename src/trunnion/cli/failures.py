@@ -39,8 +39,7 @@ class EndedBy:
 
     @classmethod
     def hear(cls) -> None:
-        """From now on signals that ask a process to end raise KeyboardInterrupt, so that it cleans up; the first of
-        them alone."""
+        """From now on the first signal that asks this process to end does what Ctrl-C does, so that it cleans up."""
         cls.number = int(signal.SIGINT)
         for name in ENDINGS:
             number = getattr(signal, name, None)
@@ -58,7 +57,11 @@ class EndedBy:
     def _stop(cls, number: int, frame: Any) -> None:
         if cls.number == signal.SIGINT:
             cls.number = number
-            raise KeyboardInterrupt
+            on_ctrl_c = signal.getsignal(signal.SIGINT)  # which may ask what is computed for what it has
+            if callable(on_ctrl_c):
+                on_ctrl_c(number, frame)
+            else:  # a command in the background
+                raise KeyboardInterrupt
 
     @classmethod
     def code(cls) -> int:
