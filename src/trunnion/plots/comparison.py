@@ -12,8 +12,12 @@ from trunnion.plots.style import ACCENT, INK, VERMILION, key_below, new_axes, ro
 MARGIN = "margin of "
 SHOWN = 12
 """Rows at most."""
-WORST, BEST = -100.0, 100.0
-"""Margins [%] beyond these stand at the edge."""
+EVEN, FARTHEST = 100.0, 1e6
+"""Margins [%] up to which the axis is even, and beyond logarithmic; and where one without end stands."""
+TICKS = (50.0, 100.0, 1e3, 1e4, 1e5, 1e6)
+"""Numbers at an axis that is logarithmic beyond ±100 %, to either side of 0."""
+BETWEEN = (300.0, 3e3)
+"""More of them where there are few."""
 
 
 def draw(found: Comparison, axes: Axes | None = None, *, most: int = SHOWN) -> Axes:
@@ -33,17 +37,31 @@ def draw(found: Comparison, axes: Axes | None = None, *, most: int = SHOWN) -> A
 def _margins(found: Comparison, rows: list[Difference], axes: Axes | None) -> Axes:
     axes = axes if axes is not None else new_axes(7.6, 1.7 + 0.36 * len(rows))
     for place, one in enumerate(rows):
-        ends = np.clip([100 * one.before, 100 * one.after], WORST, BEST)
+        ends = np.clip([100 * one.before, 100 * one.after], -FARTHEST, FARTHEST)
         better = not ends[1] < ends[0]
         axes.plot(ends, [place, place], color=ACCENT if better else VERMILION, lw=2.2, zorder=2)
         before, after = found.names if not place else (None, None)
         axes.plot(ends[:1], [place], "o", mfc="white", mec=INK, ms=7, zorder=3, label=before)
         axes.plot(ends[1:], [place], "o", color=INK, ms=7, zorder=3, label=after)
     axes.axvline(0.0, color=INK, lw=1.0)
-    far = max(abs(100 * end) for one in rows for end in (one.before, one.after)) > BEST
-    words = "margin [%]" + ", beyond ±100 at the edge" * far
+    far = np.nanmax([abs(100 * end) for one in rows for end in (one.before, one.after)])
+    words = "margin [%]" + ", logarithmic beyond ±100" * bool(far > EVEN)
+    if far > EVEN:
+        _logarithmic_beyond(axes)
     names = [one.name.removeprefix(MARGIN) + " (guideline, shown)" * _shown(found, one) for one in rows]
     return _finished(axes, names, words)
+
+
+def _logarithmic_beyond(axes: Axes) -> None:
+    """Even up to ``EVEN`` and logarithmic beyond, so that no two far margins fall onto one another."""
+    low, high = axes.dataLim.intervalx
+    axes.set_xscale("symlog", linthresh=EVEN, linscale=1.2)
+    axes.set_xlim(min(1.5 * low, -0.2 * EVEN), max(1.5 * high, 0.2 * EVEN))
+    ends = axes.get_xlim()
+    every = (0.0, *TICKS, *(BETWEEN if max(-ends[0], ends[1]) < TICKS[3] else ()))
+    axes.set_xticks([tick for t in every for tick in {-t, t} if ends[0] <= tick <= ends[1]])
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value + 0.0:,.0f}".replace(",", "\u202f").replace("-", "−"))
+    axes.set_xticks([], minor=True)
 
 
 def _shown(found: Comparison, margin: Difference) -> bool:

@@ -6,7 +6,18 @@ from matplotlib.axes import Axes
 
 from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
 from trunnion.errors import InputError
-from trunnion.plots.style import ACCENT, INK, TEXT, VERMILION, key_below, new_axes, printed, rows_of_names
+from trunnion.plots.style import (
+    ACCENT,
+    INK,
+    TEXT,
+    UNBROKEN,
+    VERMILION,
+    head,
+    key_below,
+    new_axes,
+    printed,
+    rows_of_names,
+)
 
 SHOWN = 10
 """Parameters shown at most."""
@@ -24,7 +35,8 @@ def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = 
     if not effects:
         why = chosen.refused or "follows none of the parameters"
         raise InputError(f"has nothing to draw: {why}", key="quantity", value=chosen.name, remedy="name another one")
-    axes = axes if axes is not None else new_axes(7.2, 1.6 + 0.34 * len(effects))
+    alone = axes is None
+    axes = axes if axes is not None else new_axes(7.2, 1.8 + 0.36 * len(effects))
     factor, label = share_of(chosen)
     tenths = too_large(chosen, effects[0].change)
     for place, one in enumerate(effects):
@@ -32,9 +44,14 @@ def draw(found: Sensitivities, quantity: str | None = None, axes: Axes | None = 
         axes.barh(place, size, color=ACCENT, height=0.62, label="step upwards" if not place else None)
         axes.barh(place, -size, color=VERMILION, alpha=0.55, height=0.62, label="step downwards" if not place else None)
     axes.axvline(0.0, color=INK, lw=1.0)
-    names = [f"{e.parameter} ({smaller(e.step_words, tenths).replace('+', '±')})" for e in effects]
+    steps = [smaller(e.step_words, tenths).replace("+", "±").replace(" ", UNBROKEN) for e in effects]
+    names = [f"{e.parameter} ({step})" for e, step in zip(effects, steps, strict=True)]
     rows_of_names(axes, names, f"change{label}")
-    axes.set_title(f"{chosen.name}: {printed(found.shown(chosen))}", fontsize=TEXT, color=INK, loc="left")
+    title = f"{chosen.name}: {printed(found.shown(chosen))}"
+    if alone:
+        head(axes.figure.figure, title, TEXT)
+    else:
+        axes.set_title(title, fontsize=TEXT, color=INK, loc="left")
     key_below(axes, 2, loc="outside lower right", labelcolor=INK)
     return axes
 

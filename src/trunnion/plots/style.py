@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from trunnion.arrays import Array
 from trunnion.plots.formats import check_format
@@ -51,6 +52,8 @@ STYLES = len(PATTERNS) * len(MARKERS)
 UNBROKEN = "\u00a0"
 """Space at which a title does not break, as between a number and its unit."""
 DPI = 200
+NAME = 30
+"""Letters of a name in a row before it breaks."""
 
 
 def new_figure(width: float, height: float, *, layout: Literal["constrained"] | None = "constrained") -> Figure:
@@ -100,12 +103,18 @@ def plain(axes: Axes) -> None:
 
 
 def rows_of_names(axes: Axes, names: Sequence[str], x: str) -> None:
-    """Labels of bars or marks that lie in rows, the first on top, and the same look."""
-    axes.set_yticks(range(len(names)), names)
-    axes.invert_yaxis()
+    """Labels of bars or marks that lie in rows, the first on top, and the same look.
+
+    Long names break into lines, and few numbers stand at the axis, which long names leave little room.
+    """
+    broken = [fill(name, NAME, break_long_words=False).replace(UNBROKEN, " ") for name in names]
+    axes.set_yticks(range(len(names)), broken)
+    axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_axisbelow(True)
     label_axes(axes, x)
     axes.tick_params(axis="y", labelsize=SMALL)
+    if axes.get_xscale() == "linear":
+        axes.xaxis.set_major_locator(MaxNLocator(5))
 
 
 def head(figure: Figure, title: str, size: float = TITLE) -> None:

@@ -12,10 +12,12 @@ from trunnion.analyses.tongues.result import Tongue, Tongues
 from trunnion.analyses.tongues.windows import StableWindows
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, new_axes
+from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, logarithmic, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 
 FACE, EDGE = "#d9c3c9", "#4a1526"
+WIDE = 100.0
+"""How many times the low end of a searched range the high end must be for a logarithmic axis."""
 LEAP = 100.0
 """How many times steeper than on the whole an edge must run to count as leaping."""
 LABELLED = 12
@@ -29,6 +31,7 @@ def draw(
     unit: str | None = None,
     pixel: float | None = None,
     labelled: int = LABELLED,
+    wide: bool = False,
 ) -> Axes:
     """Draw ``tongues`` and return the axes.
 
@@ -38,6 +41,7 @@ def draw(
     unit : of speeds; default the one of the description.
     pixel : distance of a chart's pixels along x (SI): tongues nowhere as wide are marked, as its picture may hide them.
     labelled : how many names are written.
+    wide : whether y runs over powers of ten, in a figure of its own.
     """
     alone = axes is None
     axes = axes if axes is not None else new_axes()
@@ -57,6 +61,8 @@ def draw(
             axes.plot(x * across.factor, y * up.factor, marker="v", ms=6, color=ACCENT, mec="white", zorder=7)
     if alone:
         axes.set_xlim(*(v * across.factor for v in tongues.x_range))
+        if wide:
+            logarithmic(axes, "y")
         axes.set_ylim(*(v * up.factor for v in tongues.y_range))
         label_axes(axes, across.label, up.label, grid=False)
         _names(axes, tongues, across.factor, up.factor, labelled)
@@ -69,7 +75,8 @@ def draw_windows(
     found: StableWindows, axes: Axes | None = None, *, unit: str | None = None, labelled: int = LABELLED
 ) -> Axes:
     """The unstable regions over speed and parameter, and the windows in which every speed is stable."""
-    axes = draw(found.tongues, axes, unit=unit, labelled=labelled)
+    low, high = found.tongues.y_range
+    axes = draw(found.tongues, axes, unit=unit, labelled=labelled, wide=0 < WIDE * low <= high)
     factor = quantity_axis(found.parameter, found.unit, "rad/s").factor
     for low, high in found.windows.tolist():
         axes.axhspan(low * factor, high * factor, color=ACCENT, alpha=0.12, lw=0, zorder=0)
@@ -102,21 +109,18 @@ def _beginning(tongue: Tongue) -> tuple[float, float] | None:
 
 def _names(axes: Axes, tongues: Tongues, across: float, up: float, most: int) -> None:
     """Names under the tips, leaving out those that would stand on another."""
-    wide = abs(tongues.x_range[1] - tongues.x_range[0]) * across
-    tall = abs(tongues.y_range[1] - tongues.y_range[0]) * up
     taken: list[tuple[float, float]] = []
+    to_axes = axes.transData - axes.transAxes
     named = [(t.resonance, _beginning(t)) for t in tongues]
     for resonance, place in [one for one in named if None not in one][:most]:
         assert resonance is not None and place is not None
         x, y = place[0] * across, place[1] * up
-        if any(abs(x - a) < 0.13 * wide and abs(y - b) < 0.06 * tall for a, b in taken):
+        right, top = to_axes.transform((x, y))
+        if any(abs(right - a) < 0.13 and abs(top - b) < 0.06 for a, b in taken):
             continue
-        taken.append((x, y))
-        near_left, near_right = (
-            x < tongues.x_range[0] * across + 0.08 * wide,
-            x > tongues.x_range[1] * across - 0.08 * wide,
-        )
-        near_bottom = y < min(tongues.y_range) * up + 0.05 * tall  # below it stand the numbers of the axis
+        taken.append((right, top))
+        near_left, near_right = right < 0.08, right > 0.92
+        near_bottom = top < 0.05  # below it stand the numbers of the axis
         axes.annotate(
             resonance.label,
             (x, y),
