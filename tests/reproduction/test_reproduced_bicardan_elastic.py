@@ -34,3 +34,22 @@ def test_relative_changes_by_other_means() -> None:
     ratio = np.gradient(rigid.output_angle, chi)  # dψ₂/dχ₂, by differences
     shift = elastic.output_angle - rigid.output_angle
     assert shift[5:-5] == pytest.approx((ratio * elastic.twist[1])[5:-5], rel=0.02, abs=2e-8)
+
+
+def test_extremes_stand_between_the_samples(study) -> None:  # type: ignore[no-untyped-def]
+    """Largest acceleration of the output from the paper's own (2) to (6), on a million angles."""
+    alpha, phase = np.deg2rad(27.99), np.deg2rad(266.4 - 180.0)
+    phi = np.linspace(0, np.pi, 1_000_001)
+
+    def joint(angle):  # type: ignore[no-untyped-def]
+        below = 1 - np.sin(alpha) ** 2 * np.cos(angle) ** 2
+        turned = np.arctan2(np.sin(angle), np.cos(angle) * np.cos(alpha))
+        slope = np.cos(alpha) / below
+        return turned, slope, -slope * np.sin(alpha) ** 2 * np.sin(2 * angle) / below
+
+    first, w1, e1 = joint(phi)
+    _, w2, e2 = joint(first + np.pi / 2 - phase)
+    most = np.abs(e2 * w1**2 + w2 * e1).max()
+    row = next(r for r in study("bicardan-elastic").tables[0].rows if r.place == "acceleration of the output")
+    assert row.computed == f"{-most:.5f} … {most:.5f} rad/s²"
+    assert most == pytest.approx(0.531614, abs=1e-6)
