@@ -176,7 +176,10 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
-    "impact damping": (meshed(backlash=1e-4), meshed(backlash=1e-4, impact_damping=1e9)),
+    "impact damping": (
+        meshed(teeth_out=25, backlash=1e-4),
+        meshed(teeth_out=25, backlash=1e-4, impact_damping=1e9),
+    ),
     "backlash": (meshed(teeth_out=25), meshed(teeth_out=25, backlash=1e-4)),  # 1:1, so that the phases of joints tell
     "transmission error": (meshed(), meshed(transmission_error=[{"amplitude": 1e-5}])),
     "mesh-stiffness variation": (meshed(), meshed(stiffness_variation=[{"share": 0.2}])),
