@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from types import SimpleNamespace
+
 import pytest
+
+pytest.importorskip("panel")
 
 import trunnion as tn
 from trunnion.app.address import pack, unpack
 from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
+from trunnion.app.form import Group
 from trunnion.app.variants import difference
+from trunnion.app.views.driveline import DrivelineView
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.errors import InputError
@@ -197,6 +204,164 @@ def test_elements_are_added_moved_and_removed() -> None:
     document.undo()
     document.undo()
     assert document.line == Document(starter("two-shaft")).line
+
+
+def edit(document: Document) -> Callable[[dict[str, object]], None]:
+    """What the table of the page sends, as its view takes it."""
+    host = SimpleNamespace(document=document, edit=lambda change: change(document))
+    view = SimpleNamespace(session=host, adapt=lambda line: None)
+    return lambda data: DrivelineView._edited(view, data)  # type: ignore[arg-type]
+
+
+LISTED = {"element": 6, "limit": 2, "load case": 2, "schedule": 2, "switched off": 2}
+
+
+def full() -> Document:
+    """The two-shaft starter with two of everything that can be added."""
+    document = Document(starter("two-shaft"))
+    for shaft in ("Shaft 1", "Shaft 2"):
+        document.add_limit(shaft)
+        document.add_load_case()
+        document.add_schedule()
+    for place in (0, 1):
+        document.switch_off()
+        document.set_text(("operation", "switched_off", place, "rule"), ("spicer-angles", "elbe-uniformity")[place])
+        document.set_text(("operation", "switched_off", place, "reason"), "turned by hand")
+    assert document.problems == ()
+    return document
+
+
+@pytest.mark.parametrize("kind", LISTED)
+def test_pressed_twice_a_table_is_removed_once(kind: str) -> None:
+    """Both clicks name the same table, which is gone with the first; what has moved to its place stays."""
+    document = full()
+    listed = [g for g in document.groups() if kind in (g.kind, g.path[:1] and g.path[0])]
+    assert len(listed) == LISTED[kind]
+    first, *others = listed
+    seen = {"do": "remove", "path": list(first.path), "key": first.key}
+    for _ in range(3):
+        edit(document)(seen)
+        now = [g for g in document.groups() if kind in (g.kind, g.path[:1] and g.path[0])]
+        assert [g.key for g in now] == [g.key for g in others]
+    document.undo()
+    assert [g.key for g in document.groups()] == [g.key for g in full_keys(document)]
+
+
+def full_keys(document: Document) -> list[Group]:
+    """Groups in order, each with a key that no other one of its list has."""
+    groups = list(document.groups())
+    for section in {g.path[:-1] for g in groups}:
+        keys = [g.key for g in groups if g.path[:-1] == section and g.key]
+        assert len(keys) == len(set(keys))
+    return groups
+
+
+def key_at(document: Document, place: int) -> int:
+    return next(g.key for g in document.groups() if g.path == ("element", place))
+
+
+def test_what_was_typed_meets_its_own_element_wherever_that_has_moved() -> None:
+    document = full()
+    shaft = next(g for g in document.groups() if g.title == "Shaft 2")
+    typed = {"do": "set", "path": [*shaft.path, "stiffness"], "key": shaft.key, "text": "9 kN*m/rad"}
+    edit(document)({"do": "remove", "path": ["element", 2], "key": key_at(document, 2)})
+    edit(document)(typed)
+    stiffness = {
+        n: getattr(e, "stiffness", 0.0) for n, e in zip(document.line.names, document.line.elements, strict=True)
+    }
+    assert (stiffness["Shaft 1"], stiffness["Shaft 2"]) == (12e3, 9e3)
+    edit(document)({"do": "remove", "path": list(shaft.path), "key": shaft.key})
+    before = document.data
+    edit(document)(typed)
+    assert document.data == before
+
+
+def schedule_fields(document: Document) -> dict[str, tuple[str, str]]:
+    """Text and message of the fields of the schedules, by label and group."""
+    groups = [g for g in document.groups() if g.kind == "schedule"]
+    return {f"{f.label} of {g.title}": (f.text, f.message) for g in groups for f in g.fields}
+
+
+def test_a_schedule_is_added_typed_and_taken_away() -> None:
+    document = Document(starter("three-shaft"))
+    before = document.line
+    document.add_schedule()
+    place = ("operation", "schedule", 0)
+    document.set_text((*place, "travel"), '["-60 mm", "0 mm", "90 mm"]')
+    message = schedule_fields(document)["angle of HookeJoint 1 of schedule schedule 1"][1]
+    assert "2 values for 3 points" in message
+    document.set_text((*place, "angles", "HookeJoint 1"), '["9 deg", "6 deg", "3 deg"]')
+    document.set_text((*place, "angles", "HookeJoint 2"), '["8 deg", "6 deg", "2 deg"]')
+    document.set_text((*place, "loads", "load"), '["10 N*m", "20 N*m", "30 N*m"]')
+    document.set_text((*place, "name"), "axle travel")
+    assert document.problems == ()
+    (schedule,) = document.line.operation.schedules
+    assert schedule.name == "axle travel" and schedule.travel == pytest.approx((-0.06, 0.0, 0.09))
+    assert {n: list(a) for n, a in schedule.angles.items()} == {
+        "HookeJoint 1": pytest.approx([tn.deg(9), tn.deg(6), tn.deg(3)]),
+        "HookeJoint 2": pytest.approx([tn.deg(8), tn.deg(6), tn.deg(2)]),
+    }
+    assert list(schedule.loads["load"]) == [10.0, 20.0, 30.0]
+    document.set_text((*place, "angles", "HookeJoint 1"), '["9 deg", "95 deg", "3 deg"]')
+    assert schedule_fields(document)["angle of HookeJoint 1 of schedule axle travel"][1]
+    document.remove(place)
+    assert document.line == before and document.problems == ()
+
+
+def test_a_joint_that_a_schedule_names_can_go() -> None:
+    """Its field stays, says so, and is emptied; the other joint is not taken for it though it is the first now."""
+    document = Document(starter("three-shaft"))
+    document.add_schedule()
+    place = ("operation", "schedule", 0)
+    document.set_text((*place, "angles", "HookeJoint 2"), '["8 deg", "2 deg"]')
+    joint = next(g for g in document.groups() if g.title == "HookeJoint 1")
+    document.remove(joint.path)
+    found = schedule_fields(document)
+    assert found["angle of HookeJoint 1 of schedule schedule 1"][1]
+    assert found["angle of HookeJoint 2 of schedule schedule 1"][1] == ""
+    document.set_text((*place, "angles", "HookeJoint 1"), "")
+    assert document.problems == ()
+    assert list(document.line.operation.schedules[0].angles) == ["HookeJoint 2"]
+    assert document.line.names.count("HookeJoint 2") == 1
+
+
+def test_what_is_said_of_an_element_stays_said_of_it_when_others_come_and_move() -> None:
+    """Of unnamed ones too, whose names count them: limits of the second shaft are not the first one's."""
+    document = Document(starter("two-shaft"))
+    document.add_limit("Shaft 2")
+    stiff = document.line.elements[document.line.index("Shaft 2")].stiffness
+    document.set_text(("element", 1, "stiffness"), "77 kN*m/rad")
+
+    def limited() -> float:
+        return document.line.elements[document.line.index(document.line.limits_by_element[0].element)].stiffness
+
+    assert limited() == stiff
+    document.add_element(1, "Disk")
+    document.add_element(1, "Shaft")
+    assert document.problems == () and limited() == stiff
+    document.move(1, 1)
+    assert document.problems == () and limited() == stiff
+    document.remove(("element", 2))
+    document.remove(("element", 2))
+    assert limited() == stiff
+
+
+def test_a_line_is_begun_with_nothing_and_built_up() -> None:
+    document = Document(starter("two-shaft"))
+    before = document.line
+    document.begin_empty()
+    assert document.problems and document.line is before
+    assert not [g for g in document.groups() if g.path[:1] == ("element",)]
+    for k, kind in enumerate(("ConstantSpeed", "Shaft", "HookeJoint", "Disk")):
+        document.add_element(k, kind)
+    assert document.problems == ()
+    assert document.line.names == ("ConstantSpeed 1", "Shaft 1", "HookeJoint 1", "Disk 1")
+    with pytest.raises(InputError):
+        document.set_text(("element", 2, "angle"), "200 deg")
+        document.set_numbers(document.line)
+    for _ in range(6):
+        document.undo()
+    assert document.line == before
 
 
 def test_changes_are_named_with_units() -> None:

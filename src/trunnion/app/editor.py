@@ -37,7 +37,7 @@ export function render({ model }) {
     const note = element("span", { class: "note", id: id + "-note", role: "alert" })
     const about = f.label + (group.title ? " of " + group.title : "")
     let input
-    const set = () => say({ do: "set", path: f.path, text: input.value })
+    const set = () => say({ do: "set", path: f.path, key: group.key, text: input.value })
     if (f.choices.length) {
       input = element("select", { id, "aria-label": about, onchange: set })
       for (const c of f.choices) input.append(element("option", { value: c }, c || "not stated"))
@@ -69,17 +69,20 @@ export function render({ model }) {
   }
 
   function tools(group) {
-    if (!["element", "limit"].includes(group.path[0]) && !["load case", "switched off"].includes(group.kind)) return ""
+    const listed = ["load case", "schedule", "switched off"].includes(group.kind)
+    if (!listed && !["element", "limit"].includes(group.path[0])) return ""
     const button = (text, about, data, off = false) => element("button",
-      { type: "button", title: about, "aria-label": about, disabled: off, onclick: () => say(data) }, text)
+      { type: "button", title: about, "aria-label": about, disabled: off, onclick: (event) => {
+        // the second click of a double one meets what has moved there since
+        if (data.do !== "remove" || event.detail < 2) say({ ...data, path: group.path, key: group.key })
+      } }, text)
     const name = group.title
-    const place = group.path[1]
     const row = element("span", { class: "tools" })
     if (group.path[0] === "element") {
-      row.append(button("\\u2191", "move " + name + " toward the drive", { do: "move", place, by: -1 }))
-      row.append(button("\\u2193", "move " + name + " toward the load", { do: "move", place, by: 1 }))
+      row.append(button("\\u2191", "move " + name + " toward the drive", { do: "move", by: -1 }))
+      row.append(button("\\u2193", "move " + name + " toward the load", { do: "move", by: 1 }))
     }
-    row.append(button("\\u00d7", "remove " + name, { do: "remove", path: group.path }))
+    row.append(button("\\u00d7", "remove " + name, { do: "remove" }))
     return row
   }
 
@@ -106,11 +109,12 @@ export function render({ model }) {
         say({ do: "add", kind: kind.value, place: +place.value - 1 }) }, "Add element"),
       element("button", { type: "button", onclick: () => say({ do: "limit" }) }, "Add limit"),
       element("button", { type: "button", onclick: () => say({ do: "load_case" }) }, "Add load case"),
+      element("button", { type: "button", onclick: () => say({ do: "schedule" }) }, "Add schedule"),
       element("button", { type: "button", onclick: () => say({ do: "switch_off" }) }, "Switch a rule off")))
   }
 
   function fill() {
-    const now = JSON.stringify(model.groups.map(g => [g.path, g.title, g.kind, g.addable,
+    const now = JSON.stringify(model.groups.map(g => [g.path, g.key, g.title, g.kind, g.addable,
       g.fields.map(f => [f.path, f.label])]))
     if (now !== shape) { keepFocus(build); shape = now }
     for (const group of model.groups) {

@@ -12,6 +12,8 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
 from trunnion.driveline.rules import APPLICATIONS, RULES, SwitchedOff
+from trunnion.driveline.schedules import KEYS as FOLLOWED
+from trunnion.driveline.schedules import OVER as SCHEDULE_OVER
 from trunnion.errors import InputError
 
 Path = tuple[str | int, ...]
@@ -19,6 +21,11 @@ _PLACE = re.compile(r"\(element ([0-9]+)\)$|^element ([0-9]+)$")
 _WHOLE = {"name": None, "description": None, "damping_ratio": RATIO, "damping_ratio_frequency": SPEED}
 _EXAMPLE_SPEEDS = {"rpm": "1500 rpm", "Hz": "25 Hz", "rad/s": "157 rad/s"}
 LOAD_CASE, LOADS, LOAD_KIND = "load_case", "loads", "load case"
+SCHEDULE, ANGLES = "schedule", "angles"
+LISTS: tuple[tuple[str, ...], ...] = (
+    ("element",), ("limit",), ("operation", LOAD_CASE), ("operation", SCHEDULE), ("operation", "switched_off"),
+)  # fmt: skip
+"""Where a file lists tables that can be added and taken away."""
 SWITCHED_OFF, OFF_KIND = "switched_off", "switched off"
 _HIDDEN = ("type", "after", "name")
 
@@ -37,7 +44,10 @@ class Field:
 
 @dataclass(frozen=True)
 class Group:
-    """Fields that belong together: the whole line, its operation, an element, a limit."""
+    """Fields that belong together: the whole line, its operation, an element, a limit.
+
+    key: what a listed table keeps while others come, go and move; its place in ``path`` changes.
+    """
 
     path: Path
     title: str
@@ -45,6 +55,7 @@ class Group:
     fields: tuple[Field, ...]
     addable: tuple[str, ...] = ()
     message: str = ""
+    key: int = 0
 
 
 class _Complaints:
@@ -81,6 +92,7 @@ def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Group
     groups = [_whole(data, left), _operation(operation, left)]
     groups += [_switched_off(i, one, left) for i, one in enumerate(operation.get(SWITCHED_OFF, []))]
     groups += [_load_case(i, case, disks, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
+    groups += [_schedule(i, table, elements, left) for i, table in enumerate(operation.get(SCHEDULE, []))]
     groups += [_element(i, table, names[i], left) for i, table in enumerate(elements)]
     groups += [_limit(i, table, left) for i, table in enumerate(data.get("limit", []))]
     if left.left:
@@ -148,6 +160,40 @@ def _load_case(place: int, table: Any, disks: Sequence[str], left: _Complaints) 
     return Group(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
 
 
+def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], left: _Complaints) -> Group:
+    """Its points, and what every joint and disk has there; an empty field leaves the element as it is.
+
+    What it says of an element that is there no more keeps its field, where it can be taken away."""
+    path: Path = ("operation", SCHEDULE, place)
+    table = table if isinstance(table, dict) else {}
+    name = str(table.get("name", ""))
+    owners = (f"schedule {name}", f"schedule {place + 1}")
+    fields = [Field((*path, "name"), "name", name, "axle travel", left.said(owners, "name"))]
+    over = "speed" if "speed" in table else "travel"
+    quantity = SCHEDULE_OVER[over]
+    points = text_of(table.get(over, ""), quantity)
+    hint = f'["{quantity.example}", ...]'
+    fields.append(Field((*path, over), f"points of {over}", points, hint, left.said(owners, over)))
+    for key, word, kind, there in (
+        (ANGLES, "angle of", ANGLE, joints_of(elements)),
+        (LOADS, "torque at", TORQUE, disks_of(elements)),
+    ):
+        stated = table.get(key)
+        values = stated if isinstance(stated, dict) else {}
+        for one in dict.fromkeys([*there, *values]):
+            said = (
+                left.said((*owners, f"{owners[0]}, {one}"), about) for about in (one, f"{key}.{one}", kind_key(key))
+            )
+            text = text_of(values.get(one, ""), kind)
+            fields.append(Field((*path, key, one), f"{word} {one}", text, "as it is", "; ".join(filter(None, said))))
+    return Group(path, f"schedule {name}", SCHEDULE, tuple(fields), (), left.rest(owners))
+
+
+def kind_key(key: str) -> str:
+    """The field of an element that a schedule's table ``key`` sets."""
+    return FOLLOWED[key]
+
+
 def _element(place: int, table: Mapping[str, Any], name: str, left: _Complaints) -> Group:
     path: Path = ("element", place)
     kind = str(table.get("type", ""))
@@ -192,6 +238,12 @@ def names_of(tables: Iterable[Mapping[str, Any]]) -> list[str]:
         seen[kind] = seen.get(kind, 0) + 1
         names.append(str(table.get("name") or f"{kind} {seen[kind]}"))
     return names
+
+
+def joints_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Names of the elements that have an angle."""
+    known = (KINDS.get(str(t.get("type", ""))) for t in tables)
+    return [n for n, kind in zip(names_of(tables), known, strict=True) if kind and "angle" in kind.model_fields]
 
 
 def disks_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -16,6 +16,9 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
 
+EMPTY = "empty"
+"""To begin with nothing."""
+
 
 class _Side(Side["DrivelineView"]):
     """The table with sketch and modes, or of a kept variant these alone."""
@@ -62,7 +65,9 @@ class DrivelineView(View):
 
     def _begin(self, document: Document) -> None:
         name = self.begin.value
-        if name.startswith("starter "):
+        if name == EMPTY:
+            document.begin_empty()
+        elif name.startswith("starter "):
             document.replace_text(starter(name.removeprefix("starter ")))
         else:
             from trunnion.studies.entries import catalogue
@@ -71,19 +76,24 @@ class DrivelineView(View):
 
     def _edited(self, data: dict[str, Any]) -> None:
         def change(document: Document) -> None:
+            found = document.place(tuple(data.get("path", ())), data.get("key", 0))
+            if found is None:
+                return  # taken away since: by the click before, say
             match data:
-                case {"do": "set", "path": list(path), "text": str(text)}:
-                    document.set_text(tuple(path), text)
+                case {"do": "set", "text": str(text)} if found:
+                    document.set_text(found, text)
                 case {"do": "add", "kind": str(kind), "place": int(place)}:
                     document.add_element(place, kind)
-                case {"do": "remove", "path": list(path)}:
-                    document.remove(tuple(path))
-                case {"do": "move", "place": int(place), "by": int(by)}:
-                    document.move(place, by)
+                case {"do": "remove"} if found:
+                    document.remove(found)
+                case {"do": "move", "by": int(by)} if found:
+                    document.move(int(found[1]), by)
                 case {"do": "limit"}:
                     document.add_limit("Shaft *")
                 case {"do": "load_case"}:
                     document.add_load_case()
+                case {"do": "schedule"}:
+                    document.add_schedule()
                 case {"do": "switch_off"}:
                     document.switch_off()
 
@@ -109,4 +119,6 @@ def _beginnings() -> dict[str, str]:
 
     names = {f"{name}: {about}": f"starter {name}" for name, about in STARTERS.items()}
     lines = [e for e in entries() if e.describes_line]
-    return names | {f"{e.name}: {e.title}": e.name for e in lines}
+    return (
+        names | {"an empty line: add its elements one by one": EMPTY} | {f"{e.name}: {e.title}": e.name for e in lines}
+    )
