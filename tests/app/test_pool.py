@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
@@ -107,3 +109,36 @@ def test_a_worker_that_dies_is_said_and_replaced() -> None:
         assert (await pool.run(MODES, owner)).kind == "done"
 
     on_pool(work)
+
+
+@pytest.mark.slow
+def test_two_threads_take_no_more_of_the_processor_than_one() -> None:
+    """Where a function has none of its own: linear algebra of small matrices is not spread over them."""
+    text = starter("truck").replace('# application = "road"', 'application = "road"')
+    job = Job(text, Call("tn.remedies", (LINE,), {"most": 1}), "remedies")
+    taken: list[float] = []
+
+    async def whole(threads: int) -> None:
+        pool = Pool(asyncio.get_running_loop(), threads, 1)
+        try:
+            await pool.run(Job(text, Call("tn.assess", (LINE,)), "nothing"), None)
+            (worker,) = pool.idle
+            before = processor_time(worker.process.pid)
+            await asyncio.wait_for(pool.run(job, None), 400)
+            taken.append(processor_time(worker.process.pid) - before)
+        finally:
+            pool.close()
+
+    for threads in (1, 2):
+        with ThreadPoolExecutor(1) as thread:
+            thread.submit(asyncio.run, whole(threads)).result()
+    assert taken[1] < 1.5 * taken[0]
+
+
+def processor_time(pid: int) -> float:
+    """Seconds that a process has computed."""
+    try:
+        numbers = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        pytest.skip("the system does not say what a process takes")
+    return (int(numbers[11]) + int(numbers[12])) / os.sysconf("SC_CLK_TCK")

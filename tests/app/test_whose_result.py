@@ -22,7 +22,7 @@ from trunnion.app import session as module
 from trunnion.app.address import pack
 from trunnion.app.calls import LINE, Call
 from trunnion.app.jobs import Answer, Job
-from trunnion.app.pieces import FAINT
+from trunnion.app.pieces import FAINT, Shown
 from trunnion.app.session import NOW, Session
 from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter
@@ -261,3 +261,51 @@ def test_a_best_value_is_used_for_the_parameter_it_was_found_for(monkeypatch: py
 
     query = {"limits.what": "best value of a parameter", "limits.high": "20", "limits.aim": "irregularity"}
     on_session(work, monkeypatch, view="limits", **query)
+
+
+def said(made: Session) -> str:
+    """What stands below "What would help?"."""
+    return "\n".join(str(one.object) for row in verdict(made).help.list.objects for one in row.select(Shown))
+
+
+def test_what_would_help_says_how_far_it_is_and_is_cancelled(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def work(made: Session, pool: Held) -> None:
+        help_ = verdict(made).help
+        pool.held.clear()
+        made.beside(help_._search())
+        await asyncio.sleep(0.05)
+        assert "Looking for" in said(made) and help_.search.disabled
+        assert made.page.bar.visible and not made.page.cancel_button.disabled and "busy" in made.page.state.object
+        made.cancel()
+        await asyncio.sleep(0.05)
+        assert "ended before" in said(made) and not help_.search.disabled
+        assert not made.page.bar.visible and "busy" not in made.page.state.object
+        pool.held.set()
+        pool.failure = "the computing process ended"
+        made.beside(help_._search())
+        await asyncio.sleep(0.05)
+        assert "no answer" in said(made) and "process ended" in made.page.said.object and not help_.search.disabled
+        assert not is_stamped(made), "the verdict is still this line's"
+
+    on_session(work, monkeypatch)
+
+
+def test_what_helps_one_line_is_not_tried_on_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def work(made: Session, pool: Held) -> None:
+        help_ = verdict(made).help
+        help_.question = help_._asked_now()
+        remedy = {"sentence": "a smaller angle", "variable": "HookeJoint 1.angle", "after": 0.02}
+        help_._show([remedy])
+        pool.held.clear()
+        turn(made, "11 deg")
+        line = made.document.line
+        help_._try(remedy)
+        assert made.document.line is line and faintly(help_.list)
+        pool.held.set()
+        await settled(made)
+        assert not help_.list.objects
+        help_.question = help_._asked_now()
+        help_._try(remedy)
+        assert made.document.line.elements[3].angle == 0.02
+
+    on_session(work, monkeypatch)

@@ -17,6 +17,9 @@ from typing import IO
 from trunnion.app.jobs import CUT_OFF, Answer, Job, Request, receive, send
 from trunnion.errors import ComputationError, InputError
 
+SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Linear algebra of a worker, whose matrices are small: further threads of it would only wait for each other, and take
+the processor from those that compute. How many threads a function has of its own is said to the function."""
 GRACE = 0.25
 """Seconds that a job has to leave by itself once it is cancelled."""
 PATIENCE = 3.0
@@ -29,8 +32,7 @@ class Worker:
     """One process. Answers arrive in the event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, threads: int) -> None:
-        limits = {k: str(threads) for k in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-        environment = {**os.environ, **limits, "MPLBACKEND": "Agg"}
+        environment = {**os.environ, **SINGLE, "MPLBACKEND": "Agg"}
         command = [sys.executable, "-m", "trunnion.app.worker", str(threads)]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
         assert self.process.stdin and self.process.stdout

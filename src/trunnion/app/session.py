@@ -343,15 +343,29 @@ class Session:
         """Whether a step took long when it was last computed, or never was."""
         return self.took.get((view.name, name), QUICK) >= QUICK
 
-    async def ask(self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None) -> Any:
+    async def ask(
+        self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None, *, says: bool = False
+    ) -> Any:
         """What one further computation for a side gives; ``options`` of what makes plain data of it.
 
-        Where the line has changed meanwhile nobody wants it any more: the work that asked ends."""
+        Where the line has changed meanwhile nobody wants it any more: the work that asked ends. says: show progress.
+        """
         toml = self._toml(side)
-        value = (await self.pool.run(Job(toml, call, show, options or {}), self)).value
+
+        def tell(share: float) -> None:
+            if says and self._is_at_rest():
+                self.locked(partial(self.page.busy, share))
+
+        value = (await self.pool.run(Job(toml, call, show, options or {}), self, tell)).value
+        if says and self._is_at_rest():
+            self.locked(self.page.idle)
         if self._toml(side) != toml:
             raise asyncio.CancelledError
         return value
+
+    def _is_at_rest(self) -> bool:
+        """Whether nothing is computed for the view."""
+        return self.task is None or self.task.done()
 
     def line(self, side: str) -> Driveline:
         """The present line, or the kept one."""

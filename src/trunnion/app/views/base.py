@@ -98,9 +98,11 @@ class Host(Protocol):
         """Hear that a setting of the visible view is another."""
 
     def ask(
-        self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None
+        self, call: Call, show: str, side: str, options: Mapping[str, Any] | None = None, *, says: bool = False
     ) -> Coroutine[Any, Any, Any]:
-        """One further computation for the line of a variant; nothing follows where the line changes meanwhile."""
+        """One further computation for the line of a variant; nothing follows where the line changes meanwhile.
+
+        says: its progress is shown, and Cancel ends it."""
 
     def beside(self, work: Coroutine[Any, Any, None]) -> None:
         """Begin what a click asks for, beside the computation of the view."""
