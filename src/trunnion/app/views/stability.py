@@ -50,8 +50,8 @@ MOST_NAMED = 6
 """Regions of instability that the page lists, those that grow fastest."""
 UNDISTURBED, DISTURBED = "undisturbed", "motion"
 PERCENT = 100.0
-GROWTH = 0.05
-"""Growth per turn at the ends of the colours."""
+LEAST_GROWTH, USUAL = 1e-4, 90
+"""Growth per turn at the ends of the colours at least, and the share [%] of a chart's points that lie between them."""
 _STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
 _UNSTABLE = ("#f6c49a", "#e8935a", "#d55e00", "#9c4300", "#5c2700")
 
@@ -69,6 +69,15 @@ def _now(line: Driveline, axis: Axis) -> float:
     return min(max(value, axis.low), axis.high)
 
 
+def end_of_colours(growth: Any) -> float:
+    """Growth per turn, round, at the dark end of the colours: most points of the chart are not darker. Zero is in the
+    middle, so that what grows is never of a colour of what dies out."""
+    sizes = np.abs(growth[np.isfinite(growth)])
+    most = max(LEAST_GROWTH, float(np.percentile(sizes, USUAL)) if sizes.size else 0.0)
+    ten = 10.0 ** np.floor(np.log10(most))
+    return float(next(ten * step for step in (1, 2, 5, 10) if ten * step >= most * (1 - 1e-9)))
+
+
 class _Side(Side["StabilityView"]):
     """Chart, multipliers, mode, motion."""
 
@@ -77,8 +86,7 @@ class _Side(Side["StabilityView"]):
         self.figure = figures.plot("", "", height=430, title="stability chart", x_range=(0, 1), y_range=(0, 1))
         self.figure.grid.visible = False
         self.image = figures.source(image=[], x=[], y=[], dw=[], dh=[])
-        ends = {"low": -PERCENT * GROWTH, "high": PERCENT * GROWTH}
-        self.colours = LinearColorMapper(palette=[*_STABLE, *_UNSTABLE], nan_color="#9a9a9a", **ends)
+        self.colours = LinearColorMapper(palette=[*_STABLE, *_UNSTABLE], low=-1, high=1, nan_color="#9a9a9a")
         drawn = self.figure.image("image", "x", "y", "dw", "dh", source=self.image, color_mapper=self.colours)
         bar = ColorBar(color_mapper=self.colours, title="growth per turn [%]", width=14, padding=4)
         self.figure.add_layout(bar, "right")
@@ -150,6 +158,8 @@ class _Side(Side["StabilityView"]):
         self.picture.visible = self.figure.visible = True
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
         if fresh:
+            end = PERCENT * end_of_colours(data["growth"])
+            self.colours.update(low=-end, high=end)
             self._image(data, x, y)
             if not ("tongues" in self.shown and self.is_current("tongues")):
                 figures.put_rows(self.outlines, [])
