@@ -265,7 +265,7 @@ class Document:
         """A key for a table that was put at the end of its list."""
         self._changed_keys[section].append(next(self._fresh))
 
-    def _take(self, data: dict[str, Any], keys: dict[Path, list[int]] | None = None) -> None:
+    def _take(self, data: dict[str, Any], keys: Mapping[Path, list[int]] | None = None) -> None:
         if data == self.data:
             return
         if keys is None or any(len(_listed(data, section)) != len(own) for section, own in keys.items()):
