@@ -14,7 +14,7 @@ from trunnion.app.address import pack, unpack
 from trunnion.app.calls import LINE, Call, script
 from trunnion.app.document import Document
 from trunnion.app.form import Group
-from trunnion.app.variants import difference
+from trunnion.app.variants import Sliders, difference
 from trunnion.app.views.driveline import DrivelineView
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
@@ -362,6 +362,32 @@ def test_a_line_is_begun_with_nothing_and_built_up() -> None:
     for _ in range(6):
         document.undo()
     assert document.line == before
+
+
+@pytest.mark.parametrize("path", ["Shaft 1.stiffness", "Disk 1.inertia", "HookeJoint 1.angle"])
+def test_an_address_holds_the_number_that_is_moved_and_how_far_it_may_go(path: str) -> None:
+    """The ends stay when the number moves, where a fresh page would put others about it."""
+    line = tn.loads(starter("two-shaft"))
+    moved: list[tn.Driveline] = []
+
+    def page(query: dict[str, str], line: tn.Driveline) -> Sliders:
+        sliders = Sliders(line, lambda line, path: moved.append(line))
+        sliders.read(query)
+        sliders.adapt(line)
+        return sliders
+
+    first = page({}, line)
+    assert first.query() == {}
+    first.which.value = path
+    first.value.value = 0.7 * first.value.value
+    first.adapt(moved[-1])
+    fresh = page(first.query(), moved[-1])
+    for name in ("which", "low", "high", "value", "slider"):
+        assert getattr(fresh, name).value == getattr(first, name).value, name
+    assert (fresh.slider.start, fresh.slider.end) == (first.slider.start, first.slider.end)
+    assert fresh.query() == first.query()
+    for wrong in ({"move.from": "x", "move.to": "2"}, {"move.from": "3", "move.to": "2"}, {"move": "no.such"}):
+        assert page(wrong, line).query() == {}
 
 
 def test_changes_are_named_with_units() -> None:

@@ -38,9 +38,9 @@ def unpack(text: str) -> str:
         raise InputError("does not hold a driveline", key="line", value=text, remedy=remedy) from None
 
 
-def address(view: str, settings: Mapping[str, str], toml: str, kept: str | None) -> str:
+def address(view: str, settings: Mapping[str, str], slider: Mapping[str, str], toml: str, kept: str | None) -> str:
     """The query of a page."""
-    parts = {"view": view, **{f"{view}.{k}": v for k, v in settings.items()}, "line": pack(toml)}
+    parts = {"view": view, **{f"{view}.{k}": v for k, v in settings.items()}, **slider, "line": pack(toml)}
     if kept is not None:
         parts["kept"] = pack(kept)
     return "?" + urlencode(parts)

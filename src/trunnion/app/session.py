@@ -63,8 +63,11 @@ class Session:
         failure = self._read_lines()
         self.page = Page({kind.name.capitalize(): kind.name for kind in VIEWS}, self.show_view, self.cancel)
         self.sliders = Sliders(
-            self.document.line, lambda line, path: self.edit(lambda document: document.set_numbers(line, path))
+            self.document.line,
+            lambda line, path: self.edit(lambda document: document.set_numbers(line, path)),
+            lambda: self.guarded(self._write_address),
         )
+        self.sliders.read(self.query)
         self.keep_buttons = buttons(lambda: self._keep(self.document.toml), lambda: self._keep(None), self._swap)
         self.views: dict[str, View] = {}
         name = self.query.get("view", "")
@@ -198,8 +201,7 @@ class Session:
         """Compute what the visible view shows; whatever was under way for it is dropped."""
         sides = [NOW] if self.kept is None else [KEPT, NOW]
         self.page.show(self.view, sides)
-        if not self.unread:
-            self.location.search = address.address(self.view.name, self.view.query(), self.document.toml, self.kept)
+        self._write_address()
         under_way = self.task is not None and not self.task.done() and not self.resting
         if self.task:
             self.task.cancel(SUPERSEDED)
@@ -214,6 +216,12 @@ class Session:
             return
         work = self._compute(sides, QUIET if under_way else 0.0)
         self.task = asyncio.get_event_loop().create_task(self._watched(work))
+
+    def _write_address(self) -> None:
+        """What a bookmark restores; an address that cannot be read stays, to be copied again."""
+        if not self.unread:
+            of = self.view.name, self.view.query(), self.sliders.query()
+            self.location.search = address.address(*of, self.document.toml, self.kept)
 
     def _expect(self, sides: list[str]) -> None:
         """Have the pictures know which line and settings they are to be of."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import panel as pn
@@ -44,11 +44,17 @@ def with_number(line: Driveline, path: str, value: float) -> Driveline:
 
 
 class Sliders:
-    """A parameter to move, its bounds, the slider, and the same as a number; ``moved`` takes line and parameter."""
+    """A parameter to move, its bounds, the slider, and the same as a number.
 
-    def __init__(self, line: Driveline, moved: Callable[[Driveline, str], None]) -> None:
-        self.line, self.moved = line, moved
+    moved: takes line and parameter; set_: hears that another parameter, or other bounds, were chosen.
+    """
+
+    def __init__(
+        self, line: Driveline, moved: Callable[[Driveline, str], None], set_: Callable[[], None] = lambda: None
+    ) -> None:
+        self.line, self.moved, self.set = line, moved, set_
         self.size = 1.0
+        self.asked: dict[str, str] = {}
         self.quiet = Quiet()
         self.which = pn.widgets.Select(label="Parameter to move", options=[], sizing_mode="stretch_width")
         self.slider = pn.widgets.FloatSlider(label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
@@ -70,11 +76,37 @@ class Sliders:
         paths = parameters(line)
         if self.which.options != paths:
             with self.quiet:
-                kept = self.which.value
+                kept = self.asked.get("move", self.which.value)
                 self.which.options = paths
-                joint = next((p for p in paths if p.endswith(".angle")), paths[0] if paths else None)
-                self.which.value = kept if kept in paths else joint
+                self.which.value = kept if kept in paths else _usual(paths)
         self._chosen(keep=True)
+        if ends := self._asked_ends():
+            self.low.value, self.high.value = ends
+        self.asked = {}
+
+    def read(self, query: Mapping[str, str]) -> None:
+        """Take the number and the ends of the slider from an address, once there is a line."""
+        self.asked = {key: query[key] for key in ("move", "move.from", "move.to") if key in query}
+
+    def _asked_ends(self) -> tuple[float, float] | None:
+        """Those of the address, where they are two numbers that rise and the line has the number that they are of."""
+        try:
+            low, high = float(self.asked["move.from"]), float(self.asked["move.to"])
+        except (KeyError, ValueError):
+            return None
+        fits = self.asked.get("move", self.which.value) == self.which.value
+        return (low, high) if fits and math.isfinite(low) and math.isfinite(high) and low < high else None
+
+    def query(self) -> dict[str, str]:
+        """Number and ends that differ from those of a fresh page, for the address."""
+        path = self.which.value
+        if path is None:
+            return {}
+        unit, size = shown_unit(self.line, path)
+        ends = self.low.value, self.high.value
+        made = {} if path == _usual(self.which.options) else {"move": path}
+        usual = _ends(pack(self.line).value(path) / size, unit)
+        return made if ends == usual or None in ends else {**made, "move.from": repr(ends[0]), "move.to": repr(ends[1])}
 
     def _chosen(self, keep: bool = False) -> None:
         path = self.which.value
@@ -93,6 +125,8 @@ class Sliders:
             rounded = float(f"{shown:.10g}")
             self.slider.value, self.value.value = min(max(rounded, self.slider.start), self.slider.end), rounded
             self.message.object = ""
+        if not keep:
+            self.set()
 
     def _bounds(self) -> None:
         low, high = self.low.value, self.high.value
@@ -101,6 +135,7 @@ class Sliders:
         with self.quiet:
             value = min(max(self.slider.value, low), high)
             self.slider.param.update(start=low, end=high, step=(high - low) / STEPS, value=value)
+        self.set()
 
     def _moved(self, value: float | None) -> None:
         path = self.which.value
@@ -117,6 +152,11 @@ class Sliders:
             if self.slider.start <= value <= self.slider.end:
                 self.slider.value = value
         self.moved(line, path)
+
+
+def _usual(paths: Sequence[str]) -> str | None:
+    """The number that a fresh page moves."""
+    return next((p for p in paths if p.endswith(".angle")), paths[0] if paths else None)
 
 
 def _ends(value: float, unit: str) -> tuple[float, float]:
