@@ -137,3 +137,30 @@ def test_what_stayed_unsent_follows_when_the_page_rests(look: Look) -> None:
     look.type("Angle in side view [deg]", "6")
     look.page.wait_for_selector(f"[data-mark]:not([data-mark='{before}'])", state="attached")
     assert look.page.locator("[data-mark]").get_attribute("data-mark") != before
+
+
+def test_a_double_click_removes_one_element_and_what_is_refused_stamps_the_pictures(look: Look) -> None:
+    """The second click meets the × of the element that has moved up; a line is begun with nothing."""
+    look.at()
+    look.page.get_by_role("button", name="remove Shaft 1").dblclick()
+    look.page.get_by_role("button", name="remove Shaft 2").wait_for(state="detached")
+    look.settled_anew()
+    left = look.page.get_by_role("button", name=re.compile("^remove "))
+    assert left.count() == 5
+    assert look.page.locator(".stamp").count() == 0
+    look.type("angle of HookeJoint 1", "200 deg")
+    look.page.locator(".stamp", has_text="last accepted").wait_for()
+    faint = (
+        "e => { for (; e; e = e.parentElement || e.getRootNode().host) if (getComputedStyle(e).opacity < 1) return 1 }"
+    )
+    sketch = look.page.locator("img[alt^='sketch']")
+    look.page.wait_for_timeout(600)
+    assert sketch.evaluate(faint) == 1
+    look.page.get_by_role("button", name="Undo").click()
+    look.page.locator(".stamp").wait_for(state="detached")
+    look.settled_anew()
+    assert sketch.evaluate(faint) is None
+    choose(look, "Begin with", "an empty line")
+    look.page.get_by_role("button", name="Begin", exact=True).click()
+    left.first.wait_for(state="detached")
+    look.page.locator(".stamp", has_text="last accepted").wait_for()
