@@ -15,7 +15,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from oracles.line_equations import Steady, common
+from oracles.line_equations import WIDEST, Steady, common
 from oracles.scanned_lines import ScannedLine
 from oracles.steady_orders import Order, Response, Solved, response
 
@@ -27,7 +27,7 @@ BESIDE = 0.6
 PLAIN = 300
 WORTH = 0.6
 """Share of the largest value above which a meeting is looked at closely: at the meeting itself it is near its top."""
-FEW, MANY = (log(1e4), 15), (log(1e13), 61)
+FEW, MANY = (log(1e4), 15), WIDEST
 """Budgets and most orders of the lattice, of the scan and of the values."""
 FINE = 64
 """Samples of a joint's cycle of the motion of a line that moves by itself, of the values."""
@@ -304,7 +304,9 @@ class Scan:
             for _ in range(4):
                 at = s[:, None] + 1j * turning
                 matrix, slope = solved.matrix(at), solved.slope(at)
-                new = np.linalg.solve(matrix, slope @ u[..., None])[..., 0]
+                new = np.full(u.shape, np.nan, dtype=complex)
+                known = ~solved.lost
+                new[known] = np.linalg.solve(matrix[known], slope[known] @ u[known][..., None])[..., 0]
                 with np.errstate(invalid="ignore", divide="ignore"):  # where no motion was found
                     s = s - (u.conj() * u).sum(axis=1) / (u.conj() * new).sum(axis=1)
                     u = new / np.linalg.norm(new, axis=1)[:, None]

@@ -28,6 +28,8 @@ Complex = NDArray[np.complex128]
 QUARTER = np.pi / 2
 PER_CYCLE, OF_ORBITS = 32, 20
 """Samples of the fastest joint's cycle, and where the motion is solved for at each."""
+WIDEST = np.log(1e13), 61
+"""Budget and most orders of any lattice."""
 
 
 def common(rates: list[Fraction]) -> Fraction:
@@ -258,7 +260,20 @@ class Steady:
 
     def lattice(self, budget: float, most: int) -> list[Fraction]:
         """Orders beside the one that shakes: sums of the rates of joints and teeth, each step of which costs the
-        logarithm of what it passes on, up to ``budget``; fewer until no more than ``most``."""
+        logarithm of what it passes on, up to ``budget``; fewer until no more than ``most``. What a shake leaves at no
+        rotation at all is a mean torque: the orders down to that belong to it."""
+        every = set(self._lattice(budget, most)) | {-order for order in self._to_rest}
+        return sorted(every | {-order for order in every})
+
+    @cached_property
+    def _to_rest(self) -> set[Fraction]:
+        """Steps that a shake takes down to no rotation."""
+        shaken = [s.order * abs(self.mean_ratio[i]) for i, m in enumerate(self.line.masses) for s in m.shakes]
+        wide = self._lattice(*WIDEST)
+        reached = [order for order in shaken if -order in wide]
+        return {order for order in wide if 0 < order <= max(reached, default=Fraction(0))}
+
+    def _lattice(self, budget: float, most: int) -> list[Fraction]:
         bends = np.abs(self.bends(np.linspace(self.line.low, self.line.high, 9))).max(axis=0)
         costs: dict[Fraction, float] = {}
         for e, (_, link) in enumerate(self.links):

@@ -44,6 +44,8 @@ class Solved:
         self.steady, self.speed, self.orders = steady, speed, orders
         self.n, self.springs = steady.n, steady.springs()
         base = self.base = steady.base(speed, rigid=rigid)
+        self.lost = np.isnan(base.angle).any(axis=(1, 2))
+        """Speeds at which a line that moves by itself has no motion that is found."""
         damping, stiffness, left = steady.equations(base)
         left = left - steady.constant_loads(speed)[:, None]
         steps = sorted({a - b for a in orders for b in orders})
@@ -123,8 +125,15 @@ class Solved:
             scale = np.abs(matrix).max()
             more[:, first, size] = more[:, size, first] = scale
             force = np.concatenate([force, np.zeros((len(force), 1))], axis=1)
-            return np.linalg.solve(more, force[..., None])[:, :size, 0].reshape(-1, count, n)
-        return np.linalg.solve(matrix, force[..., None])[..., 0].reshape(-1, count, n)
+            return self._solved(more, force)[:, :size].reshape(-1, count, n)
+        return self._solved(matrix, force).reshape(-1, count, n)
+
+    def _solved(self, matrix: Complex, force: Complex) -> Complex:
+        """Where there is no motion to linearise about, nothing: NaN."""
+        found = np.full(force.shape, np.nan, dtype=complex)
+        there = ~self.lost
+        found[there] = np.linalg.solve(matrix[there], force[there][..., None])[..., 0]
+        return found
 
     def response(self) -> Response:
         """Every cause added up by order."""
