@@ -22,7 +22,7 @@ SEEDS = 125
 """Lines of every class: 1 000 in all."""
 TENTH = 13
 QUICK = {
-    "straight": (0, 2), "bent": (3,), "free": (7,), "geared": (), "branched": (0,), "low speed": (1,),
+    "straight": (0, 2), "bent": (3,), "free": (4,), "geared": (), "branched": (0,), "low speed": (1,),
     "schedule": (), "load cases": (1,),
 }  # fmt: skip
 """Seeds whose lines take next to no time."""
@@ -47,12 +47,12 @@ def test_no_largest_value_is_low_by_more_than_its_error(kind: str, seed: int) ->
         figures = {
             "kind": kind, "seed": seed, "low": line.low, "high": line.high, "masses": len(line.masses),
             "assess": found.own_time, "scan": found.scan_time, "least": found.least, "largest": found.largest,
-            "compared": found.compared, "unstable": found.unstable, "faults": found.faults,
+            "compared": found.compared, "unstable": found.unstable, "gaps": found.gaps, "faults": found.faults,
         }  # fmt: skip
         with Path(target).open("a", encoding="utf-8") as out:
             out.write(json.dumps(figures) + "\n")
     assert not found.faults, "\n".join(found.faults)
-    assert found.compared >= 4 or found.unanswered
+    assert found.compared >= 4
 
 
 def test_the_scan_itself_by_hand() -> None:

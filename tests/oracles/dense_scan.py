@@ -31,6 +31,9 @@ FEW, MANY = (log(1e4), 15), WIDEST
 """Budgets and most orders of the lattice, of the scan and of the values."""
 FINE = 64
 """Samples of a joint's cycle of the motion of a line that moves by itself, of the values."""
+ROUNDS, HIGHEST, CLOSER = 4, 4, 4
+"""Of lines that move by themselves: how often one looks closer, about how many high places, at how many speeds between
+neighbours."""
 BATCH = 2_000_000
 FREE_FREQUENCY = 20 * np.pi
 """10 Hz, up to which S_f is 1."""
@@ -204,14 +207,15 @@ class Scan:
     """One line under one load case, over a range of speeds less what is ``left_out``."""
 
     def __init__(self, line: ScannedLine, low: float, high: float, left_out: tuple[tuple[float, float], ...]) -> None:
-        self.line, self.steady, self.low, self.high, self.left_out = line, Steady(line), low, high, left_out
+        self.line, self.low, self.high, self.left_out = line, low, high, left_out
+        self.steady, self.fine = Steady(line), Steady(line, FINE)
         self.quantities = list(quantities(line))
         self.lost = np.zeros(0)
         """Speeds [rad/s] of the last scan at which a line that moves by itself has no motion that is found."""
 
     def respond(self, speed: Array, effort: tuple[float, int] = FEW) -> Response:
         """In parts that fit the memory."""
-        steady = self.steady if effort is FEW else Steady(self.line, FINE)
+        steady = self.steady if effort is FEW else self.fine
         size = (len(steady.lattice(*effort)) * steady.n) ** 2 + steady.samples * steady.n**2
         size += (steady.samples * steady.n) ** 2 * 3 if steady.moves else 0
         many = max(1, BATCH // size)
@@ -324,6 +328,8 @@ class Scan:
         steps = np.arange(-round(PER_WIDTH * BESIDE), round(PER_WIDTH * BESIDE) + 1) / PER_WIDTH
         more = np.setdiff1d(self.kept((close[:, None] + width[:, None] * steps).ravel()), rough)
         seen = _joined([seen, self.respond(more)]) if len(more) else seen
+        if self.steady.moves:
+            seen = self._closer(seen)
         self.lost = np.sort(seen.speed[np.isnan(seen.mean_torque).any(axis=1)])
         tops = {one.name: self._tops(one, seen) for one in self.quantities}
         wanted = np.unique(np.concatenate(list(tops.values())))
@@ -335,6 +341,23 @@ class Scan:
             best = int(np.argmax(np.where(np.isfinite(values), values, -np.inf)))
             found[one.name] = float(values[best]), float(exact.speed[which[best]])
         return found
+
+    def _closer(self, seen: Response) -> Response:
+        """With more speeds about every high place: an own motion shifts poles farther than they are followed."""
+        for _ in range(ROUNDS):
+            order = np.argsort(seen.speed)
+            x, between = seen.speed[order], set()
+            for one in self.quantities:
+                v = np.nan_to_num(one.bound(seen)[order], nan=-np.inf)
+                high = np.flatnonzero((v[1:-1] >= v[:-2]) & (v[1:-1] >= v[2:]) & (v[1:-1] >= v.max() / 10)) + 1
+                between |= {*high[np.argsort(-v[high])[:HIGHEST]].tolist()}
+            more = [np.linspace(x[i - 1], x[i + 1], 2 * CLOSER + 1) for i in sorted(between)]
+            fresh = np.setdiff1d(self.kept(np.concatenate([np.zeros(0), *more])), x)
+            fresh = fresh[np.diff(fresh, prepend=0.0) > 1e-9 * fresh]
+            if not len(fresh):
+                break
+            seen = _joined([seen, self.respond(fresh)])
+        return seen
 
     def _worth(self, seen: Response, met: Meetings) -> NDArray[np.bool_]:
         """Meetings at which anything comes near its largest value."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import trunnion as tn
 from oracles.dense_scan import Scan
 from oracles.growth import growth
+from oracles.own_shooting import growth_of_own, leads_over
 from oracles.scanned_lines import ScannedLine
 
 Array = NDArray[np.float64]
@@ -23,19 +24,18 @@ Ranges = tuple[tuple[float, float], ...]
 ROUNDING, ALIKE, SCANNED = 1e-9, 1e-6, 2e-3
 """Shares: of a value, what both compute at one speed, what lies between two speeds of the scan."""
 EDGE, BESIDE_EDGE = 1e-5, 1e-3
-"""How closely ends of unstable ranges are checked, and within which values there are without bound; of the speed."""
-FREE_EDGE = 1e-4
-"""Of lines that move by themselves: both motions about which growth is computed are known less closely."""
+"""How closely ends of unstable ranges and gaps are checked, and within which values there are without bound; of the
+speed."""
 PLAIN, MOST_MEETINGS = 30, 40
 """Speeds at which growth is computed where the line is said to be stable."""
-NAME, NO_MOTION = "parametric stability", "no own motion of the free line was found"
+NAME = "parametric stability"
 
 
 @dataclass
 class Judged:
     """The faults found, in sentences; processor time [s] of the package and of the scan; the smallest of value + error
-    over what the scan found, less 1; how many values were compared, and how many are not said because the periodic
-    motion of a free line is found at some speed by neither."""
+    over what the scan found, less 1; how many values were compared; ranges said to be unstable, and those that are not
+    judged since the motion of a free line breaks off there."""
 
     faults: list[str] = field(default_factory=list)
     own_time: float = 0.0
@@ -43,8 +43,8 @@ class Judged:
     least: float = np.inf
     largest: float = -np.inf
     compared: int = 0
-    unanswered: int = 0
     unstable: Ranges = ()
+    gaps: Ranges = ()
 
 
 def variants(line: ScannedLine, left_out: Ranges) -> dict[str, Scan]:
@@ -64,15 +64,16 @@ def judged(line: ScannedLine) -> Judged:
     found.own_time = time.process_time() - begin
     checks = {check.name: check for check in said.checks}
     found.unstable = checks[NAME].barred
-    scans = variants(line, found.unstable)
+    if line.free:
+        found.gaps = _between(checks[NAME].covered, line)
+    beside = tuple((a * (1 - EDGE), b * (1 + EDGE)) for a, b in found.gaps)
+    left_out = tuple(sorted((*found.unstable, *beside)))
+    scans = variants(line, left_out)
     largest = {name: scan.largest() for name, scan in scans.items()}
     there: dict[float, list[dict[str, float]]] = {}
     for name in largest[""]:
         value, speed = max(one[name] for one in largest.values())
         check = checks.get(name)
-        if check is not None and NO_MOTION in check.because:  # said, and not judged
-            found.unanswered += 1
-            continue
         if check is None or not check.judged:
             why = check.because if check else "no such check"
             found.faults.append(f"{name}: {why}; {value:.9g} at {speed:.9g} rad/s")
@@ -84,7 +85,7 @@ def judged(line: ScannedLine) -> Judged:
         says = f"{name}: {own:.12g} ± {check.error / over:.2g} at {check.speed:.12g} rad/s"
         if not own + check.error / over >= value * (1 - ROUNDING):
             found.faults.append(f"{says} is low: {value:.12g} at {speed:.12g} rad/s")
-        if any(a * (1 - BESIDE_EDGE) < check.speed < b * (1 + BESIDE_EDGE) for a, b in found.unstable):
+        if any(a * (1 - BESIDE_EDGE) < check.speed < b * (1 + BESIDE_EDGE) for a, b in left_out):
             continue
         found.largest = max(found.largest, own / value - 1)
         if own > value * (1 + SCANNED):
@@ -94,28 +95,36 @@ def judged(line: ScannedLine) -> Judged:
         known = [one[name] for one in there[check.speed] if np.isfinite(one[name])]
         if known and min(abs(own / one - 1) for one in known) > ALIKE:
             found.faults.append(f"{says} is none there: {', '.join(f'{one:.12g}' for one in known)}")
-    if checks[NAME].judged:
-        found.faults += _of_ranges(scans, found.unstable, line)
+    if checks[NAME].judged or found.gaps:
+        found.faults += _of_ranges(scans, found, line)
+    found.faults += [f"the motion goes on between {a:.9g} and {b:.9g} rad/s" for a, b in found.gaps
+                     if leads_over(scans[""].steady, a * (1 - EDGE), b * (1 + EDGE))]  # fmt: skip
     found.scan_time = time.process_time() - begin - found.own_time
     return found
 
 
-def _of_ranges(scans: dict[str, Scan], unstable: Ranges, line: ScannedLine) -> Iterator[str]:
+def _between(covered: Ranges, line: ScannedLine) -> Ranges:
+    """What lies between the ranges that a check covers."""
+    ends = [line.low, *(end for pair in sorted(covered) for end in pair), line.high]
+    return tuple((a, b) for a, b in zip(ends[::2], ends[1::2], strict=True) if b > a)
+
+
+def _of_ranges(scans: dict[str, Scan], found: Judged, line: ScannedLine) -> Iterator[str]:
     """Ends of unstable ranges, and growth where there is none."""
-    first = scans[""].steady
+    first, unstable = scans[""].steady, found.unstable
     if not first.joint_rates and not any(one.waves for _, one in first.links):
         return
-    edge = FREE_EDGE if line.free else EDGE
-    wide = [(a, b) for a, b in unstable if b / a - 1 > 4 * edge]
+    lost = [end for pair in found.gaps for end in pair]
+    wide = [(a, b) for a, b in unstable if b / a - 1 > 4 * EDGE]
     inside = [(a + b) / 2 for a, b in wide]
-    inside += [a * (1 + edge) for a, _ in wide] + [b * (1 - edge) for _, b in wide]
+    inside += [a * (1 + EDGE) for a, _ in wide] + [b * (1 - EDGE) for _, b in wide]
     if inside:
         grows = _fastest(scans, np.array(inside), of_speed=True)
         yield from (f"stable at {s:.9g} rad/s" for s, g in zip(inside, grows, strict=True) if g <= 0)
-    ends = [a * (1 - edge) for a, _ in unstable if a > line.low * (1 + edge)]
-    ends += [b * (1 + edge) for _, b in unstable if b < line.high * (1 - edge)]
+    ends = [a * (1 - EDGE) for a, _ in unstable if a > line.low * (1 + EDGE) and a not in lost]
+    ends += [b * (1 + EDGE) for _, b in unstable if b < line.high * (1 - EDGE) and b not in lost]
     plain = scans[""].kept(np.concatenate([np.linspace(line.low, line.high, PLAIN), _pairs(scans[""])]))
-    outside = np.array([s for s in (*ends, *plain) if not any(a <= s <= b for a, b in unstable)])
+    outside = np.array([s for s in (*ends, *plain) if not any(a <= s <= b for a, b in (*unstable, *found.gaps))])
     grows = _fastest(scans, outside, of_speed=False)
     yield from (f"grows at {s:.12g} rad/s, by {g:.3g} 1/s" for s, g in zip(outside, grows, strict=True) if g > 1e-7)
 
@@ -126,7 +135,8 @@ def _fastest(scans: dict[str, Scan], speed: Array, *, of_speed: bool) -> Array:
     for scan in scans.values():
         here = np.flatnonzero((speed >= scan.low * (1 - 2 * EDGE)) & (speed <= scan.high * (1 + 2 * EDGE)))
         if len(here):
-            own = growth(scan.steady, speed[here], of_speed=of_speed)
+            steady, at = scan.steady, speed[here]
+            own = growth_of_own(steady, at) if steady.moves else growth(steady, at, of_speed=of_speed)
             found[here] = np.maximum(found[here], np.where(np.isnan(own), -np.inf, own))
     return found
 

@@ -68,6 +68,10 @@ class Steady:
         self.line, self.n, self.of_orbits = line, len(line.masses), of_orbits
         self.links = [(i, link) for i, link in enumerate(line.links) if link is not None]
         self.over = [self._over(link) for _, link in self.links]
+        self.orbits: dict[float, Array] = {}
+        """Motions (time, mass) that are known, by speed, of a line that moves by itself."""
+        self.anchored = False
+        """Whether they were looked for all over the range."""
         self.sense = np.array([1.0 if r > 0 else -1.0 for r in self.mean_ratio])
         self.turning = np.array([abs(float(r)) for r in self.mean_ratio])
 

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 STEPS, CLOSED = 30, 1e-12
 """Newton's steps, and the share of the elastic torque at which a motion is found."""
+ANCHORS = 60
+"""Even speeds at which motions are looked for besides, where some are not found."""
+WALK, LEAP = 60, 0.1
+"""Steps at most from a motion to another, and by how much [rad] one may change it."""
 
 
 def derivatives(times: int) -> tuple[Array, Array]:
@@ -56,12 +60,54 @@ def twists(line: Steady, base: Base) -> Array:
 
 
 def orbit(line: Steady, speed: Array, turned: Array) -> Base:
-    """The motion at every speed; NaN where it is not found."""
-    times, n = len(turned), line.n
-    start = line.rigid(speed, turned)
+    """The motion at every speed, from rigid shafts, else in steps from that of the nearest speed known; NaN where
+    neither leads to one."""
+    lost = kept(line, speed, turned)
+    if len(lost) and not line.anchored:
+        kept(line, np.linspace(line.line.low, line.line.high, ANCHORS), turned)
+        line.anchored = True
+    for one in lost.tolist():
+        _walk(line, one, turned)
+    y = np.stack([line.orbits.get(one, np.full((len(turned), line.n), np.nan)) for one in speed.tolist()])
+    return moved(line, speed, turned, y)
+
+
+def kept(line: Steady, speed: Array, turned: Array) -> Array:
+    """Look for motions from rigid shafts, and keep those that are found; the speeds of the others."""
+    speed = np.array([one for one in np.unique(speed).tolist() if one not in line.orbits])
+    if not len(speed):
+        return speed
+    rigid = line.rigid(speed, turned)
     ratio = np.array([float(r) for r in line.mean_ratio])
-    y = start.angle - line.level - turned[:, None] * ratio
-    y = np.ascontiguousarray(y - y[..., :1].mean(axis=1, keepdims=True))
+    y = rigid.angle - line.level - turned[:, None] * ratio
+    y = _closed(line, speed, turned, np.ascontiguousarray(y - y[..., :1].mean(axis=1, keepdims=True)))
+    lost = np.isnan(y).any(axis=(1, 2))
+    line.orbits |= {one: own for one, own, off in zip(speed.tolist(), y, lost, strict=True) if not off}
+    return speed[lost]
+
+
+def _walk(line: Steady, speed: float, turned: Array) -> None:
+    """From the nearest motion known to that at ``speed``, in steps that are halved where one leads nowhere."""
+    if not line.orbits:
+        return
+    at = min(line.orbits, key=lambda one: abs(one - speed))
+    y, step = line.orbits[at], speed - at
+    for _ in range(WALK):
+        to = speed if abs(speed - at) <= abs(step) else at + step
+        found = _closed(line, np.array([to]), turned, y[None])[0]
+        if np.isnan(found).any() or np.abs(found - y).max() > LEAP:
+            step = (to - at) / 2
+            continue
+        at, y, step = to, found, 2 * (to - at)
+        if at == speed:
+            line.orbits[at] = y
+            return
+
+
+def _closed(line: Steady, speed: Array, turned: Array, y: Array) -> Array:
+    """Newton's steps from ``y`` (speed, time, mass)."""
+    times, n = len(turned), line.n
+    y = y.copy()
     one, two = derivatives(times)
     extra = np.zeros(len(speed))
     inertia = np.array([m.inertia for m in line.line.masses])
@@ -92,4 +138,4 @@ def orbit(line: Steady, speed: Array, turned: Array) -> Base:
         if not len(open_ones):
             break
     y[open_ones] = np.nan
-    return moved(line, speed, turned, y)
+    return y

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Flags
 
 
 def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:
@@ -56,15 +56,23 @@ def without(matrix: Array, vectors: Array) -> tuple[Array, Array]:
     return np.asarray(rest.T @ matrix @ rest), np.asarray(rest)
 
 
-def along(matrix: Array, direction: Array) -> int:
+def along(matrix: Array, direction: Array, grows: bool | None = None) -> int:
     """Which eigenvalue of ``matrix``, in the order of ``multipliers``, has the eigenvector nearest to ``direction``.
 
-    The direction is that of a slow change without oscillation: eigenvalues that are real and positive go before others.
+    The direction is that of a slow change without oscillation: eigenvalues that are real and positive go before others,
+    of these those beyond 1 where it is known that the change ``grows``, those within where it does not.
     """
     values, vectors = np.linalg.eig(matrix)
     near = np.abs(direction @ vectors) / np.linalg.norm(vectors, axis=0)
-    steady = (np.abs(values.imag) <= 1e-12 * np.abs(values)) & (values.real > 0)
+    steady = real_positive(values.astype(complex))
+    if grows is not None and (right := steady & ((values.real > 1) == grows)).any():
+        steady = right
     return int(np.argmax(np.where(steady | ~steady.any(), near, -1.0)))
+
+
+def real_positive(values: Complex) -> Flags:
+    """Which eigenvalues belong to what neither oscillates nor changes its sign."""
+    return np.asarray((np.abs(values.imag) <= 1e-12 * np.abs(values)) & (values.real > 0))
 
 
 def spectral_radius(values: Complex, bound: Array) -> tuple[Array, Array]:

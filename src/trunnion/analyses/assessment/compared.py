@@ -62,7 +62,9 @@ def at_largest(
     """
     value, limit, speed = found.value, found.limit, float(case.speeds[found.at])
     margin = below(value, limit)
-    if not words and np.isfinite(value):
+    if found.end:
+        words, where = f"without bound against {shown(limit, kind, digits=4)}", f", where {found.end} end"
+    elif not words and np.isfinite(value):
         words = against(value, limit, kind)
     elif not np.isfinite(value):
         words = f"no steady state (undamped resonance) against {shown(limit, kind, digits=4)}"

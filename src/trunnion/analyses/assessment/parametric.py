@@ -23,6 +23,7 @@ from trunnion.analyses.assessment.compared import not_reached
 from trunnion.analyses.assessment.subject import Case, Subject
 from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong, straight_decay
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
+from trunnion.analyses.range_search.span import Piece
 from trunnion.analyses.range_search.unstable import UnstableRanges, closed_in
 from trunnion.arrays import Array
 from trunnion.errors import ComputationError, InputError
@@ -65,7 +66,8 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
     straight = straight_decay(case.assembly, float(speeds[at]), case.span.table(speeds[[at]])[0])
     worst = (float(growth[at]), float(speeds[at]), _looked_at(subject, found))
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
-    covered = ((case.low, case.high),)
+    covered = _covered(case, found)
+    gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
     if found.ranges:
         if not case.parametric:
             why = f"{here}: negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
@@ -73,7 +75,9 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         else:
             why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
             margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
-        because = f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}"
+        because = (
+            f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}{gaps}"
+        )
         yield _judged(case, Status.EXCEEDED, because, float(margin), worst, found.ranges, covered)
         return
     if np.any(found.untold):
@@ -88,12 +92,16 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
         "the straight line's damping"
     )
-    if found.gaps:
-        gaps = "; ".join(f"{subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
-        low = max(gap.high for gap in found.gaps)
-        yield _judged(case, Status.NOT_JUDGED, f"{because}; {gaps}", float(share), worst, (), ((low, case.high),))
-        return
-    yield _judged(case, Status.SATISFIED, because, float(share), worst, (), covered)
+    status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
+    yield _judged(case, status, because + gaps, float(share), worst, (), covered)
+
+
+def _covered(case: Case, found: UnstableRanges) -> tuple[tuple[float, float], ...]:
+    """The range without what was not looked at."""
+    left = [Piece(case.low, case.high)]
+    for gap in found.gaps:
+        left = [part for piece in left for part in piece.without(gap.low, gap.high)]
+    return tuple((piece.low, piece.high) for piece in left)
 
 
 Worst = tuple[float, float, str]

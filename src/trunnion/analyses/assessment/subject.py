@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 NO_RESPONSE = "no linear response: "
 """How checks that need the response begin to say why there is none."""
 UNSTABLE = "the line is unstable there"
+AT_END, ASIDE, RISE = 1e-6, 1e-5, 3.0
+"""Shares of a speed within which a largest value stands at the end of a range, and how far inside one looks again: a
+value that is larger by more than this factor at the end has no bound there."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class Subject:
 @dataclass(frozen=True)
 class Found:
     """The largest share of a limit: at which of the speeds, value and limit there, values and limits (speed,), and what
-    the value may be low by."""
+    the value may be low by; ``end``: what ends at that speed, where values grow without bound towards it."""
 
     at: int
     value: float
@@ -96,6 +99,7 @@ class Found:
     error: float
     values: Array
     limits: Array
+    end: str = ""
 
 
 @dataclass(frozen=True)
@@ -128,7 +132,28 @@ class Case:
         if self.follows is not None:
             points = tuple(sorted({*self.follows.points, *cuts}))
             return replace(self.follows, low=self.low, high=self.high, points=points)
-        return Span(self.assembly, self.low, self.high, points=tuple(sorted(cuts)))
+        span = Span(self.assembly, self.low, self.high, points=tuple(sorted(cuts)))
+        return replace(span, lost=self._lost(span)) if self._searches_motions else span
+
+    @property
+    def _searches_motions(self) -> bool:
+        """Whether the own motion of every speed is taken, over a range."""
+        if self.given or self.rough or self.known is not None or not self.low < self.high or not self.costly:
+            return False
+        return not lossy(self.assembly) and self.motions is not None and not self.motions.hindered
+
+    def _lost(self, span: Span) -> tuple[Gap, ...]:
+        """Speeds at which the line's own motion breaks off."""
+        # Loaded where needed: it brings the compiler with it.
+        from trunnion.analyses.linear.own_breaks import breaks
+
+        assert self.motions is not None
+        met = resonances(span)
+        about = (met.speed[:, None] + met.width[:, None] * np.array([-1.0, 0.0, 1.0])).ravel()
+        speeds = np.union1d(np.linspace(span.start, span.high, self.effort.costly), about)
+        speeds = speeds[(speeds >= span.start) & (speeds <= span.high)]
+        self.motions.broken = breaks(self.motions, speeds)
+        return tuple(Gap(one.low, one.high, one.why) for one in self.motions.broken)
 
     @cached_property
     def measures(self) -> tuple[Measure, ...]:
@@ -208,7 +233,23 @@ class Case:
         at = int(np.argmax(shares))
         error = self._error(measure) * limits[at] if not self.given and self.known is None else np.nan
         value = float(values[at]) if np.isfinite(values[at]) else np.inf
-        return Found(at, value, float(limits[at]), float(error), values, limits)
+        end = self._unbounded(measure, float(response.speed[at]), float(shares[at]))
+        return Found(at, np.inf if end else value, float(limits[at]), float(error), values, limits, end)
+
+    def _unbounded(self, measure: Measure, speed: float, share: float) -> str:
+        """What ends at a ``speed`` towards which a share of a limit grows without bound; empty where it does not.
+
+        At the end of an unstable range a mode does not decay; where an own motion folds, a little torque changes it
+        much.
+        """
+        for gap in self.gaps:
+            for end, away in ((gap.low, -ASIDE), (gap.high, ASIDE)):
+                beside = end * (1 + away)
+                if abs(speed / end - 1) > AT_END or not any(p.low <= beside <= p.high for p in self.stable_pieces):
+                    continue
+                if not share <= RISE * measure.shares(self.respond(np.array([beside])))[0]:
+                    return "stable speeds" if gap.why == UNSTABLE else "the speeds of one own motion"
+        return ""
 
     def _error(self, measure: Measure) -> float:
         place = next((i for i, one in enumerate(self.measures) if one.name == measure.name), -1)

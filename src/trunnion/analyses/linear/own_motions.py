@@ -6,7 +6,8 @@ and transmission errors are left out, as in ``own_motion``, which finds one moti
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,17 +24,40 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.spectrum import along, real_positive
+
+ALIKE = 1e-6
+"""Difference [rad] of two motions that are the same."""
+LEAP = 0.1
+"""Share of its swing by which a motion may change in one step: by more it fell into another one."""
+AWAY = np.array([0.9, 1.1, 0.75, 1.3])
+"""Shares of a speed at which one begins to follow a motion to it that is not found otherwise."""
+BESIDE = 1e-6
+"""Step of differences by the speed, over it."""
+CLOSE = 1e-6
+"""How closely one locates where a motion ends, as a share of the speed."""
+
+
+@dataclass(frozen=True)
+class Break:
+    """Speeds [rad/s] between which there is no motion that goes on from either side, and why."""
+
+    low: float
+    high: float
+    why: str
 
 
 @dataclass(frozen=True)
 class OwnMotions:
     """Slopes along the motions, and what is no disturbance of them.
 
-    found (speed,); period [rad of input angle]; slopes: Fourier coefficients (speed, harmonic ≥ 0, 2n, 2n) of A in
-    x′ = A(τ)x, states in energy-like units; shift, drift (speed, 2n): the disturbances that shift the phase, and that
-    change the speed where no torque depends on it (else None).
+    solved, speed: what knows the motions, and where; found (speed,); period [rad of input angle]; slopes: Fourier
+    coefficients (speed, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (speed,
+    2n): the disturbances that shift the phase, and that change the speed where no torque depends on it (else None).
     """
 
+    solved: MotionsBySpeed
+    speed: Array
     found: Flags
     period: float
     slopes: Complex
@@ -61,24 +85,25 @@ class OwnMotions:
         left[finite] = rest.transpose(0, 2, 1) @ matrix[finite] @ rest
         if self.drift is not None:
             direction = (self.drift[which][finite][:, None] @ rest)[:, 0]
-            left[finite] = _deflated(left[finite], direction)
+            several = real_positive(np.linalg.eigvals(left[finite]).astype(complex)).sum(axis=1) > 1
+            grows = [self.speed_grows(i) if one else None for i, one in zip(which[finite], several, strict=True)]
+            parts = zip(left[finite], direction, grows, strict=True)
+            left[finite] = np.array([_deflated(*part) for part in parts]).reshape(left[finite].shape)
         return left
 
+    def speed_grows(self, i: int) -> bool | None:
+        """Whether a change of the speed does, where the torque of the drives stays the same: the motion takes the less
+        of it the faster it is. None where that cannot be told."""
+        rise = self.solved.torque_rise(float(self.speed[i]))
+        return rise < 0 if rise else None
 
-def _deflated(matrix: Array, direction: Array) -> Array:
-    """``matrix`` (case, m, m), 0 in place of the eigenvalue whose eigenvector is nearest to a ``direction`` (case, m).
 
-    The direction is that of a slow change without oscillation: eigenvalues that are real and positive go before others.
-    """
+def _deflated(matrix: Array, direction: Array, grows: bool | None) -> Array:
+    """``matrix`` (m, m), 0 in place of the eigenvalue of what changes ``along`` a direction (m,)."""
     values, vectors = np.linalg.eig(matrix)
-    near = np.abs(direction[:, None] @ vectors)[:, 0] / np.linalg.norm(vectors, axis=1)
-    steady = (np.abs(values.imag) <= 1e-12 * np.abs(values)) & (values.real > 0)
-    place = np.argmax(np.where(steady | ~steady.any(axis=1, keepdims=True), near, -1.0), axis=1)[:, None]
-    right = np.take_along_axis(vectors, place[:, None], axis=2)[..., 0]
-    one = (np.arange(matrix.shape[1]) == place).astype(float)[..., None]
-    left = np.linalg.solve(vectors.transpose(0, 2, 1), one)[..., 0]
-    value = np.take_along_axis(values, place, axis=1)[..., None]
-    return np.asarray((matrix - value * right[:, :, None] * left[:, None]).real)
+    place = along(matrix, direction, grows)
+    left = np.linalg.solve(vectors.T, np.eye(len(matrix))[place])
+    return np.asarray((matrix - values[place] * np.outer(vectors[:, place], left)).real)
 
 
 def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = None) -> OwnMotions | None:
@@ -96,6 +121,8 @@ def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = 
     slopes, shift, drift = (np.concatenate(each) for each in zip(*parts, strict=True))
     damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
     return OwnMotions(
+        solved,
+        speeds,
         motions.found & motions.resolved,
         balance.period,
         slopes,
@@ -128,13 +155,41 @@ def _about(motions: FreeMotions) -> tuple[Complex, Array, Array]:
 
 
 @dataclass(frozen=True)
-class _One:
+class KnownMotion:
     """One motion that is known: see ``FreeMotions``."""
 
     found: bool
+    resolved: bool
     rows: Array
     torque: float
     numbers: Array
+
+    @classmethod
+    def of(cls, motions: FreeMotions, i: int | np.signedinteger) -> KnownMotion:
+        """One of several."""
+        found, resolved = bool(motions.found[i]), bool(motions.resolved[i])
+        return cls(found, resolved, motions.rows[i], float(motions.torque[i]), motions.numbers[i])
+
+    @property
+    def h(self) -> int:
+        """Harmonics kept."""
+        return fourier.order(self.rows)
+
+    @property
+    def settled(self) -> bool:
+        """Whether it was found, with harmonics enough."""
+        return self.found and self.resolved
+
+    @property
+    def swing(self) -> float:
+        """Largest amplitude of any harmonic [rad]."""
+        return float(np.abs(self.rows[:, 1:]).max())
+
+
+def apart(one: Array, other: Array) -> float:
+    """Largest difference [rad] of any harmonic but the mean of two motions, (n, 2h + 1) each."""
+    h = max(fourier.order(one), fourier.order(other))
+    return float(np.abs(fourier.resized(one, h) - fourier.resized(other, h))[:, 1:].max())
 
 
 class MotionsBySpeed:
@@ -145,7 +200,8 @@ class MotionsBySpeed:
 
     def __init__(self, line: Driveline) -> None:
         self.line = line
-        self.known: dict[float, _One] = {}
+        self.known: dict[float, KnownMotion] = {}
+        self.broken: tuple[Break, ...] = ()
 
     @cached_property
     def hindered(self) -> str:
@@ -169,7 +225,7 @@ class MotionsBySpeed:
     def at_all(self, speeds: Array) -> FreeMotions:
         """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
         self._solve(np.array([speed for speed in dict.fromkeys(speeds.tolist()) if speed not in self.known]))
-        known = [self.known[speed] for speed in speeds.tolist()]
+        known = [self._at(speed) for speed in speeds.tolist()]
         h = max(fourier.order(one.rows) for one in known)
         return FreeMotions(
             self.balance,
@@ -180,10 +236,52 @@ class MotionsBySpeed:
             np.stack([one.numbers for one in known]),
         )
 
+    def _at(self, speed: float) -> KnownMotion:
+        """What is known at a speed: nothing where the motion breaks off, whatever was found there."""
+        one = self.known[speed]
+        return replace(one, found=False) if any(b.low < speed < b.high for b in self.broken) else one
+
+    def torque_rise(self, speed: float) -> float:
+        """How much more torque [N m] the drives give at a speed greater by ``BESIDE``; 0 where that cannot be told."""
+        one = self.known[speed]
+        further = self.balance.solve(np.array([speed * (1 + BESIDE)]), one.h, one.rows[None])
+        return float(further.torque[0] - one.torque) if further.found[0] else 0.0
+
+    def carried(self, motion: KnownMotion, begin: float, end: float) -> tuple[float, KnownMotion]:
+        """How far a ``motion`` at ``begin`` goes on towards ``end`` [rad/s], and what it is there: each step starts
+        where the last two lead to, and ends near that."""
+        at, step = begin, end - begin
+        slope = np.zeros_like(motion.rows)
+        while at != end:
+            to = end if abs(end - at) <= abs(step) else at + step
+            further = self._led_to(to, motion, slope * (to - at))
+            if further is None:
+                step = (to - at) / 2
+                if abs(step) < CLOSE * abs(at):
+                    break
+            else:
+                slope = (further.rows - fourier.resized(motion.rows, further.h)) / (to - at)
+                at, motion, step = to, further, 2 * (to - at)
+        return at, motion
+
+    def _led_to(self, speed: float, motion: KnownMotion, change: Array) -> KnownMotion | None:
+        """The motion at ``speed`` that Newton's steps from ``motion`` and its ``change`` (n, 2h + 1) lead to, with as
+        many harmonics as it needs; None where they lead nowhere, or so far that it is another."""
+        guess = expected = motion.rows + change
+        for h in [one for one in doubled(self.balance.fewest, MOST) if one >= motion.h]:
+            found = self.balance.solve(np.array([speed]), h, fourier.resized(guess, h)[None])
+            if not found.found[0]:
+                return None
+            if found.resolved[0]:
+                further = KnownMotion.of(found, 0)
+                return further if apart(further.rows, expected) <= LEAP * max(motion.swing, ALIKE) else None
+            guess = found.rows[0]
+        return None
+
     def _solve(self, speeds: Array) -> None:
         """From rigid shafts, where that leads nowhere from the nearest motion found; harmonics doubled until they are
         enough."""
-        guess, orders = None, doubled(self.balance.fewest, MOST)
+        asked, guess, orders = speeds, None, doubled(self.balance.fewest, MOST)
         for h in orders:
             if not len(speeds):
                 break
@@ -191,10 +289,32 @@ class MotionsBySpeed:
             motions = self._from_neighbours(self.balance.solve(speeds, h, guess))
             enough = motions.resolved | ~motions.found | (h == orders[-1])
             for i in np.flatnonzero(enough):
-                self.known[float(speeds[i])] = _One(
-                    bool(motions.found[i]), motions.rows[i], float(motions.torque[i]), motions.numbers[i]
-                )
+                self.known[float(speeds[i])] = KnownMotion.of(motions, i)
             speeds, guess = speeds[~enough], motions.rows[~enough]
+        for speed in asked.tolist():
+            if not self.known[speed].settled:
+                self._follow_to(speed)
+
+    def _follow_to(self, speed: float) -> None:
+        """Look for a motion by steps from the nearest ones known on both sides, then from farther away, where none
+        breaks off between."""
+        if any(one.low < speed < one.high for one in self.broken):
+            return
+        for begin, start in self._about(speed):
+            reached, motion = self.carried(start, begin, speed)
+            if reached == speed:
+                self.known[speed] = motion
+                return
+
+    def _about(self, speed: float) -> Iterator[tuple[float, KnownMotion]]:
+        """Motions beside a speed, and where."""
+        there = np.array([one for one, motion in self.known.items() if motion.settled])
+        for side in (there[there < speed].max(initial=-np.inf), there[there > speed].min(initial=np.inf)):
+            if np.isfinite(side):
+                yield float(side), self.known[float(side)]
+        away = self.balance.solve(speed * AWAY, self.balance.fewest)
+        for i in np.flatnonzero(away.found & away.resolved):
+            yield float(away.speed[i]), KnownMotion.of(away, i)
 
     def _from_neighbours(self, motions: FreeMotions) -> FreeMotions:
         """With those that were not found looked for again from the nearest that were, outwards."""

@@ -41,6 +41,12 @@ class Piece:
     low: float
     high: float
 
+    def without(self, low: float, high: float) -> list[Piece]:
+        """What is left of it beside a range."""
+        if high <= self.low or low >= self.high:
+            return [self]
+        return [Piece(a, b) for a, b in ((self.low, low), (high, self.high)) if b > a]
+
 
 @dataclass(frozen=True)
 class Gap:
@@ -62,6 +68,8 @@ class Span:
     put: Callable[[Array], None] | None = None
     points: tuple[float, ...] = field(default=())
     """Speeds at which what ``put`` does has a kink."""
+    lost: tuple[Gap, ...] = field(default=())
+    """Speeds at which the line has no motion to look at."""
 
     def table(self, speed: Array) -> Array:
         """Packed numbers (case, column) at ``speed`` (case,) [rad/s]."""
@@ -78,12 +86,12 @@ class Span:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The range in pieces, what cannot be looked at left out."""
+        left = [piece for piece in self._same if not self._uncovered((piece.low + piece.high) / 2)]
+        for gap in self.lost:
+            left = [part for piece in left for part in piece.without(gap.low, gap.high)]
         return tuple(
-            piece
-            for piece in self._same
-            if not self._uncovered((piece.low + piece.high) / 2)
-            and (piece.high - piece.low > NARROW * self.high or self.low == self.high)
-        )
+            piece for piece in left if piece.high - piece.low > NARROW * self.high or self.low == self.high
+        )  # fmt: skip
 
     @cached_property
     def gaps(self) -> tuple[Gap, ...]:
@@ -95,7 +103,7 @@ class Span:
                 found[-1] = Gap(found[-1].low, piece.high, why)
             elif why:
                 found.append(Gap(piece.low, piece.high, why))
-        return tuple(found)
+        return tuple(sorted([*found, *self.lost], key=lambda gap: gap.low))
 
     @cached_property
     def _same(self) -> tuple[Piece, ...]:

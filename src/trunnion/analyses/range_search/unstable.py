@@ -74,14 +74,8 @@ class UnstableRanges:
         """Pieces without what is unstable in them."""
         left = list(pieces)
         for low, high in self.ranges:
-            left = [part for piece in left for part in _without(piece, low, high)]
+            left = [part for piece in left for part in piece.without(low, high)]
         return left
-
-
-def _without(piece: Piece, low: float, high: float) -> list[Piece]:
-    if high <= piece.low or low >= piece.high:
-        return [piece]
-    return [Piece(a, b) for a, b in ((piece.low, low), (high, piece.high)) if b > a]
 
 
 def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> UnstableRanges:
@@ -98,7 +92,8 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> Unstab
     even = np.linspace(low, high, points)
     octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
     met, damping, width = meetings(span, low, high)
-    along = judge(np.unique(np.concatenate([even, octaves, met])))
+    lost = np.array([at for gap in span.lost for at in (gap.low, (gap.low + gap.high) / 2, gap.high)])
+    along = judge(np.unique(np.concatenate([even, octaves, met, lost[(lost >= low) & (lost <= high)]])))
     along = _beside_met(along, judge, met, damping, width, (low, high))
     for _ in range(ROUNDS):
         wanted = _rising(along)
@@ -106,7 +101,8 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> Unstab
             break
         along = along.beside(judge(wanted))
     along, ranges = closed_in(along, judge)
-    return UnstableRanges(along, ranges, slow, gaps)
+    inside = np.any([(along.speed > gap.low) & (along.speed < gap.high) for gap in span.lost], axis=0)
+    return UnstableRanges(along.of(np.broadcast_to(~inside, along.speed.shape)), ranges, slow, (*gaps, *span.lost))
 
 
 def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
