@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import trunnion as tn
 from oracles.dense_scan import Scan
 from oracles.growth import growth
+from oracles.line_equations import Steady
 from oracles.own_shooting import growth_of_own, leads_over
 from oracles.scanned_lines import ScannedLine
 
@@ -64,7 +65,7 @@ def judged(line: ScannedLine) -> Judged:
     found.own_time = time.process_time() - begin
     checks = {check.name: check for check in said.checks}
     found.unstable = checks[NAME].barred
-    if line.free:
+    if Steady(line).moves and checks[NAME].covered:
         found.gaps = _between(checks[NAME].covered, line)
     beside = tuple((a * (1 - EDGE), b * (1 + EDGE)) for a, b in found.gaps)
     left_out = tuple(sorted((*found.unstable, *beside)))
@@ -93,7 +94,7 @@ def judged(line: ScannedLine) -> Judged:
         if check.speed not in there:
             there[check.speed] = [scan.at(check.speed) for scan in scans.values()]
         known = [one[name] for one in there[check.speed] if np.isfinite(one[name])]
-        if known and min(abs(own / one - 1) for one in known) > ALIKE:
+        if known and min(abs(own / one - 1) for one in known) > ALIKE + check.error / check.value:
             found.faults.append(f"{says} is none there: {', '.join(f'{one:.12g}' for one in known)}")
     if checks[NAME].judged or found.gaps:
         found.faults += _of_ranges(scans, found, line)

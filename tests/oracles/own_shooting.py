@@ -41,22 +41,24 @@ SAME = 1e-4
 @dataclass(frozen=True)
 class Shot:
     """Motions at ``speed`` (case,): found (case,); start (case, 2n); extra (case,) [N m] that the first mass drives
-    with beyond the balance; matrix (case, 2n, 2n): of a disturbance over a period, rates over the speed; rise (case,):
-    of the driving torque by the speed [N m s]; mean_torque (case, spring)."""
+    with beyond the balance; matrix (case, 2n, 2n): of a disturbance over a period, rates over the speed; shift (case,
+    2n): the one that shifts the phase; rise (case,): of the driving torque by the speed [N m s]; mean_torque (case,
+    spring)."""
 
     speed: Array
     found: NDArray[np.bool_]
     start: Array
     extra: Array
     matrix: Array
+    shift: Array
     rise: Array
     mean_torque: Array
 
     @property
     def multipliers(self) -> Complex:
         """Without that of a shift of the phase, which is 1 (case, 2n − 1)."""
-        values = np.linalg.eigvals(self.matrix)
-        return np.take_along_axis(values, np.argsort(np.abs(values - 1), axis=1)[:, 1:], axis=1)
+        rest = np.linalg.qr(self.shift[:, :, None], mode="complete")[0][:, :, 1:]
+        return np.linalg.eigvals(rest.transpose(0, 2, 1) @ self.matrix @ rest).astype(complex)
 
 
 class Shooting:
@@ -113,7 +115,11 @@ class Shooting:
         rise = np.full(cases, np.nan)
         rise[found] = -np.linalg.solve(self._bordered(slope, unit, drive)[found], by_speed[found][..., None])[:, -1, 0]
         matrix = slope[..., : 2 * n] * unit[:, None, :] / unit[:, :, None]
-        return Shot(speed, found, x, torque, np.where(found[:, None, None], matrix, 0.0), rise * drive, mean)
+        load = self.steady.constant_loads(speed)[:, :, None].astype(complex)
+        load[:, 0, 0] -= torque
+        shift = np.where(found[:, None], self._rates(x[:, :, None].astype(complex), load)[..., 0].real / unit, 1.0)
+        matrix = np.where(found[:, None, None], matrix, 0.0)
+        return Shot(speed, found, x, torque, matrix, shift, rise * drive, mean)
 
     def _bordered(self, slope: Array, unit: Array, drive: float) -> Array:
         """Of Newton's steps: the start in its units, the torque in ``drive``; the first angle held."""
