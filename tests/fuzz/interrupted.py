@@ -23,7 +23,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from trunnion import writing
-from trunnion.cli import app
+from trunnion.cli import main as command
 from trunnion.cli.failures import EndedBy
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
@@ -175,7 +175,7 @@ def main() -> None:
     Path("out").mkdir()
     writing.sweep = Trial(kills, sizes, seed, files())
     try:
-        app(sys.argv[4:])
+        command(sys.argv[4:])
     except SystemExit as leave:
         os._exit(leave.code if isinstance(leave.code, int) else 3)
     except BaseException:
