@@ -6,6 +6,7 @@ prints it as it stands and turns the class into an exit code (2 for bad input, 1
 
 from __future__ import annotations
 
+import os
 import reprlib
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
@@ -104,8 +105,10 @@ class InputRemark(UserWarning):
 
 
 def short(text: str, limit: int = LONGEST) -> str:
-    """``text``, cut where it is longer than a line wants."""
-    return text if len(text) <= limit else text[: limit - 1] + "…"
+    """``text``, cut where it is longer than a line wants: at its end; a path at its beginning, as its end names a file."""
+    if len(text) <= limit:
+        return text
+    return "…" + text[1 - limit :] if os.path.isabs(text) and "\n" not in text else text[: limit - 1] + "…"
 
 
 def all_made(makers: Iterable[Callable[[], Made]]) -> list[Made]:

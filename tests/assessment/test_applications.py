@@ -145,7 +145,7 @@ def test_pictures_and_envelopes_keep_guidelines_apart(beyond) -> None:
     line = beyond_all(NONE)
     other = line.replace("front", angle="7 deg")
     picture = tn.compare(line, other, (tn.rpm(800), tn.rpm(1000))).plot()
-    names = [label.get_text() for label in picture.get_yticklabels()]
+    names = [" ".join(label.get_text().split()) for label in picture.get_yticklabels()]
     shown = [name.endswith(" (guideline, shown)") for name in names]
     assert "angle of front (guideline, shown)" in names and "max torque of tube" in names and shown == sorted(shown)
     whole = tn.envelope(line)

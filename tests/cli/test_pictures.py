@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -69,7 +68,21 @@ def test_units_and_operating_point(chart):
     assert axes.get_xlabel() == "input speed [Hz]" and axes.get_ylabel() == "angle of all Hooke's joints [°]"
     point = next(line for line in axes.lines if line.get_label() == "operating point")
     assert point.get_xydata()[0] == pytest.approx([1 / (2 * np.pi), np.rad2deg(0.2)])
-    assert "pyplot" not in " ".join(name for name in sys.modules if name.startswith("matplotlib"))
+
+
+NO_WINDOWS = """
+import sys
+import trunnion as tn
+chart = tn.stability_chart(tn.catalogue("two-shaft-cardan"), ("speed", 0.5, 2, 4), ("HookeJoint 1.angle", 0, 0.3, 3))
+chart.plot().figure.savefig("chart.png")
+print("matplotlib.pyplot" in sys.modules)
+"""
+
+
+def test_drawing_opens_no_windows(start):
+    process = start("-c", NO_WINDOWS, program=())
+    said = process.communicate(timeout=300)
+    assert process.returncode == 0 and said[0].strip() == "False", said[1]
 
 
 def test_edges_of_cells():

@@ -110,7 +110,7 @@ def answer(error: Exception, arguments: list[str]) -> int:
     lines = str(error).splitlines() if isinstance(error, InputError) else [one.problem for one in failure.problems]
     for line in lines:
         print(f"error: {' '.join(line.split())}", file=sys.stderr)
-    if "--json" in arguments:
+    if "--json" in arguments and not isinstance(error, output.FailedAnswer):  # whose JSON is there and says it
         try:
             output.write_json(next((one for one in arguments if not one.startswith("-")), ""), failure.content())
             sys.stdout.flush()

@@ -111,11 +111,15 @@ def write_json(command: str, content: Mapping[str, Any]) -> None:
     print(json.dumps(plain(whole), indent=2, allow_nan=False))
 
 
+class FailedAnswer(ComputationError):
+    """A computation failed, and what it found is printed, with the sentence of its outcome."""
+
+
 def finish(outcome: Outcome, paths: Sequence[Path]) -> None:
     """Exit code 1 with the sentence of a failed outcome, once what was computed is written and printed."""
     if not outcome.ok:
         kept = f"; what was computed is in {', '.join(map(str, paths))}" if paths else ""
-        raise ComputationError(f"{outcome}{kept}")
+        raise FailedAnswer(f"{outcome}{kept}")
 
 
 def note(text: str) -> None:

@@ -209,10 +209,16 @@ class Tongues(Result):
                 writer.writerows([tongue.number, tongue.name, x, y] for x, y in tongue.boundary.tolist())
 
     def plot(
-        self, axes: Axes | None = None, *, unit: str | None = None, pixel: float | None = None, labelled: int = 12
+        self,
+        axes: Axes | None = None,
+        *,
+        unit: str | None = None,
+        pixel: float | None = None,
+        labelled: int = 12,
+        wide: bool = False,
     ) -> Axes:
         """The boundaries as curves, over a chart if ``axes`` shows one; see ``plots.tongues.draw``."""
-        return drawing(self, "plot")(self, axes, unit=unit, pixel=pixel, labelled=labelled)
+        return drawing(self, "plot")(self, axes, unit=unit, pixel=pixel, labelled=labelled, wide=wide)
 
     def table(self) -> list[dict[str, object]]:
         """One row a tongue, SI units."""
