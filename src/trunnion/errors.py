@@ -105,7 +105,7 @@ class InputRemark(UserWarning):
 
 
 def short(text: str, limit: int = LONGEST) -> str:
-    """``text``, cut where it is longer than a line wants: at its end; a path at its beginning, as its end names a file."""
+    """``text``, cut where it is longer than a line wants: at its end, a path at its beginning: its end names a file."""
     if len(text) <= limit:
         return text
     return "…" + text[1 - limit :] if os.path.isabs(text) and "\n" not in text else text[: limit - 1] + "…"
