@@ -172,6 +172,6 @@ def test_the_command_has_the_option_too(run, here: Path, tmp_path: Path) -> None
     line_naming(here / "below", "../outside.csv")
     (here / "outside.csv").write_text(TABLE, encoding="utf-8")
     refusal = run("natural-frequencies", "below/line.toml")
-    assert refusal.exit_code == 2 and "trunnion --tables-anywhere" in refusal.stderr
+    assert refusal.exit_code == 2 and "trunnion --tables-anywhere" in refusal.output
     assert run("--tables-anywhere", "natural-frequencies", "below/line.toml").exit_code == 0
     assert run("natural-frequencies", "below/line.toml").exit_code == 2
