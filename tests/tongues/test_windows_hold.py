@@ -79,7 +79,7 @@ def check(seed: int) -> tuple[int, int, int]:
     return len(found.windows), len(known), sum(e is not None for e, _ in ends) - len(known)
 
 
-@pytest.mark.parametrize("seed", [1, 4, 6, 7])
+@pytest.mark.parametrize("seed", [1, 4, 6, 7, 217])  # of the last, two rows differ by rounding
 def test_random_windows_hold(seed: int) -> None:
     check(seed)
 

@@ -23,6 +23,8 @@ Search = Callable[[Array], list[Row]]
 
 HALVINGS = 6
 """Times that rows are put between two rows."""
+ALIKE = 1e-12
+"""Share of v below which two rows are one: their values came about in two ways."""
 ALONE = 0.25
 """An interval that meets no other continues the nearest one if that is nearer than this share of the second nearest."""
 
@@ -83,15 +85,24 @@ def joined(
     search: Search, v: Array, tell: Callable[[float], None], known: Sequence[Row] = ()
 ) -> tuple[list[Strand], list[Row]]:
     """All tongues that meet the rows ``v``, those ``known`` or rows put between them; and all these rows."""
-    rows = sorted([*known, *search(v)], key=lambda row: row.v)
+    rows = _rising([*known, *search(v)])
     for depth in range(HALVINGS + 1):
         strands, unclear = _strung(rows, final=depth == HALVINGS)
         tell((depth + 1) / (HALVINGS + 2))
         if not unclear:
             break
         between = np.array([(rows[k].v + rows[k + 1].v) / 2 for k in unclear])
-        rows = sorted([*rows, *search(between)], key=lambda row: row.v)
+        rows = _rising([*rows, *search(between)])
     return strands, rows
+
+
+def _rising(rows: Sequence[Row]) -> list[Row]:
+    """Rows in the order of their v, one of those whose values differ by rounding."""
+    rising: list[Row] = []
+    for row in sorted(rows, key=lambda row: row.v):
+        if not rising or row.v - rising[-1].v > ALIKE * abs(row.v):
+            rising.append(row)
+    return rising
 
 
 def _strung(rows: list[Row], *, final: bool) -> tuple[list[Strand], list[int]]:
