@@ -18,6 +18,7 @@ from known_motions import (
 import trunnion as tn
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.sparse_matrices import SparseMatrices
 from trunnion.results.verdict import Verdict
 
 
@@ -60,8 +61,9 @@ def test_products_with_matrices() -> None:
     t = 2 * np.pi / omega * np.arange(64) / 64
     wave = np.exp(np.outer(t, s))
     force = sum(np.einsum("tij,tj->ti", part[0], wave @ (s[:, None] ** p * x)) for p, part in enumerate(parts))
-    blocks = fourier.hill_blocks(s[None], harmonics, [np.fft.fft(part, axis=1) / 64 for part in parts])
-    assert np.einsum("iajb,jb->ia", blocks[0], x) == pytest.approx(wave.conj().T @ force / 64)
+    found = fourier.hill_matrices(s[None], harmonics, [np.fft.fft(part, axis=1) / 64 for part in parts])
+    blocks = SparseMatrices.added(6, found)
+    assert (blocks.dense()[0] @ x.ravel()).reshape(3, 2) == pytest.approx(wave.conj().T @ force / 64)
 
 
 def test_one_singular_matrix_among_others_has_no_solution() -> None:

@@ -1,5 +1,5 @@
-"""Windows of random lines against radii integrated without the package: none holds an unstable point, every end has
-radius one."""
+"""Windows and tips of random lines against radii integrated without the package: no window holds an unstable point,
+every end and tip has radius one, and beyond a tip nothing grows but in another tongue."""
 
 from __future__ import annotations
 
@@ -82,6 +82,48 @@ def check(seed: int) -> tuple[int, int, int]:
 @pytest.mark.parametrize("seed", [1, 4, 6, 7, 217])  # of the last, two rows differ by rounding
 def test_random_windows_hold(seed: int) -> None:
     check(seed)
+
+
+def beyond_tip(tongue: tn.analyses.tongues.result.Tongue, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Points (points,) on the side of a tip where its tongue is not, near it and up to a tenth of its height off."""
+    x, y = tongue.tip
+    share = 10 ** rng.uniform(-7, -1, POINTS)
+    away = np.sign(y - (tongue.y[0] + tongue.y[-1]) / 2) * share * np.ptp(tongue.y)
+    across = tongue.widest * rng.choice([1.0, np.sqrt(share).max()], POINTS) * rng.uniform(-1, 1, POINTS) * share**0.5
+    return x + across, y + away
+
+
+def check_tips(seed: int) -> int:
+    """How many tips are stated."""
+    line, name, low, high, (slow, fast) = random_box(seed)
+    found = tn.tongues(line.line(), ("speed", slow, fast), (name, low, high), rows=9)
+    rng = np.random.default_rng(seed)
+    closed = [tongue for tongue in found if tongue.tip is not None]
+    if closed:
+        x, y = np.array([tongue.tip for tongue in closed]).T
+        off = np.abs(radii(line, name, x, y) - 1)
+        assert off.max() < KNOWN, (seed, name, off)
+    for tongue in closed:
+        x, y = beyond_tip(tongue, rng)
+        inside = (x >= slow) & (x <= fast) & (y >= low) & (y <= high)
+        x, y = x[inside], y[inside]
+        grows = np.flatnonzero(radii(line, name, x, y) > 1 + KNOWN)
+        for at in grows:
+            reached = [one.interval_at(y[at]) for one in found if one.y[0] <= y[at] <= one.y[-1]]
+            assert any(a <= x[at] <= b for a, b in reached), (seed, name, tongue.name, tongue.tip, x[at], y[at])
+    return len(closed)
+
+
+@pytest.mark.parametrize("seed", [1, 9, 641])  # in the last the highest point is a narrow cusp
+def test_random_tips_hold(seed: int) -> None:
+    check_tips(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.study
+@pytest.mark.parametrize("seed", range(100, 600))
+def test_many_random_tips_hold(seed: int) -> None:
+    check_tips(seed)
 
 
 @pytest.mark.slow

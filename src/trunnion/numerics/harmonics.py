@@ -109,35 +109,44 @@ def product_blocks(values: Array, h: int) -> Array:
     return out
 
 
-def hill_blocks(s: Any, harmonics: Integers, parts: Sequence[Complex], places: Integers | None = None) -> Complex:
-    """The matrix (case, h, n, h, n) of P₀ x + P₁ ẋ + P₂ ẍ … for x = Σ X_h exp(s_h t): blocks Σ_p s_l^p P_p,h−l.
+def hill_matrices(
+    s: Any, harmonics: Integers, parts: Sequence[Complex], places: Integers | None = None
+) -> list[tuple[Integers, Integers, Complex]]:
+    """Parts of the matrices of P₀ x + P₁ ẋ + P₂ ẍ … for x = Σ X_h exp(s_h t): blocks Σ_p s_l^p P_p,h−l.
 
-    s (case, h) [1/s] of the ``harmonics`` (h,); parts (case, count, n, n): Fourier coefficients of each P, as an FFT
-    orders them. ``places`` (…,) of that order that are not 0; by default all.
+    Each (row, column, values) as ``SparseMatrices.added`` takes them, X in the order (h, n). s (case, h) [1/s] of the
+    ``harmonics`` (h,); parts (case, count, n, n): Fourier coefficients of each P, as an FFT orders them. ``places``
+    (…,) of that order that are not 0; by default all.
     """
     count, n = parts[0].shape[1:3]
-    out = np.zeros((len(s), len(harmonics), n, len(harmonics), n), dtype=complex)
     apart = harmonics[:, None] - harmonics[None, :]
     # What is further apart than half the samples is not known from them.
     place = np.where(2 * np.abs(apart) < count, apart % count, -1)
+    own = np.arange(n)
+    found = []
     for d in np.intersect1d(place[place >= 0], np.arange(count) if places is None else places):
         rows, columns = np.nonzero(place == d)
-        v = s.T[columns][:, :, None, None]
-        out[:, rows, :, columns, :] = sum(v**p * part[:, d] for p, part in enumerate(parts))
-    return out
+        # Where no P has a number none is kept.
+        far, near = np.nonzero(np.any([part[:, d].any(axis=0) for part in parts], axis=0))
+        v = s[:, columns, None]
+        values = sum(v**p * part[:, d, far, near][:, None] for p, part in enumerate(parts))
+        found.append(((rows[:, None] * n + own[far]), (columns[:, None] * n + own[near]), np.asarray(values)))
+    return found
 
 
 def solved(matrix: Any, right: Any) -> Any:
-    """Solutions (case, m) of matrices (case, m, m), real or complex; NaN where one is singular or not finite."""
-    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-    out = np.full(right.shape, np.nan, dtype=right.dtype)
+    """Solutions (case, m) or (case, m, k) of matrices (case, m, m), real or complex; NaN where one is singular or not
+    finite."""
+    columns = right.reshape(*matrix.shape[:2], -1)
+    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(columns).all(axis=(1, 2))
+    out = np.full(columns.shape, np.nan, dtype=right.dtype)
     try:
-        out[finite] = np.linalg.solve(matrix[finite], right[finite, :, None])[..., 0]
+        out[finite] = np.linalg.solve(matrix[finite], columns[finite])
     except np.linalg.LinAlgError:
         for i in np.flatnonzero(finite):
             with suppress(np.linalg.LinAlgError):
-                out[i] = np.linalg.solve(matrix[i], right[i])
-    return out
+                out[i] = np.linalg.solve(matrix[i], columns[i])
+    return out.reshape(right.shape)
 
 
 def spectrum_of_steps(ends: Array, values: Array, highest: int) -> Complex:

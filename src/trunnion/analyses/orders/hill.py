@@ -11,6 +11,8 @@ sidebands turn its sign, which equations in time cannot do.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,7 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.sparse_matrices import Part, SparseMatrices
 
 NARROW = 1e-2
 """Share of the speed below which a range is too narrow to be interpolated from its ends."""
@@ -99,87 +102,92 @@ class HillBlocks:
         Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
-        matrix = self.dynamic(np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None])), harmonics)
-        if self.topo.free and not carrier.any():
-            self._hold(matrix, np.flatnonzero(harmonics == 0))
+        s = np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None]))
+        held = harmonics == 0 if self.topo.free and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
+        matrix = self.matrices(s, harmonics, np.flatnonzero(held))
         if not self.linearised:
             return _with_rim(matrix, rim, carried(weights, right), weights)
-        first = _with_rim(matrix[:1], rim, right[:1])
+        alone = replace(matrix, values=matrix.values[:1])
+        first = _with_rim(alone, rim, right[:1])
         rest = right - _times(matrix, rim, first)
-        size = np.abs(right).max() + np.abs(matrix[0]).max() * np.abs(first).max()
+        size = np.abs(right).max() + np.abs(alone.values).max() * np.abs(first).max()
         rest[np.abs(rest).max(axis=(1, 2)) <= RESIDUAL * size] = 0.0
-        change = _with_rim(np.broadcast_to(matrix[:1], matrix.shape), rim, rest, bounded=False)
-        return np.asarray(first + change)
+        return np.asarray(first + _with_rim(alone, rim, rest, bounded=False))
 
-    def dynamic(self, s: Complex, harmonics: Integers) -> Complex:
-        """The matrix (node, h, n, h, n) at s (node, h) [1/s] of the ``harmonics`` (h,)."""
+    def matrices(self, s: Complex, harmonics: Integers, held: Iterable[int] = ()) -> SparseMatrices:
+        """The matrices (node, h·n, h·n) at s (node, h) [1/s] of the ``harmonics`` (h,); what a free line turns as a
+        whole in those ``held``, which nothing resists at rest, is taken to be zero."""
         parts = (self.stiffness, self.damping, self.mass)
-        matrix = fourier.hill_blocks(s, harmonics, parts, np.flatnonzero(self.kept))
+        found = fourier.hill_matrices(s, harmonics, parts, np.flatnonzero(self.kept))
         if self.loss.any():
             apart = (harmonics[:, None] - harmonics[None, :]) % self.times
-            self._add_loss(matrix, apart, np.sign(s.imag))
-        return matrix
+            found += self._of_loss(apart, np.sign(s.imag))
+        found += [self._held(h) for h in held]
+        return SparseMatrices.added(len(harmonics) * self.topo.size, found)
 
-    def _hold(self, matrix: Complex, steady: Integers) -> None:
-        """Take what a free line turns as a whole, which nothing resists at rest, to be zero."""
-        turn = rigid_rotation(self.topo)
+    def _held(self, h: int) -> Part:
+        turn, n = rigid_rotation(self.topo), self.topo.size
         whole = np.outer(turn, turn) / (turn @ turn)
-        for h in steady:
-            matrix[:, h, :, h, :] += np.abs(self.stiffness[:, 0]).max(axis=(1, 2), keepdims=True) * whole
+        weight = np.abs(self.stiffness[:, 0]).max(axis=(1, 2))[:, None, None]
+        row, column = np.indices((n, n))
+        return h * n + row, h * n + column, weight * whole
 
-    def _add_loss(self, matrix: Complex, place: Integers, sign: Array) -> None:
-        every = np.arange(sign.shape[1])
+    def _of_loss(self, place: Integers, sign: Array) -> list[Part]:
+        n, every, found = self.topo.size, np.arange(sign.shape[1]), []
+
+        def put(far: int, near: int, row: Integers, column: Integers, values: Any) -> None:
+            found.append((row * n + far, column * n + near, values))
+
         for e, (far, near) in enumerate(self.topo.ends):
             if not self.loss[:, e].any():
                 continue
-            ratio = self.ratio[:, place, e]
             loss = 1j * self.loss[:, e, None] * sign
             if far >= 0:
-                matrix[:, every, far, every, far] += loss
-            if near >= 0:
-                matrix[:, :, near, :, near] += ratio @ (loss[:, :, None] * ratio)
-            if far >= 0 and near >= 0:
-                matrix[:, :, far, :, near] -= loss[:, :, None] * ratio
-                matrix[:, :, near, :, far] -= ratio * loss[:, None, :]
+                put(far, far, every, every, loss)
+            if near < 0:
+                continue
+            ratio = self.ratio[:, place, e]
+            parts = [(near, near, ratio @ (loss[:, :, None] * ratio))]
+            if far >= 0:
+                parts += [(far, near, -loss[:, :, None] * ratio), (near, far, -ratio * loss[:, None, :])]
+            for one, other, values in parts:
+                row, column = np.nonzero(np.abs(values).max(axis=0) > ROUNDING * np.abs(values).max())
+                put(one, other, row, column, values[:, row, column])
+        return found
 
 
 def _with_rim(
-    matrix: Complex, rim: Flags, right: Complex, weights: Array | None = None, *, bounded: bool = True
+    matrix: SparseMatrices, rim: Flags, right: Complex, weights: Array | None = None, *, bounded: bool = True
 ) -> Complex:
-    """X (case, h, n) of matrices (node, h, n, h, n), which are those of the cases without ``weights``; harmonics on the
-    rim by their own diagonal blocks; ``bounded`` as of ``_solve``."""
+    """X (case, h, n) of matrices at the nodes, which are those of the cases without ``weights``; harmonics on the rim
+    by their own diagonal blocks; ``bounded`` as of ``_solve``."""
     cases, count, n = right.shape
-    inner = np.flatnonzero(~rim)
-    inside = matrix if not rim.any() else matrix[:, inner][:, :, :, inner]
-    size = len(inner) * n
     x = np.zeros((cases, count, n), dtype=complex)
-    whole = carried(weights, inside.reshape(-1, size, size))
-    x[:, inner] = _solve(whole, right[:, inner].reshape(cases, size), bounded=bounded).reshape(cases, len(inner), n)
+    inside = matrix.among(np.repeat(~rim, n)) if rim.any() else matrix
+    inside = replace(inside, values=carried(weights, inside.values))
+    x[:, ~rim] = _solve(inside, right[:, ~rim].reshape(cases, -1), bounded=bounded).reshape(cases, -1, n)
     for end in np.flatnonzero(rim):
-        row = carried(weights, np.ascontiguousarray(matrix[:, end]))
-        known = (row.reshape(cases, n, count * n) @ x.reshape(cases, count * n, 1))[..., 0]
-        x[:, end] = _solve(row[:, :, end], right[:, end] - known, bounded=False)
+        row = carried(weights, matrix.rows(np.repeat(np.arange(count) == end, n)))
+        known = (row @ x.reshape(cases, count * n, 1))[..., 0]
+        x[:, end] = fourier.solved(row[:, :, end * n : (end + 1) * n], right[:, end] - known)
     return x
 
 
-def _times(matrix: Complex, rim: Flags, x: Complex) -> Complex:
+def _times(matrix: SparseMatrices, rim: Flags, x: Complex) -> Complex:
     """What ``_with_rim`` solves, times x (1, h, n): (case, h, n)."""
-    cases, count, n = matrix.shape[:3]
-    found = np.zeros((cases, count, n), dtype=complex)
-    for row in range(count):
-        # One harmonic on the rim is found before the next: each sees the inner ones and those found before it.
-        seen = ~rim | (np.arange(count) <= row) if rim[row] else ~rim
-        part = matrix[:, row][:, :, seen].reshape(cases, n, -1)
-        found[:, row] = part @ x[0, seen].reshape(-1)
-    return found
+    count, n = x.shape[1:]
+    row, column = matrix.row // n, matrix.column // n
+    # One harmonic on the rim is found before the next: each sees the inner ones and those found before it.
+    seen = ~rim[column] | (rim[row] & (column <= row))
+    return matrix.only(seen).times(x.reshape(1, -1)).reshape(-1, count, n)
 
 
-def _solve(matrix: Complex, right: Complex, *, bounded: bool = True) -> Complex:
+def _solve(matrix: SparseMatrices, right: Complex, *, bounded: bool = True) -> Complex:
     """Solutions (case, m); NaN where a matrix is singular, with ``bounded`` to rounding."""
-    x = fourier.solved(matrix, right)
+    x = matrix.solved(right)
     if bounded:
         with np.errstate(invalid="ignore"):
-            weight = np.abs(matrix).max(axis=(1, 2)) * np.abs(x).max(axis=1)
+            weight = np.abs(matrix.values).max(axis=1) * np.abs(x).max(axis=1)
             x[np.abs(right).max(axis=1) < SINGULAR * weight] = np.nan
     x[~right.any(axis=1)] = 0.0
     return np.asarray(x)

@@ -26,6 +26,7 @@ from trunnion.equations.steady_base import refuse_own_motion
 from trunnion.equations.topology import Topology
 from trunnion.errors import ComputationError
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.sparse_matrices import SparseMatrices
 
 
 @dataclass(frozen=True)
@@ -111,12 +112,12 @@ def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
     """
     cases, times, n = own.mass.shape
     s = 1j * (carrier[:, None] + own.rate[:, None] * h)
-    blocks = fourier.hill_blocks(s, h, (-own.by_state[..., :n], -own.by_state[..., n:]))
-    every = np.arange(len(h))
-    blocks[:, every, :, every, :] += (s**2).T[..., None, None] * np.eye(n)
+    parts = fourier.hill_matrices(s, h, (-own.by_state[..., :n], -own.by_state[..., n:]))
     size = len(h) * n
     matrix = np.zeros((cases, size + 1, size + 1), dtype=complex)
-    matrix[:, :size, :size] = blocks.reshape(cases, size, size)
+    matrix[:, :size, :size] = SparseMatrices.added(size, parts).dense()
+    every = np.arange(size)
+    matrix[:, every, every] += np.repeat(s**2, n, axis=1)
     unit = np.abs(matrix[:, :size, :size]).max(axis=(1, 2))
     matrix[:, size, size] = unit
     if not carrier.any() and h[0] <= 0 <= h[-1]:

@@ -28,6 +28,7 @@ from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.topology import require_period
+from trunnion.numerics.sparse_matrices import SparseMatrices
 from trunnion.waiting import keep_time
 
 REACH = 2
@@ -112,7 +113,7 @@ def _batches(cases: Places, sides: SideOrders, assembly: Assembly) -> Iterator[P
 
 
 class _Blocks:
-    """A(λ) of some rows of packed numbers and A′(λ), (case, m, m)."""
+    """A(λ) of some rows of packed numbers and A′(λ), each (case, m, m)."""
 
     def __init__(self, assembly: Assembly, sides: SideOrders, table: Array) -> None:
         co = assembly.coefficients(table, any_frequency=True)
@@ -121,26 +122,25 @@ class _Blocks:
         matrices = line_matrices(assembly.topology, co, tau)
         self.blocks = HillBlocks(assembly.topology, matrices, co.loss, self.step)
 
-    def at(self, value: Complex) -> Complex:
+    def at(self, value: Complex) -> SparseMatrices:
         """A at λ (case,)."""
         s = value[:, None] + 1j * self.harmonics * self.step[:, None]
-        found = self.blocks.dynamic(s, self.harmonics)
-        size = found.shape[1] * found.shape[2]
-        return found.reshape(len(value), size, size)
+        return self.blocks.matrices(s, self.harmonics)
 
-    def slope(self, value: Complex) -> Complex:
-        """A′, exact by differences of any width: A is of second degree in λ."""
+    def slope_times(self, value: Complex, x: Complex) -> Complex:
+        """A′x, exact by differences of any width: A is of second degree in λ."""
         width = np.abs(value)
-        return np.asarray((self.at(value + width) - self.at(value - width)) / (2 * width)[:, None, None])
+        change = self.at(value + width).times(x) - self.at(value - width).times(x)
+        return np.asarray(change / (2 * width)[:, None, None])
 
     def step_from(self, value: Complex, x: Complex) -> Complex:
         """A⁻¹A′x of x (case, m, …)."""
         keep_time()
-        right = self.slope(value) @ x
-        try:
-            return np.asarray(np.linalg.solve(self.at(value), right))
-        except np.linalg.LinAlgError:  # one lies on an exponent already
-            return np.asarray(np.linalg.solve(self.at(value * (1 + 1e-12)), right))
+        right = self.slope_times(value, x)
+        found = self.at(value).solved(right)
+        if np.isnan(found).any():  # one lies on an exponent already
+            found = self.at(value * (1 + 1e-12)).solved(right)
+        return found
 
 
 def _one(blocks: _Blocks, value: Complex, shape: NDArray[Any]) -> Complex:

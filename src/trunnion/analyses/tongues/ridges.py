@@ -10,8 +10,8 @@ from trunnion.arrays import Array, Flags, Places
 
 LOOKS = 9
 """Points across the window in each round."""
-ROUNDS = 3
-"""Rounds of looking, each a quarter as wide as the one before."""
+ROUNDS = 15
+"""Rounds of looking at most, each a quarter as wide as the one before."""
 SMOOTH, ROUNDING = 1e-7, 1e-13
 """Looking closer ends where a quartic fits to this share of what heights differ by, and to their rounding."""
 TIP = 1e-13
@@ -27,19 +27,22 @@ def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Arr
 
     The last round fits a quartic, so that the place is known far better than its points are apart.
     """
-    best, half = (low + high) / 2, 2 * (high - low)
-    for _ in range(ROUNDS + 1):
-        centre, half = best, half / 4
-        u = np.clip(centre[:, None] + half[:, None] * _T, low[:, None], high[:, None])
-        found = region.judged(u.ravel(), np.repeat(v, LOOKS))
-        height = (found.radius - 1).reshape(u.shape)
-        error = found.error.reshape(u.shape)
+    centre, half = (low + high) / 2, (high - low) / 2
+    best, top = centre.copy(), np.full(len(low), -np.inf)
+    here = np.arange(len(low))
+    for _ in range(ROUNDS):
+        u = np.clip(centre[here, None] + half[here, None] * _T, low[here, None], high[here, None])
+        found = region.judged(u.ravel(), np.repeat(v[here], LOOKS))
+        height, error = (found.radius - 1).reshape(u.shape), found.error.reshape(u.shape)
         known = np.where(np.isfinite(height - error), height - error, -np.inf)
-        here = known.argmax(axis=1)[:, None]
-        best, top = np.take_along_axis(u, here, 1)[:, 0], np.take_along_axis(known, here, 1)[:, 0]
-        if np.all(_misfit(height) < SMOOTH * np.ptp(height, axis=1) + ROUNDING):
+        at = known.argmax(axis=1)[:, None]
+        seen, over, off = (np.take_along_axis(part, at, 1)[:, 0] for part in (u, known, error))
+        best[here], top[here] = _fitted(u, height, off, seen, over, centre[here], half[here])
+        centre[here], half[here] = seen, half[here] / 4
+        here = here[_misfit(height) >= SMOOTH * np.ptp(height, axis=1) + ROUNDING]
+        if not len(here):
             break
-    return _fitted(u, height, np.take_along_axis(error, here, 1)[:, 0], best, top, centre, half)
+    return best, top
 
 
 def _misfit(height: Array) -> Array:
