@@ -42,3 +42,18 @@ def test_constants_and_failures_keep_their_place() -> None:
     assert low[0] == high[0] == 3.0
     assert np.isnan(low[1]) and np.isnan(high[1])
     assert low[2] == high[2] == 0.0
+
+
+def test_of_many_peaks_that_are_all_but_equal_the_highest_is_found() -> None:
+    """A high order with a little of low ones beside it: which of its peaks is the highest, they decide."""
+    index, rng = np.array([1, 2, 48]), np.random.default_rng(3)
+    for size in (1e-3, 1e-5, 1e-7):
+        amplitude = np.array([size, size, 1.0]) * np.exp(1j * rng.uniform(0, 2 * np.pi, (20, 3)))
+        low, high = cycle_extremes(index, amplitude)
+        # Peaks of the high order stand where its phase is a multiple of 2π, moved by the low ones by their own size.
+        x = (2 * np.pi * np.arange(48) - np.angle(amplitude[:, 2])[:, None]) / 48
+        slow = (amplitude[:, None, :2] * np.exp(1j * index[:2] * x[..., None])).real.sum(axis=2)
+        assert high == pytest.approx(1 + slow.max(axis=1), abs=size**2)
+        x = x + np.pi / 48
+        slow = (amplitude[:, None, :2] * np.exp(1j * index[:2] * x[..., None])).real.sum(axis=2)
+        assert low == pytest.approx(-1 + slow.min(axis=1), abs=size**2)

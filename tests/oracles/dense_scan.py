@@ -32,7 +32,7 @@ FEW, MANY = (log(1e4), 15), WIDEST
 FINE = 64
 """Samples of a joint's cycle of the motion of a line that moves by itself, of the values."""
 ROUNDS, HIGHEST, CLOSER = 4, 4, 4
-"""Of lines that move by themselves: how often one looks closer, about how many high places, at how many speeds between
+"""Of lines that joints or meshes vary: how often one looks closer, at how many high places, at how many speeds between
 neighbours."""
 BATCH = 2_000_000
 FREE_FREQUENCY = 20 * np.pi
@@ -68,7 +68,7 @@ class Sum:
 
 
 def _highest(index: NDArray[np.intp], rows: Complex) -> Array:
-    """Largest value of Σ Re[row_k e^{i index_k x}]: samples, then Newton's steps from the three highest peaks."""
+    """Largest value of Σ Re[row_k e^{i index_k x}]: samples, then Newton's steps from every peak that may be it."""
     count = 1 << int(np.ceil(np.log2(24 * index.max())))
     spectrum = np.zeros((len(rows), count // 2 + 1), dtype=complex)
     spectrum[:, index] = rows / 2
@@ -79,7 +79,8 @@ def _highest(index: NDArray[np.intp], rows: Complex) -> Array:
     tops = np.where(peak, samples, -np.inf)
     best = samples.max(axis=1)
     every = np.arange(len(rows))
-    for _ in range(3):
+    below = (np.pi / count) ** 2 / 2 * (index**2 * np.abs(rows)).sum(axis=1)  # a sample, of the peak beside it
+    while (tops.max(axis=1) >= best - below).any():
         place = tops.argmax(axis=1)
         tops[every, place] = -np.inf
         x = place * (2 * np.pi / count)
@@ -328,7 +329,7 @@ class Scan:
         steps = np.arange(-round(PER_WIDTH * BESIDE), round(PER_WIDTH * BESIDE) + 1) / PER_WIDTH
         more = np.setdiff1d(self.kept((close[:, None] + width[:, None] * steps).ravel()), rough)
         seen = _joined([seen, self.respond(more)]) if len(more) else seen
-        if self.steady.moves:
+        if self.steady.moves or len(self.steady.lattice(*FEW)) > 1:
             seen = self._closer(seen)
         self.lost = np.sort(seen.speed[np.isnan(seen.mean_torque).any(axis=1)])
         tops = {one.name: self._tops(one, seen) for one in self.quantities}
@@ -343,15 +344,17 @@ class Scan:
         return found
 
     def _closer(self, seen: Response) -> Response:
-        """With more speeds about every high place: an own motion shifts poles farther than they are followed."""
+        """With more speeds about every high place: what varies a line shifts poles farther than they are followed."""
         for _ in range(ROUNDS):
             order = np.argsort(seen.speed)
             x, between = seen.speed[order], set()
             for one in self.quantities:
                 v = np.nan_to_num(one.bound(seen)[order], nan=-np.inf)
-                high = np.flatnonzero((v[1:-1] >= v[:-2]) & (v[1:-1] >= v[2:]) & (v[1:-1] >= v.max() / 10)) + 1
+                around = np.pad(v, 1, constant_values=-np.inf)
+                high = np.flatnonzero((v >= around[:-2]) & (v >= around[2:]) & (v >= v.max() / 10))
                 between |= {*high[np.argsort(-v[high])[:HIGHEST]].tolist()}
-            more = [np.linspace(x[i - 1], x[i + 1], 2 * CLOSER + 1) for i in sorted(between)]
+            last = len(x) - 1
+            more = [np.linspace(x[max(i - 1, 0)], x[min(i + 1, last)], 2 * CLOSER + 1) for i in sorted(between)]
             fresh = np.setdiff1d(self.kept(np.concatenate([np.zeros(0), *more])), x)
             fresh = fresh[np.diff(fresh, prepend=0.0) > 1e-9 * fresh]
             if not len(fresh):

@@ -13,7 +13,6 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Integers, Places
 
 SAMPLES = 16
-STARTS = 3
 NEWTON_STEPS = 2
 PARABOLA = 4e-4
 """More than twice the error of a parabola's top, over the sum of amplitudes."""
@@ -26,8 +25,7 @@ SHARE = 1e-14
 def cycle_extremes(index: Integers, amplitude: Complex) -> tuple[Array, Array]:
     """Lowest and highest value (row,) of each row of ``amplitude`` (row, k) with distinct harmonics ``index`` (k,) ≥ 0.
 
-    Accurate to rounding where no more than STARTS peaks are equal to 2e-4 of the highest harmonics, and to that
-    everywhere; NaN rows stay NaN.
+    Accurate to rounding; NaN rows stay NaN.
     """
     good = np.all(np.isfinite(amplitude), axis=1)
     low, high = np.where(good, 0.0, np.nan), np.where(good, 0.0, np.nan)
@@ -36,6 +34,7 @@ def cycle_extremes(index: Integers, amplitude: Complex) -> tuple[Array, Array]:
     index, parts = index[kept], amplitude[good][:, kept]
     if not len(index):
         return low, high
+    index = index // max(1, int(np.gcd.reduce(index)))  # one of the equal cycles
     rows = max(1, MOST_SAMPLES // (SAMPLES * max(1, int(index.max()))))
     found = [_both(index, parts[i : i + rows]) for i in range(0, len(parts), rows)]
     low[good] = np.concatenate([pair[0] for pair in found])
@@ -86,8 +85,7 @@ def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
 
 
 def _best(row: Places, value: Array, within: Array) -> Places:
-    """Places of the STARTS highest values of each row, those within ``within`` (row,) of its highest."""
-    order = np.lexsort((-value, row))
-    row, value = row[order], value[order]
-    first = np.searchsorted(row, row)
-    return np.asarray(order[(np.arange(len(row)) - first < STARTS) & (value >= value[first] - within[row])])
+    """Places of the values that are ``within`` (row,) of the highest of their row."""
+    highest = np.full(len(within), -np.inf)
+    np.maximum.at(highest, row, value)
+    return np.flatnonzero(value >= highest[row] - within[row])

@@ -273,7 +273,8 @@ class _Seen:
             if np.isfinite(value[q]) and value[q] > 0:
                 hidden = [self._hidden(q, run, value[q], tolerance).height for run in self._runs]
                 more = np.max(np.concatenate(hidden), initial=value[q]) - value[q]
-                error[q] = max(more, *(self._bend(q, run, place) for run in self._runs), 1e-9 * value[q])
+                bend = max(self._bend(q, run, place) for run in self._runs)
+                error[q] = max(more, bend, tolerance / 4 * value[q])  # less than that is not looked for
         return Largest(self.response, at.astype(np.intp), value, error)
 
     def _bend(self, q: int, run: slice, place: int) -> float:
