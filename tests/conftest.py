@@ -152,12 +152,13 @@ def start(here: Path) -> Callable[..., subprocess.Popen[str]]:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             encoding="utf-8",
-            # Where the tests run in the background Ctrl-C is ignored, and a process inherits that.
-            preexec_fn=_hear_ctrl_c if os.name == "posix" else None,
+            # Where the tests run in the background, or on without a terminal, signals are ignored; this is inherited.
+            preexec_fn=_hear_all if os.name == "posix" else None,
         )
 
     return started
 
 
-def _hear_ctrl_c() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def _hear_all() -> None:
+    for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(one, signal.SIG_DFL)
