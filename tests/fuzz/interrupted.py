@@ -24,7 +24,7 @@ from pathlib import Path
 
 from trunnion import writing
 from trunnion.cli import main as command
-from trunnion.cli.failures import EndedBy
+from trunnion.cli.ending import EndedBy
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 OLD = b"the old result"

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import errno
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -19,54 +18,16 @@ import typer
 
 from trunnion.cli import output
 from trunnion.cli.crash import crash_line
+from trunnion.cli.ending import EndedBy
 from trunnion.errors import ComputationError, InputError, TrunnionError, short
 from trunnion.results.plain import plain
 
 # Usage errors have no public name in typer; this base has been that of its BadParameter in every version.
 _UsageError = cast("type[Exception]", typer.BadParameter.__mro__[1])
-ENDINGS = ("SIGTERM", "SIGHUP")
-"""Signals that end a command as Ctrl-C does; Windows has no second one."""
 
 
 class Interrupted(Exception):
     """Ctrl-C, under a name that typer does not answer itself."""
-
-
-class EndedBy:
-    """The signal that ended this process, Ctrl-C until another one comes."""
-
-    number = int(signal.SIGINT)
-
-    @classmethod
-    def hear(cls) -> None:
-        """From now on the first signal that asks this process to end does what Ctrl-C does, so that it cleans up."""
-        cls.number = int(signal.SIGINT)
-        for name in ENDINGS:
-            number = getattr(signal, name, None)
-            with suppress(ValueError, OSError):  # not in the main thread
-                if number is not None and signal.getsignal(number) == signal.SIG_DFL:  # nohup has it ignored
-                    signal.signal(number, cls._stop)
-
-    @classmethod
-    def ignore(cls) -> None:
-        """From now on nothing is left to clean up, and the exit code stands."""
-        if cls.number == signal.SIGINT:
-            cls.number = 0
-
-    @classmethod
-    def _stop(cls, number: int, frame: Any) -> None:
-        if cls.number == signal.SIGINT:
-            cls.number = number
-            on_ctrl_c = signal.getsignal(signal.SIGINT)  # which may ask what is computed for what it has
-            if callable(on_ctrl_c):
-                on_ctrl_c(number, frame)
-            else:  # a command in the background
-                raise KeyboardInterrupt
-
-    @classmethod
-    def code(cls) -> int:
-        """The exit code, as shells have it."""
-        return 128 + (cls.number or signal.SIGINT)
 
 
 @dataclass(frozen=True)
@@ -122,7 +83,7 @@ def answer(error: Exception, arguments: list[str]) -> int:
 def _failure(error: Exception, arguments: list[str]) -> Failure:
     match error:
         case Interrupted():
-            return Failure.of("interrupted", EndedBy.code(), f"interrupted; {str(error) or 'nothing was written'}")
+            return _interrupted(str(error))
         case InputError():
             return Failure("input", error.exit_code, error.problems)
         case TrunnionError():
@@ -140,7 +101,13 @@ def _failure(error: Exception, arguments: list[str]) -> Failure:
                 _discard_stdout()
             where = f"{error.filename}: " if error.filename else ""
             return Failure.of("system", 1, f"{where}{error.strerror or error}")
+    if EndedBy.asked:  # imports and classes that it fell into name it otherwise
+        return _interrupted()
     return Failure.of("defect", 1, crash_line(error, arguments))
+
+
+def _interrupted(kept: str = "") -> Failure:
+    return Failure.of("interrupted", EndedBy.code(), f"interrupted; {kept or 'nothing was written'}")
 
 
 def _discard_stdout() -> None:

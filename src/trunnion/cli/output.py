@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
+from trunnion.cli.ending import EndedBy
 from trunnion.cli.options import read_time
 from trunnion.errors import ComputationError
 from trunnion.results.plain import plain
@@ -321,7 +322,8 @@ def stoppable(seconds: float | None = None, *, of_processor: bool = False) -> It
 def _first_ctrl_c(limit: TimeLimit) -> Iterator[None]:
     """The first Ctrl-C inside asks ``limit`` for an end."""
     here = threading.current_thread() is threading.main_thread()
-    if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+    before = signal.getsignal(signal.SIGINT)
+    if not here or before not in (signal.default_int_handler, EndedBy.on_ctrl_c):
         yield
         return
     impatient: list[threading.Timer] = []
@@ -346,4 +348,4 @@ def _first_ctrl_c(limit: TimeLimit) -> Iterator[None]:
     finally:
         for timer in impatient:
             timer.cancel()
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, before)

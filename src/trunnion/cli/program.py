@@ -17,7 +17,8 @@ from trunnion.cli.app import app as serve_app
 from trunnion.cli.assess import assess, campbell_diagram, envelope
 from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
 from trunnion.cli.design import compare, optimise, sensitivity
-from trunnion.cli.failures import EndedBy, Interrupted, answer
+from trunnion.cli.ending import EndedBy
+from trunnion.cli.failures import Interrupted, answer
 from trunnion.cli.kinetostatics import kinetostatics
 from trunnion.cli.limits import certify_stability, minimum_damping, stable_windows, tolerance_study, tongues
 from trunnion.cli.motion import linearity_check, periodic_response, run_up, simulate
