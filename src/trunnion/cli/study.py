@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 DRAWN = 3.0
 """Seconds that the pictures of a report take: with less left than that none is made."""
-REST, LEAST = 20.0, 0.05
+REST, LEAST = 10.0, 0.05
 """Seconds of processor time that report and chart may take where no time is given; seconds at least where it is."""
 
 
@@ -64,7 +64,7 @@ def analyze(
             "--within",
             metavar="TIME",
             help='End within this time, "30 s" say, with what is known by then; default: as long as the verdict '
-            "takes, then 20 s of processor time.",
+            "takes, then 10 s of processor time.",
         ),
     ] = None,
     as_json: Json = False,
@@ -120,8 +120,9 @@ def _reported(
             seen = charted(seen, size, advance)
         if limit.stopped:
             raise KeyboardInterrupt
+        page = page.charted(seen)
         with to_the_end():
-            return seen, page.contents.left_out, _written(page.charted(seen), to, file)
+            return seen, page.contents.left_out, _written(page, to, file)
     except KeyboardInterrupt:
         kept = f"the report without its chart is in {', '.join(map(str, written))}"
         raise KeyboardInterrupt(kept) from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
 from typing import TypeVar
@@ -103,12 +102,15 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
 def with_chart(contents: Contents, seen: Overview) -> Contents:
     """The same with the chart of ``seen`` and the limit angle that follows from it."""
     before = {finding.sentence for finding in contents.findings}
-    limit = None
-    with suppress(OutOfTime):  # the chart stands without it
+    limit, left_out = None, contents.left_out
+    try:
         limit = _limit(seen, resonance_speeds(seen.assembly))
+    except OutOfTime as error:  # the chart stands without it
+        left_out = (*left_out, f"Largest joint angle at every resonance speed: not computed, {error.why}")
     more = [*seen.findings, *(_limit_findings(limit, seen) if limit else [])]
     new = [finding for finding in more if finding.sentence not in before]
-    return replace(contents, overview=seen, limit=limit, findings=by_gravity([*contents.findings, *new]))
+    findings = by_gravity([*contents.findings, *new])
+    return replace(contents, overview=seen, limit=limit, findings=findings, left_out=left_out)
 
 
 def _helped(seen: Overview) -> Remedies | None:

@@ -46,8 +46,9 @@ class Report:
     def charted(self, seen: Overview) -> Report:
         """The same report with the chart of ``seen``; nothing else is computed or drawn again."""
         contents = with_chart(self.contents, seen)
-        shown = {**self.pictures, **chart_pictures(contents)}
-        return Report(_page(contents, shown, self.source), contents, shown, self.source)
+        with to_the_end():  # what there is is drawn
+            shown = {**self.pictures, **chart_pictures(contents)}
+            return Report(_page(contents, shown, self.source), contents, shown, self.source)
 
     def _repr_html_(self) -> str:
         from html import escape
