@@ -36,7 +36,10 @@ LONGER = {
     "rattle": ("motion", "motion.what=rattle&motion.points=3&line=" + pack(tn.dumps(rattling()))),
 }
 """The other views, and the other questions of a view."""
-CASES = [pytest.param(view, settings, id=view) for view, settings in QUICK.items()]
+CASES = [
+    pytest.param(view, settings, id=view, marks=() if view in ("driveline", "verdict") else pytest.mark.slow)
+    for view, settings in QUICK.items()
+]
 CASES += [pytest.param(*case, id=name, marks=pytest.mark.slow) for name, case in LONGER.items()]
 
 SHOWN = """() => {
@@ -132,8 +135,9 @@ def move_a_number(look: Look, view: str) -> None:
     after, kinds = look.page.evaluate(SHOWN), ("values",) if view == "driveline" else ("drawn", "texts")
     assert any(after[kind] != before[kind] for kind in kinds)
     no_alarm(look)
-    if view == "stability":  # an address does not say which number was moved last
+    if view == "stability":  # and the address no longer names another number
         choose(look, "HookeJoint 1.angle", "deg")
+        look.page.wait_for_function("() => !document.location.href.includes('move=')", timeout=WAIT)
 
 
 def choose(look: Look, parameter: str, unit: str) -> None:
@@ -168,6 +172,7 @@ def undo_takes_it_back(look: Look, settings: str) -> None:
     assert tomllib.loads(moved) != tomllib.loads(back)
 
 
+@pytest.mark.slow
 def test_forks_are_turned_by_a_slider_and_angles_of_two_views_are_combined(look: Look) -> None:
     look.at("?view=joints")
     uneven = look.page.locator("td[data-value=irregularity]").inner_text()
