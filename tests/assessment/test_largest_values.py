@@ -22,7 +22,7 @@ SEEDS = 125
 """Lines of every class: 1 000 in all."""
 TENTH = 13
 QUICK = {
-    "straight": (0, 2), "bent": (3,), "free": (4,), "geared": (), "branched": (0,), "low speed": (1,),
+    "straight": (0, 2), "bent": (3,), "free": (4,), "geared": (), "branched": (0,), "low speed": (1, 61),
     "schedule": (), "load cases": (1,),
 }  # fmt: skip
 """Seeds whose lines take next to no time."""

@@ -44,6 +44,8 @@ FLAT = 0.01
 """Share by which neighbours of a top may lie below it for a parabola through them to hold."""
 BEND = 0.02
 """Error of a parabola's top, as a share of how far its ends lie below it: that of a resonance is a fifth."""
+END = 0.1
+"""How far a top beside the end of a piece may rise above the end, as a share of what the next speed lies below it."""
 HIGH_ENOUGH = 0.7
 """Share of the largest value, roughly looked at, from which a top may turn out to be the largest."""
 CAUTION = 1.5
@@ -247,7 +249,7 @@ class _Seen:
         quantity = self.quantities[q]
         wanted = Wanted(top * (1 + tolerance / 4), quantity.level)
         poles = _poles(x, v, quantity.parts(self.response)[run], quantity.squared, wanted)
-        return _together([_tops(x, v, wanted), poles])
+        return _together([_tops(x, v, wanted), *_ends(x, v, wanted), poles])
 
     def _apart(self, wanted: Hidden, run: slice) -> Array:
         """Speeds that are not next to each other, nor to known ones: of several at one top the highest."""
@@ -333,6 +335,19 @@ def _tops(x: Array, v: Array, wanted: Wanted) -> Hidden:
     left, right = (nearer + x[inner - 1]) / 2, (nearer + x[inner + 1]) / 2
     both = [np.concatenate([one, one[known]]) for one in (above, high - low)]
     return Hidden(np.concatenate([np.where(known, left, where), right[known]]), *both)
+
+
+def _ends(x: Array, v: Array, wanted: Wanted) -> list[Hidden]:
+    """Middles of the first and the last stretch where the end is the highest and rises too steeply for a parabola: of a
+    resonance that stands beyond it the top may lie before it."""
+    found = []
+    for end, beside in ((0, 1), (-1, -2)):
+        fall = v[end] - v[beside]
+        height = v[end] + END * fall
+        if fall > FLAT * v[end] and wanted.by(np.array([height]), v[[end]])[0]:
+            middle, apart = (x[end] + x[beside]) / 2, abs(x[end] - x[beside])
+            found.append(Hidden(np.array([middle]), np.array([height]), np.array([apart])))
+    return found
 
 
 def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: Wanted) -> Hidden:
