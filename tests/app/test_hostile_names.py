@@ -139,9 +139,10 @@ def no_script_in(svg: bytes) -> None:
 )
 def test_saved_pictures_hold_no_script(view: str, settings: dict[str, str]) -> None:
     there, worker = view_of(TOML, view, settings), Worker(BytesIO(), BytesIO(), 1)
-    for step in there.steps(there.session.document.line):
-        if "svg" in step.endings:
-            no_script_in(worker.compute(step.file(TOML, "svg"), lambda share: None))
+    steps = [step for step in there.steps(there.session.document.line) if "svg" in step.endings]
+    assert steps
+    for step in steps:
+        no_script_in(worker.compute(step.file(TOML, "svg"), lambda share: None))
 
 
 @pytest.mark.parametrize("name", [*hostile.NAMES, '"""\nran(43)\n"""', "\\", '"', "a\\'''", "\u2028ran(44)"])
