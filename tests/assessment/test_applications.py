@@ -15,7 +15,7 @@ from trunnion.analyses.assessment.joint_angles import TABLE_ANGLE, TABLE_SPEED
 from trunnion.cli import app
 from trunnion.driveline.rules import APPLICATIONS, RULES, Weight, markdown
 from trunnion.errors import InputRemark
-from trunnion.reporting.answer import answer
+from trunnion.reporting.answer import answer, asked, judged
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
@@ -130,7 +130,7 @@ def test_what_does_not_decide_does_not_read_as_if_it_did(beyond) -> None:
     shown = [row for row, check in zip(found.table(), found.checks, strict=True) if not check.decides]
     assert {row["status"] for row in shown} == {"beyond guideline", "within guideline"}
     assert not any("exceeded" in f"{row['status']} {row['margin']} {row['because']}" for row in shown)
-    said = [str(finding) for finding in answer(line).findings]
+    said = [str(finding) for finding in answer(judged(asked(line))).findings]
     assert not any("exceeded" in sentence or sentence.startswith("danger") for sentence in said)
     assert any(sentence.startswith("caution: Beyond guidelines that are shown only: ") for sentence in said)
     road = beyond["road"]

@@ -48,11 +48,13 @@ def test_no_largest_value_is_low_by_more_than_its_error(kind: str, seed: int) ->
             "kind": kind, "seed": seed, "low": line.low, "high": line.high, "masses": len(line.masses),
             "assess": found.own_time, "scan": found.scan_time, "least": found.least, "largest": found.largest,
             "compared": found.compared, "unstable": found.unstable, "gaps": found.gaps, "faults": found.faults,
+            "missed": found.missed,
         }  # fmt: skip
         with Path(target).open("a", encoding="utf-8") as out:
             out.write(json.dumps(figures) + "\n")
     assert not found.faults, "\n".join(found.faults)
     assert found.compared >= 4
+    assert len(found.missed) <= found.compared / 4, found.missed  # else the scan is no judge
 
 
 def test_the_scan_itself_by_hand() -> None:

@@ -35,8 +35,9 @@ NAME = "parametric stability"
 @dataclass
 class Judged:
     """The faults found, in sentences; processor time [s] of the package and of the scan; the smallest of value + error
-    over what the scan found, less 1; how many values were compared; ranges said to be unstable, and those that are not
-    judged since the motion of a free line breaks off there."""
+    over what the scan found, less 1; how many values were compared, and those whose top no speed of the scan came near
+    (they are checked at their own speed like every other); ranges said to be unstable, and those that are not judged
+    since the motion of a free line breaks off there."""
 
     faults: list[str] = field(default_factory=list)
     own_time: float = 0.0
@@ -44,6 +45,7 @@ class Judged:
     least: float = np.inf
     largest: float = -np.inf
     compared: int = 0
+    missed: list[str] = field(default_factory=list)
     unstable: Ranges = ()
     gaps: Ranges = ()
 
@@ -89,13 +91,14 @@ def judged(line: ScannedLine) -> Judged:
         if any(a * (1 - BESIDE_EDGE) < check.speed < b * (1 + BESIDE_EDGE) for a, b in left_out):
             continue
         found.largest = max(found.largest, own / value - 1)
-        if own > value * (1 + SCANNED):
-            found.faults.append(f"{says} is high: {value:.12g} at {speed:.12g} rad/s")
         if check.speed not in there:
             there[check.speed] = [scan.at(check.speed) for scan in scans.values()]
         known = [one[name] for one in there[check.speed] if np.isfinite(one[name])]
         if known and min(abs(own / one - 1) for one in known) > ALIKE + check.error / check.value:
             found.faults.append(f"{says} is none there: {', '.join(f'{one:.12g}' for one in known)}")
+        if own > value * (1 + SCANNED):
+            beside = found.missed if known else found.faults
+            beside.append(f"{says} is high: {value:.12g} at {speed:.12g} rad/s")
     if checks[NAME].judged or found.gaps:
         found.faults += _of_ranges(scans, found, line)
     found.faults += [f"the motion goes on between {a:.9g} and {b:.9g} rad/s" for a, b in found.gaps

@@ -10,7 +10,7 @@ import pytest
 import trunnion as tn
 from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.equations.coefficients import assemble
-from trunnion.reporting.answer import answer
+from trunnion.reporting.answer import answer, asked, judged
 from trunnion.reporting.contents import gather
 from trunnion.reporting.overview import at_speed, charted
 from trunnion.reporting.overview_findings import remark_findings, response_findings
@@ -81,7 +81,7 @@ def test_the_report_of_a_bent_line_that_starts_free_says_what_would_help() -> No
         limits=[tn.Limit(of="clutch", max_torque=150.0)],
         operation=tn.Operation(speed_range=(70.0, 75.0)),
     )  # fmt: skip
-    contents = gather(at_speed(answer(line)))
+    contents = gather(at_speed(answer(judged(asked(line)))))
     assert contents.helped is not None and contents.helped.remedies
     assert any(s.startswith("max torque of clutch: ") for s in contents.helped.sentences)
     assert not any("What would help" in words for words in contents.left_out)
@@ -107,7 +107,7 @@ def coupled(*ends: tn.Disk | tn.ConstantSpeed) -> tn.Driveline:
 @pytest.mark.parametrize("ends", [(tn.ConstantSpeed(),), (tn.Disk(inertia=1.0, drive_share=1.0),)])
 def test_lines_that_damp_all_frequencies_alike_have_a_first_page(ends: tuple[tn.Disk | tn.ConstantSpeed, ...]) -> None:
     """Torques are judged, stability is not, and what has no equations in time is left out."""
-    seen = at_speed(answer(coupled(*ends)))
+    seen = at_speed(answer(judged(asked(coupled(*ends)))))
     assert seen.assessment.check("max torque of tube").status.value in ("satisfied", "exceeded")
     assert seen.stability is None and not seen.chartable and charted(seen).chart is None
     (said,) = [f.sentence for f in seen.findings if f.sentence.startswith("Parametric stability is not judged")]
@@ -117,7 +117,7 @@ def test_lines_that_damp_all_frequencies_alike_have_a_first_page(ends: tuple[tn.
 def test_modes_that_need_the_same_check_are_said_together() -> None:
     """One caution for all modes that orders meet, however many they are."""
     line = tn.load(LINES / "4x4-free.toml")
-    cautions = [f.sentence for f in answer(line).findings if f.sentence.startswith("Separation of mode")]
+    cautions = [f.sentence for f in answer(judged(asked(line))).findings if f.sentence.startswith("Separation of mode")]
     assert len(cautions) == 1 and cautions[0].startswith("Separation of modes 6, 7 and 8 is below 10 %: order 2 meets")
     assert cautions[0].count("a resonance needs limits of torque or stress: state them for") == 1
 

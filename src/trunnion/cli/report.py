@@ -13,6 +13,7 @@ from trunnion.cli import output
 from trunnion.cli.assess import assessment_json
 from trunnion.cli.kinetostatics import kinetostatics_json
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.results.counts import counted
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.speeds import frequency_unit, show_speed, speed_factor
 from trunnion.results.units import with_error
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
     from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
     from trunnion.analyses.linear.stability import Stability
-    from trunnion.reporting.answer import Answer
+    from trunnion.reporting.answer import Answer, Asked, Judged
     from trunnion.reporting.overview import Overview
     from trunnion.results.chart import StabilityChart
 
@@ -30,8 +31,17 @@ MOST_ROWS = 24
 """Resonances that an overview prints."""
 
 
-def print_answer(given: Answer) -> None:
-    """The verdict, the checks and the findings: what is known before anything is drawn."""
+def print_begin(given: Asked) -> None:
+    """What is about to be judged: the verdict of a long line takes some seconds."""
+    low, high = (show_speed(end, given.unit) for end in given.speed_range)
+    said = [counted(len(given.line.elements), "element"), f"judged from {low} to {high}"]
+    if given.line.operation and (cases := given.line.operation.load_cases):
+        said.append(f"as it is and under {counted(len(cases), 'load case')}")
+    output.say(f"{given.line.name or 'driveline'}: {', '.join(said)}", wrap=True)
+
+
+def print_judged(given: Judged) -> None:
+    """The verdict and the checks: what is known first."""
     from trunnion.analyses.assessment.check import Status
 
     judged, unit = given.assessment, given.unit
@@ -42,6 +52,10 @@ def print_answer(given: Answer) -> None:
     output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
     for one in judged.switched_off:
         output.say(f"  switched off: {one}")
+
+
+def print_findings(given: Answer) -> None:
+    """What follows from the verdict, before anything is drawn."""
     output.findings(given.findings)
     output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 

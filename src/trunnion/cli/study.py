@@ -75,15 +75,24 @@ def analyze(
     size, at = read_points(points) if points else None, read_speed(speed, unit)
     seconds = read_time(within, "--within")
     from trunnion.cli.files import check_report
-    from trunnion.cli.report import overview_json, print_answer, print_overview
+    from trunnion.cli.report import overview_json, print_begin, print_findings, print_judged, print_overview
     from trunnion.reporting.answer import answer as answer_of
+    from trunnion.reporting.answer import asked, judged
     from trunnion.reporting.overview import at_speed
 
     check_report(to)
-    with output.progress("verdict", within):
-        given = answer_of(line, speed=at, unit=unit)
+    question = asked(line, speed=at, unit=unit)
     if not as_json:
-        print_answer(given)
+        print_begin(question)
+    with output.progress("verdict", within):
+        verdict = judged(question)
+    if not as_json:
+        print_judged(verdict)
+    left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
+    with output.stoppable(left), output.progress("findings"):
+        given = answer_of(verdict)
+    if not as_json:
+        print_findings(given)
     left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
     with output.stoppable(left, of_processor=seconds is None) as limit:
         if left < DRAWN:

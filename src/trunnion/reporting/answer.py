@@ -6,7 +6,8 @@ Nothing here is drawn, and nothing compiled that the answer does not need: chart
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -48,31 +49,46 @@ NEARLY = 0.1
 
 
 @dataclass(frozen=True)
-class Answer:
-    """The verdict on a line over its running range, and what belongs to it.
+class Asked:
+    """A line that can be judged, and over which range.
 
-    operation: the description's, at the ``speed`` [rad/s] asked for (None without one); speed_range [rad/s]: of the
-    description, or guessed from the line where it states none; subject: what was judged, its responses included;
-    along: stability along the range at the joints' own angles, None where nothing makes the coefficients vary or where
-    each speed takes its own motion; resonance_speeds: those in the range.
+    speed [rad/s]: the one asked for, None without one; speed_range [rad/s]: of the description, or guessed from the
+    line where it states none; subject: what is judged, its responses once they are needed.
     """
 
     line: Driveline
     assembly: Assembly
     unit: str
     speed: float | None
-    operation: Operation
     speed_range: tuple[float, float]
+    subject: Subject
+
+
+@dataclass(frozen=True)
+class Judged(Asked):
+    """The verdict alone, before what lies beside the range is looked at."""
+
+    assessment: Assessment
+
+
+@dataclass(frozen=True)
+class Answer(Judged):
+    """The verdict on a line over its running range, and what belongs to it.
+
+    operation: the description's, at the ``speed`` asked for; along: stability along the range at the joints' own
+    angles, None where nothing makes the coefficients vary or where each speed takes its own motion; resonance_speeds:
+    those in the range.
+    """
+
+    operation: Operation
     natural_frequencies: NaturalFrequencies
     resonance_speeds: ResonanceSpeeds
-    subject: Subject
-    assessment: Assessment
     along: StabilityAlong | None
     findings: tuple[Finding, ...]
 
 
-def answer(line: Driveline, *, speed: float | str | None = None, unit: str | None = None) -> Answer:
-    """Judge ``line`` over its range; see ``overview`` for the parameters.
+def asked(line: Driveline, *, speed: float | str | None = None, unit: str | None = None) -> Asked:
+    """What there is to judge of ``line``; see ``overview`` for the parameters.
 
     Raises
     ------
@@ -85,15 +101,25 @@ def answer(line: Driveline, *, speed: float | str | None = None, unit: str | Non
         require_steady_base(assembly, assembly.table(1, speed))
     low, high = speed_range(line)
     subject = replace(subject_of(line, (low, high), None, unit, partly=True), speed=speed)
-    assessment = judgement(subject, checks_of(subject))
+    return Asked(line, assembly, unit, speed, (low, high), subject)
+
+
+def judged(of: Asked) -> Judged:
+    """The verdict over the range."""
+    return Judged(**_parts(of), assessment=judgement(of.subject, checks_of(of.subject)))
+
+
+def answer(of: Judged) -> Answer:
+    """What an engineer asks next: what lies just beyond the range, which resonances stand in it, what else binds."""
+    line, assembly, unit, speed, (low, high) = of.line, of.assembly, of.unit, of.speed, of.speed_range
     every = resonance_speeds(assembly)
     here = every.within(low, high)
-    along = _along(subject.cases[0])
+    along = _along(of.subject.cases[0])
     joints, slowest = hooke_joints(line), lowest_speed(assembly)
     findings = [
-        *check_findings(assessment),
-        *assessment.findings,
-        *beyond_findings(subject, assessment),
+        *check_findings(of.assessment),
+        *of.assessment.findings,
+        *beyond_findings(of.subject, of.assessment),
         *(along_findings(assembly, along, unit) if along else ()),
         *line_findings(line, speed),
         *resonance_findings(here, (low, high), speed, unit),
@@ -103,19 +129,17 @@ def answer(line: Driveline, *, speed: float | str | None = None, unit: str | Non
         *remark_findings(line),
     ]
     return Answer(
-        line=line,
-        assembly=assembly,
-        unit=unit,
-        speed=speed,
+        **_parts(of),
         operation=(line.operation or Operation()).model_copy(update={"speed": speed}),
-        speed_range=(low, high),
         natural_frequencies=natural_frequencies(assembly),
         resonance_speeds=here,
-        subject=subject,
-        assessment=assessment,
         along=along,
         findings=by_gravity(_once(findings)),
     )
+
+
+def _parts(of: Asked) -> dict[str, Any]:
+    return {field.name: getattr(of, field.name) for field in fields(of)}
 
 
 def _once(findings: list[Finding]) -> list[Finding]:
@@ -197,7 +221,13 @@ def beyond_findings(subject: Subject, assessment: Assessment) -> list[Finding]:
         found += [_beyond(c, side) for c in counting if c.exceeded and c.name not in inside]
         untold = [case.answer for known, case in zip(subject.cases, cases, strict=True) if known.response]
         reasons = [answer for answer in untold if isinstance(answer, str)]
-        reasons += [f"{there.ranges([(g.low, g.high)])}, {g.why}" for case in cases for g in case.span.gaps]
+        whole = "; ".join(reasons)
+        reasons += [
+            f"{there.ranges([(g.low, g.high)])}, {g.why}"
+            for case in cases
+            for g in case.span.gaps
+            if g.why not in whole
+        ]
         for why in dict.fromkeys(reasons):
             found.append(Finding(Gravity.NOTE, f"{_just(side)} no torque is judged: {why}."))
     return found

@@ -20,7 +20,7 @@ from trunnion.analyses.linear.stability import Stability, stability
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
-from trunnion.reporting.answer import Answer, answer
+from trunnion.reporting.answer import Answer, answer, asked, judged
 from trunnion.reporting.overview_findings import chart_findings
 from trunnion.reporting.ranges import angle_range
 from trunnion.results.chart import StabilityChart
@@ -85,7 +85,7 @@ def overview(
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
     """
-    return charted(at_speed(answer(line, speed=speed, unit=unit)), points, progress)
+    return charted(at_speed(answer(judged(asked(line, speed=speed, unit=unit)))), points, progress)
 
 
 def at_speed(given: Answer) -> Overview:
