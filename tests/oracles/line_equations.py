@@ -28,7 +28,7 @@ Complex = NDArray[np.complex128]
 QUARTER = np.pi / 2
 PER_CYCLE, OF_ORBITS = 32, 20
 """Samples of the fastest joint's cycle, and where the motion is solved for at each."""
-WIDEST = np.log(1e13), 161
+WIDEST = np.log(1e13), 321
 """Budget and most orders of any lattice."""
 
 
