@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import fft
 
-from trunnion.arrays import Array, Complex, Integers
+from trunnion.arrays import Array, Complex, Integers, Places
 
 Curves = Callable[[Array], Array]
 """Times (m,) → values (m, curves)."""
@@ -249,3 +249,19 @@ def at_place(values: Array, place: float) -> Any:
     """What lies at a place among ``values`` (points, …), linear between two of them."""
     before, after = values[int(np.floor(place))], values[int(np.ceil(place))]
     return before + (place - np.floor(place)) * (after - before)
+
+
+def parabola(x: Array, v: Array, i: Places) -> tuple[Array, Array, Array]:
+    """Of parabolas through places i − 1, i, i + 1: where their tops are and how high, NaN without one between the outer
+    two; and how far the lower of these lies below the highest of the three."""
+    back, on = x[i] - x[i - 1], x[i + 1] - x[i]
+    left, right = (v[i] - v[i - 1]) / back, (v[i + 1] - v[i]) / on
+    bend = (right - left) / (back + on)
+    slope = (left * on + right * back) / (back + on)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shift = -slope / (2 * bend)
+        inside = (bend < 0) & (shift >= -back) & (shift <= on)
+        shift = np.where(inside, shift, np.nan)
+        height = v[i] + shift * (slope + bend * shift)
+    three = np.stack([v[i - 1], v[i], v[i + 1]])
+    return x[i] + shift, height, three.max(axis=0) - np.minimum(three[0], three[2])

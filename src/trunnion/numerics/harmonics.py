@@ -158,3 +158,11 @@ def spectrum_of_steps(ends: Array, values: Array, highest: int) -> Complex:
     turns = np.exp(-1j * m * ends)
     parts = np.concatenate([np.diff(ends)[None], (turns[:, :-1] - turns[:, 1:]) / (1j * m)]) / (2 * np.pi)
     return np.asarray(values @ parts.T)
+
+
+def doubled(fewest: int, most: int) -> list[int]:
+    """Numbers of harmonics to try one after the other: doubled from ``fewest``, ``most`` the last."""
+    found = [fewest]
+    while found[-1] < most:
+        found.append(min(2 * found[-1], most))
+    return found

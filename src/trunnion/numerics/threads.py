@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
 from contextvars import copy_context
+from functools import cache
 from typing import TypeVar
+
+from threadpoolctl import ThreadpoolController
 
 from trunnion.waiting import keep_time
 
@@ -34,3 +38,14 @@ def on_threads(work: Callable[[Task], Result], tasks: Iterable[Task], threads: i
         return [one.result() for one in waiting]
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def on_one_thread() -> AbstractContextManager[object]:
+    """For matrices of a few hundred rows: a library's threads would spend their time waiting for each other."""
+    return _libraries().limit(limits=1, user_api="blas")
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """What NumPy has loaded; looking for it takes as long as a small balance."""
+    return ThreadpoolController()

@@ -14,7 +14,6 @@ from functools import cached_property
 
 import numpy as np
 
-from trunnion.analyses.orbits.balancing import on_one_thread
 from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
@@ -25,6 +24,7 @@ from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
+from trunnion.numerics.threads import on_one_thread
 
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 
 from trunnion.analyses.linear.free_balance import MOST, MOST_NUMBERS, FreeBalance, FreeMotions
-from trunnion.analyses.orbits.balancing import doubled
 from trunnion.analyses.orbits.free_orbit import loaded_by_speed
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.driveline.driveline import Driveline
@@ -24,6 +23,7 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.spectrum import along, real_positive
 
 ALIKE = 1e-6

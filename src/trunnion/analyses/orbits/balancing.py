@@ -9,18 +9,17 @@ are doubled alike, and the matrices of the balance are the same for all (``numer
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Protocol, TypeVar
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from trunnion.analyses.orbits.branch import PeriodicBranch, Problem, collect, follow_both_ways
 from trunnion.arrays import Array
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.harmonics import doubled
+from trunnion.numerics.threads import on_one_thread
 from trunnion.results.declared import Held, Result, over, remarks
 from trunnion.results.drawing import Axes
 from trunnion.results.outcome import Outcome
@@ -118,25 +117,6 @@ def balanced(
         found = _followed(kind, make(last), begin, low, high, most_points, np.inf)
     assert found is not None
     return found if harmonics is not None else _judged(found, limit)
-
-
-def doubled(fewest: int, most: int) -> list[int]:
-    """Numbers of harmonics to try one after the other: doubled from ``fewest``, ``most`` the last."""
-    found = [fewest]
-    while found[-1] < most:
-        found.append(min(2 * found[-1], most))
-    return found
-
-
-def on_one_thread() -> AbstractContextManager[object]:
-    """For matrices of a few hundred rows: a library's threads would spend their time waiting for each other."""
-    return _libraries().limit(limits=1, user_api="blas")
-
-
-@cache
-def _libraries() -> ThreadpoolController:
-    """What NumPy has loaded; looking for it takes as long as a small balance."""
-    return ThreadpoolController()
 
 
 def _followed(

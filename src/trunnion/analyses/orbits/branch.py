@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 
@@ -25,7 +25,8 @@ from trunnion.numerics.curves import at_place, meetings
 from trunnion.results.declared import Held, Result, axis, ending, fields_over, over
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
-from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
+from trunnion.results.parameter_names import Names
+from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 Progress = Callable[[float], None]
@@ -41,27 +42,6 @@ LOCATING = 50.0
 """Time to locate a grazing, over that of looking at two neighbours which have none between them."""
 BOUNDLESS = 30.0
 """Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
-
-
-@dataclass(frozen=True)
-class Names:
-    """Name and unit of the parameter, and of the curves that are observed; ``speed_unit`` of a driveline is what its
-    description prints speeds in."""
-
-    label: str = ""
-    unit: str = "1"
-    curves: tuple[str, ...] = ()
-    curve_unit: str = "1"
-    speed_unit: str | None = None
-
-    @property
-    def axis(self) -> QuantityAxis:
-        """How the parameter reads."""
-        return parameter_axis(self.label, self.unit, self.speed_unit)
-
-    def said(self, value: float) -> str:
-        """``speed = 1500 rpm``, from SI."""
-        return f"{self.label} = {self.axis.number(value)}"
 
 
 class Problem(Protocol):
@@ -99,24 +79,6 @@ class Problem(Protocol):
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
         """Peak-to-peak and largest absolute value of the curves, amplitude of the fundamental of the states, period."""
-
-
-P = TypeVar("P")
-T = TypeVar("T")
-
-
-def once(tell: Callable[[P, CurvePoint], T]) -> Callable[[P, CurvePoint], T]:
-    """A method that tells something of a point of a curve, computed once for each point of each problem."""
-    place = f"_{tell.__name__}"
-
-    def told(self: P, point: CurvePoint) -> T:
-        known: dict[bytes, T] = vars(self).setdefault(place, {})
-        key = point.z.tobytes()
-        if key not in known:
-            known[key] = tell(self, point)
-        return known[key]
-
-    return told
 
 
 @dataclass(frozen=True)

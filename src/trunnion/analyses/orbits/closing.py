@@ -13,11 +13,11 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from trunnion.analyses.orbits.branch import Names, once
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
-from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.continuation.arclength import CurvePoint, once
 from trunnion.numerics.continuation.newton import Root, solve
+from trunnion.results.parameter_names import Names
 from trunnion.systems.maps import Passage, PeriodMap
 
 M = TypeVar("M", bound=PeriodMap)

@@ -19,15 +19,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.orbits.balancing import Series, SeriesBranch, balanced
-from trunnion.analyses.orbits.branch import STEP, Names, once
+from trunnion.analyses.orbits.branch import STEP
 from trunnion.analyses.orbits.closing import by_modulus
 from trunnion.analyses.orbits.piecewise_branch import begun_within
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow
+from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow, once
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
+from trunnion.results.parameter_names import Names
 from trunnion.systems.second_order import SecondOrder, Spring
 
 FEWEST, MOST = 10, 160

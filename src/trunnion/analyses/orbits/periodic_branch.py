@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.analyses.orbits.branch import STEP, Names, PeriodicBranch, Progress, followed
+from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.analyses.orbits.closing import Phase
 from trunnion.analyses.orbits.free_orbit import kept_speed_orbit, neutral_motions, require_kept_speed, torque_scale
 from trunnion.analyses.orbits.judging import IntegratedClosing
@@ -27,6 +27,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.errors import InputError
+from trunnion.results.parameter_names import Names
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 

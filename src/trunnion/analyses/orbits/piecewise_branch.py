@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.analyses.motion.exact_motion import start_state
-from trunnion.analyses.orbits.branch import STEP, Names, PeriodicBranch, Progress, followed
+from trunnion.analyses.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.analyses.orbits.closing import refuse_speed
 from trunnion.analyses.orbits.exact_map import LineMap, OscillatorMap
 from trunnion.analyses.orbits.judging import ExactClosing
@@ -21,6 +21,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
+from trunnion.results.parameter_names import Names
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 

@@ -118,6 +118,11 @@ class OrderSpectrum:
         """Extremes (speed, channel) of some channels, mean included."""
         return self.extremes(self.amplitude[..., channels], self.mean[:, channels])
 
+    @property
+    def joint_rotations(self) -> Array:
+        """Largest deviation at every joint's input (speed, joint) [rad]."""
+        return self.extremes_at(self.channels.joint_input).largest
+
     def extremes(self, amplitude: Complex, mean: Array) -> Range:
         """Extremes (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
 

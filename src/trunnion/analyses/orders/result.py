@@ -192,7 +192,7 @@ class OrderResponse(Judged):
     @cached_property
     def joint_rotations(self) -> Array:
         """The same for every joint (speed, joint)."""
-        return self.spectrum.extremes_at(self.spectrum.channels.joint_input).largest
+        return self.spectrum.joint_rotations
 
     @property
     def linear(self) -> Flags:

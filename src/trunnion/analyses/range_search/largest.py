@@ -26,8 +26,9 @@ from trunnion.analyses.orders.response import response_of_spectrum
 from trunnion.analyses.orders.result import OrderResponse
 from trunnion.analyses.range_search.resonances import Resonances
 from trunnion.analyses.range_search.span import Piece
-from trunnion.arrays import Array, Complex, Flags, Places
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.coefficients import Assembly
+from trunnion.numerics.curves import parabola
 from trunnion.waiting import OutOfTime
 
 POINTS = 65
@@ -288,22 +289,6 @@ class _Seen:
         x, v = self.response.speed[run], self.values[run, q]
         _, height, fall = parabola(x, v, np.array([i]))
         return float(np.nanmax([height[0] - v[i], 0.0]) + BEND * fall[0])
-
-
-def parabola(x: Array, v: Array, i: Places) -> tuple[Array, Array, Array]:
-    """Of parabolas through places i − 1, i, i + 1: where their tops are and how high, NaN without one between the outer
-    two; and how far the lower of these lies below the highest of the three."""
-    back, on = x[i] - x[i - 1], x[i + 1] - x[i]
-    left, right = (v[i] - v[i - 1]) / back, (v[i + 1] - v[i]) / on
-    bend = (right - left) / (back + on)
-    slope = (left * on + right * back) / (back + on)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shift = -slope / (2 * bend)
-        inside = (bend < 0) & (shift >= -back) & (shift <= on)
-        shift = np.where(inside, shift, np.nan)
-        height = v[i] + shift * (slope + bend * shift)
-    three = np.stack([v[i - 1], v[i], v[i + 1]])
-    return x[i] + shift, height, three.max(axis=0) - np.minimum(three[0], three[2])
 
 
 @dataclass(frozen=True)

@@ -21,16 +21,15 @@ import numpy as np
 from trunnion.analyses.charts.axes import lowest_speed
 from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.analyses.orders.groups import offsets
-from trunnion.analyses.orders.response import response_of_spectrum
 from trunnion.analyses.orders.spectrum import order_spectrum
 from trunnion.analyses.range_search.exponents import SideOrders, meeting_exponents
-from trunnion.analyses.range_search.largest import parabola
 from trunnion.analyses.range_search.resonances import BESIDE, Modes, resonances
 from trunnion.analyses.range_search.slow import slow_enough
 from trunnion.analyses.range_search.span import Gap, Piece, Span
 from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.coefficients import joint_laws
 from trunnion.equations.steady_base import moves_by_itself
+from trunnion.numerics.curves import parabola
 from trunnion.results.verdict import Verdict
 
 POINTS = 65
@@ -198,8 +197,8 @@ def _swing(span: Span) -> float:
         return 0.0
     speed = np.unique(np.concatenate([np.linspace(span.start, span.high, POINTS), resonances(span).speed]))
     table = span.table(speed) if span.put else None
-    found = response_of_spectrum(span.assembly, order_spectrum(span.assembly, speed, table=table, rough=True))
-    return float(np.nan_to_num(found.joint_rotation, nan=1.0, posinf=1.0).max(initial=0.0))
+    found = order_spectrum(span.assembly, speed, table=table, rough=True)
+    return float(np.nan_to_num(found.joint_rotations, nan=1.0, posinf=1.0).max(initial=0.0))
 
 
 def _beside_met(

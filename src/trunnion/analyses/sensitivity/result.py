@@ -8,8 +8,7 @@ from math import ceil, log10, nan
 
 import numpy as np
 
-from trunnion.analyses.assessment.remedies.result import STEPS
-from trunnion.analyses.assessment.remedies.variables import Scale, scale_of
+from trunnion.analyses.assessment.remedies.variables import STEPS, Scale, scale_of
 from trunnion.arrays import Array
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeVar
 
 import numpy as np
 from scipy.optimize import brentq
@@ -21,6 +22,9 @@ Equations = Callable[[Array], tuple[Array, Array]]
 """z (n + 1,) → residual (n,) and its Jacobian (n, n + 1); numbers that are not finite mean "not here"."""
 Test = Callable[["CurvePoint"], float]
 """A function of a point whose zero is sought between two of them."""
+
+P = TypeVar("P")
+T = TypeVar("T")
 
 MOST_CORRECTIONS = 8
 ROUNDING, ILL_CONDITIONED = 100 * float(np.finfo(float).eps), 1e-8
@@ -55,6 +59,20 @@ class CurvePoint:
     def parameter(self) -> float:
         """The parameter at the point."""
         return float(self.z[-1])
+
+
+def once(tell: Callable[[P, CurvePoint], T]) -> Callable[[P, CurvePoint], T]:
+    """A method that tells something of a point of a curve, computed once for each point of each problem."""
+    place = f"_{tell.__name__}"
+
+    def told(self: P, point: CurvePoint) -> T:
+        known: dict[bytes, T] = vars(self).setdefault(place, {})
+        key = point.z.tobytes()
+        if key not in known:
+            known[key] = tell(self, point)
+        return known[key]
+
+    return told
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.remedies.variables import DesignVariable, Scale
+from trunnion.analyses.assessment.remedies.variables import STEPS, DesignVariable
 from trunnion.analyses.assessment.result import Assessment
 from trunnion.arrays import Array
-from trunnion.driveline.quantities import DEGREE
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Result, axis, over, remark, remarks_of
 
@@ -19,12 +18,6 @@ STRONGEST = 3
 """Sensitivities printed of each check."""
 LEAST, SHARE = 1e-5, 0.01
 """Changes of a value that no reader can see, and shares of the strongest, below which sensitivities are not printed."""
-STEPS = {
-    Scale.FACTOR: (0.01, "+1 %"),
-    Scale.BEND: (DEGREE, "+1 deg"),
-    Scale.PHASE: (10 * DEGREE, "+10 deg"),
-}
-"""Steps in which sensitivities are printed."""
 
 
 @dataclass(frozen=True)

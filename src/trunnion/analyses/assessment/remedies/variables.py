@@ -41,6 +41,14 @@ _NAMED = ("outer_diameter", "damping", "mesh_damping", "loss_factor", "relative_
 _PHASES = ("fork_offset", "plane", "phase")
 
 
+STEPS = {
+    Scale.FACTOR: (0.01, "+1 %"),
+    Scale.BEND: (DEGREE, "+1 deg"),
+    Scale.PHASE: (10 * DEGREE, "+10 deg"),
+}
+"""Steps in which sensitivities are printed."""
+
+
 @dataclass(frozen=True)
 class DesignVariable:
     """One number of a line that may be changed: its path as ``pack`` names it, and how changes are measured."""
