@@ -115,7 +115,7 @@ def test_a_narrow_encoding_does_not_break_the_output(start):
 def test_who_is_asked_to_end_leaves_nothing(start, here, later, asked):
     """Ctrl-C, and what a scheduler, a service or a closing terminal sends."""
     before = sorted(os.listdir(here))
-    process = start("stability-chart", "line.toml", "--points", "3000x3000", program=("-c", HEARD))
+    process = start("stability-chart", "line.toml", "--points", "5000x5000", program=("-c", HEARD))
     assert process.stdout.readline() == "ready\n"
     if later:
         time.sleep(3)  # whatever it is doing by then

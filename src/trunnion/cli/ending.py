@@ -15,12 +15,14 @@ class EndedBy:
 
     number = int(signal.SIGINT)
     asked = False
-    """Whether any has come, whatever was made of the ``KeyboardInterrupt``."""
+    """Whether any has come."""
+    raised = False
+    """Whether a ``KeyboardInterrupt`` answered it. Callbacks and finalisers swallow it when it falls into them."""
 
     @classmethod
     def hear(cls) -> None:
         """From now on the first signal that asks this process to end does what Ctrl-C does, so that it cleans up."""
-        cls.number, cls.asked = int(signal.SIGINT), False
+        cls.number, cls.asked, cls.raised = int(signal.SIGINT), False, False
         with suppress(ValueError):  # not in the main thread
             if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # in the background it is ignored
                 signal.signal(signal.SIGINT, cls.on_ctrl_c)
@@ -42,7 +44,7 @@ class EndedBy:
     @staticmethod
     def on_ctrl_c(*_: object) -> None:
         """As Python answers it, and noted."""
-        EndedBy.asked = True
+        EndedBy.asked = EndedBy.raised = True
         raise KeyboardInterrupt
 
     @classmethod
@@ -54,7 +56,7 @@ class EndedBy:
             if callable(on_ctrl_c):
                 on_ctrl_c(number, frame)
             else:  # a command in the background
-                raise KeyboardInterrupt
+                cls.on_ctrl_c()
 
     @classmethod
     def code(cls) -> int:

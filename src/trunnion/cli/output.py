@@ -289,6 +289,8 @@ class _Lines:
 STOPPING = "stopping with what is known by now; Ctrl-C again leaves at once"
 PATIENCE = 5.0
 """Seconds that a computation has to stop with what it has, before Ctrl-C ends it as it stands."""
+AGAIN = 1.0
+"""Seconds until it is tried again."""
 _stopped = False
 
 
@@ -308,6 +310,8 @@ def stoppable(seconds: float | None = None, *, of_processor: bool = False) -> It
     KeyboardInterrupt : it was stopped before anything was known.
     """
     global _stopped
+    if EndedBy.raised:  # into something that swallowed it
+        raise KeyboardInterrupt
     with time_limit(seconds, of_processor=of_processor) as limit, _first_ctrl_c(limit):
         try:
             yield limit
@@ -326,26 +330,26 @@ def _first_ctrl_c(limit: TimeLimit) -> Iterator[None]:
     if not here or before not in (signal.default_int_handler, EndedBy.on_ctrl_c):
         yield
         return
-    impatient: list[threading.Timer] = []
+    over = threading.Event()
 
     def hurry() -> None:
-        if not limit.noticed:
+        # Again and again: an interruption that falls into a callback or a finaliser is swallowed there.
+        patience = PATIENCE
+        while not over.wait(patience) and not limit.noticed:
             _thread.interrupt_main()
+            patience = AGAIN
 
     def ask(*_: object) -> None:
         if limit.stopped:
             raise KeyboardInterrupt
+        EndedBy.asked = before is EndedBy.on_ctrl_c
         limit.stop()
         note(STOPPING)
-        timer = threading.Timer(PATIENCE, hurry)
-        timer.daemon = True
-        timer.start()
-        impatient.append(timer)
+        threading.Thread(target=hurry, daemon=True).start()
 
     signal.signal(signal.SIGINT, ask)
     try:
         yield
     finally:
-        for timer in impatient:
-            timer.cancel()
+        over.set()
         signal.signal(signal.SIGINT, before)

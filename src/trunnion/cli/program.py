@@ -48,6 +48,8 @@ class OneLineGroup(TyperGroup):
             raise Interrupted(*interrupt.args) from None
         if output.stopped():
             raise Interrupted("this is what was known by then")
+        if EndedBy.asked:  # by a signal that came too late, or whose interruption something swallowed
+            raise Interrupted("the result was complete and is written")
         return result
 
     def main(self, args: Any = None, prog_name: str | None = None, **extra: Any) -> Any:  # type: ignore[override]
